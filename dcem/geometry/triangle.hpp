@@ -1,0 +1,87 @@
+#pragma once
+/// Tests between a triangle and a ray, a point in its plane, or a point in space.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "dcem/geometry/ray.hpp"
+#include "dcem/geometry/vector.hpp"
+
+namespace dcem {
+
+using TriangleCorners = std::array<Vec3, 3>;
+
+/// A ray prepared for the watertight test of Woop, Benthin and Wald (Journal of Computer Graphics Techniques 2(1),
+/// 2013): space is sheared so that the ray runs along one axis, and the same three products decide for both triangles
+/// of a shared edge. A ray through an edge or a corner meets at least one of the triangles there, never none; here it
+/// meets all of them (edges belong to the triangle). Needs a*b − c*d evaluated without contraction.
+class WatertightRay {
+ public:
+  /// Precondition: the direction is not zero.
+  explicit WatertightRay(const Ray<double>& ray) : origin_(ray.origin) {
+    const Vec3 size = glm::abs(ray.direction);
+    z_ = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    x_ = (z_ + 1) % 3;
+    y_ = (z_ + 2) % 3;
+    shear_ = {ray.direction[x_] / ray.direction[z_], ray.direction[y_] / ray.direction[z_], 1.0 / ray.direction[z_]};
+  }
+
+  /// Parameter t of the point where the line of the ray meets the triangle, in units of the direction; it may be
+  /// negative or beyond t_max. Absent where the line passes by, or lies in the plane of the triangle.
+  std::optional<double> intersect(const TriangleCorners& corners) const {
+    const Vec3 a = sheared(corners[0]), b = sheared(corners[1]), c = sheared(corners[2]);
+    const double u = c.x * b.y - c.y * b.x;
+    const double v = a.x * c.y - a.y * c.x;
+    const double w = b.x * a.y - b.y * a.x;
+    if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return std::nullopt;
+    const double determinant = u + v + w;
+    if (determinant == 0.0) return std::nullopt;
+    return (u * a.z + v * b.z + w * c.z) / determinant;
+  }
+
+ private:
+  Vec3 sheared(const Vec3& corner) const {
+    const Vec3 offset = corner - origin_;
+    return {offset[x_] - shear_.x * offset[z_], offset[y_] - shear_.y * offset[z_], shear_.z * offset[z_]};
+  }
+
+  Vec3 origin_;
+  Vec3 shear_{0.0};
+  int x_ = 0, y_ = 1, z_ = 2;
+};
+
+/// Whether the foot of `point_m` along `normal` lies in the triangle, its edges included. The corners must come in the
+/// same order of their vertex indices wherever two triangles share an edge (ascending): then both evaluate the same
+/// number, and no point on the edge falls between them.
+inline bool contains_projected(const TriangleCorners& corners, const Vec3& normal, const Vec3& point_m) {
+  const auto side = [&](const Vec3& from, const Vec3& to) {
+    return glm::dot(normal, glm::cross(to - from, point_m - from));
+  };
+  const double ab = side(corners[0], corners[1]), bc = side(corners[1], corners[2]), ca = -side(corners[0], corners[2]);
+  return (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
+}
+
+inline double distance_to_segment_m(const Vec3& point_m, const Vec3& from_m, const Vec3& to_m) {
+  const Vec3 along = to_m - from_m;
+  const double length_squared = glm::dot(along, along);
+  const double share =
+      length_squared > 0.0 ? std::clamp(glm::dot(point_m - from_m, along) / length_squared, 0.0, 1.0) : 0.0;
+  return glm::distance(point_m, from_m + share * along);
+}
+
+/// Shortest distance from a point to a triangle (its inside, edges and corners).
+inline double distance_to_triangle_m(const TriangleCorners& corners, const Vec3& point_m) {
+  const Vec3 scaled_normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double length = glm::length(scaled_normal);
+  if (length > 0.0) {
+    const Vec3 normal = scaled_normal / length;
+    if (contains_projected(corners, normal, point_m)) return std::abs(glm::dot(normal, point_m - corners[0]));
+  }
+  return std::min({distance_to_segment_m(point_m, corners[0], corners[1]),
+                   distance_to_segment_m(point_m, corners[1], corners[2]),
+                   distance_to_segment_m(point_m, corners[2], corners[0])});
+}
+
+}  // namespace dcem
