@@ -1,0 +1,130 @@
+#pragma once
+/// Named surface materials: a closed set of models, chosen at run time because one scene mixes them.
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "dcem/core/units.hpp"
+#include "dcem/em/itu_p2040.hpp"
+
+namespace dcem {
+
+/// Perfect electric conductor: R_te = −1, R_tm = +1, nothing passes.
+struct PerfectConductor {
+  friend bool operator==(const PerfectConductor&, const PerfectConductor&) = default;
+};
+
+/// An engineering surface with one amplitude at every angle: R_te = −ρ, R_tm = +ρ (the phase of a perfect conductor,
+/// so ρ = 1 is one), and T = 10^(−loss/20) for both polarizations without a phase beyond that of the straight path.
+struct ConstantReflection {
+  double reflection_amplitude = 1.0;          ///< ρ in 0…1, of the field: ρ = 0.8 loses 1.94 dB
+  std::optional<double> penetration_loss_db;  ///< of one crossing, ≥ 0; absent: opaque
+
+  friend bool operator==(const ConstantReflection&, const ConstantReflection&) = default;
+};
+
+/// A homogeneous non-magnetic medium, the same numbers at every frequency.
+struct Dielectric {
+  double relative_permittivity = 1.0;   ///< ε' ≥ 1
+  double conductivity_s_per_m = 0.0;    ///< σ ≥ 0
+  std::optional<double> thickness_m{};  ///< > 0: a slab; absent: a half space, opaque
+
+  friend bool operator==(const Dielectric&, const Dielectric&) = default;
+};
+
+/// A material of the table of ITU-R P.2040 (em/itu_p2040.hpp), by its canonical name, e.g. "concrete".
+struct ItuMaterial {
+  std::string name;
+  std::optional<double> thickness_m{};  ///< > 0: a slab; absent: a half space, opaque
+
+  friend bool operator==(const ItuMaterial&, const ItuMaterial&) = default;
+};
+
+using MaterialModel = std::variant<PerfectConductor, ConstantReflection, Dielectric, ItuMaterial>;
+
+struct Material {
+  std::string name;
+  MaterialModel model;
+
+  friend bool operator==(const Material&, const Material&) = default;
+};
+
+namespace detail {
+
+inline bool model_transmits(const PerfectConductor&) {
+  return false;
+}
+inline bool model_transmits(const ConstantReflection& model) {
+  return model.penetration_loss_db.has_value();
+}
+inline bool model_transmits(const Dielectric& model) {
+  return model.thickness_m.has_value();
+}
+inline bool model_transmits(const ItuMaterial& model) {
+  return model.thickness_m.has_value() && model.name != "metal";
+}
+
+/// Collects the wording of errors: "material 'wall': …".
+class MaterialCheck {
+ public:
+  explicit MaterialCheck(const std::string& material_name) : material_name_(material_name) {}
+
+  void require(bool condition, std::string_view expectation) const {
+    if (!condition) throw std::invalid_argument("material '" + material_name_ + "': " + std::string(expectation));
+  }
+
+  void operator()(const PerfectConductor&) const {}
+
+  void operator()(const ConstantReflection& model) const {
+    const double amplitude = model.reflection_amplitude;
+    require(amplitude >= 0.0 && amplitude <= 1.0, "reflection amplitude must lie in 0 to 1");
+    if (!model.penetration_loss_db) return;
+    require(std::isfinite(*model.penetration_loss_db) && *model.penetration_loss_db >= 0.0,
+            "penetration loss must be finite and not negative");
+    // The allowance is for losses that were computed from an amplitude, 10^(−loss/10) = 1 − ρ² up to rounding.
+    require(amplitude * amplitude + db_to_power_ratio(-*model.penetration_loss_db) <= 1.0 + 1e-12,
+            "reflected and transmitted power together exceed the incident power");
+  }
+
+  void operator()(const Dielectric& model) const {
+    require(std::isfinite(model.relative_permittivity) && model.relative_permittivity >= 1.0,
+            "relative permittivity must be finite and at least 1");
+    require(std::isfinite(model.conductivity_s_per_m) && model.conductivity_s_per_m >= 0.0,
+            "conductivity must be finite and not negative");
+    require_thickness(model.thickness_m);
+  }
+
+  void operator()(const ItuMaterial& model) const {
+    require(canonical_itu_name(model.name) == model.name, "'" + model.name + "' is not a material of ITU-R P.2040");
+    require_thickness(model.thickness_m);
+  }
+
+ private:
+  void require_thickness(const std::optional<double>& thickness_m) const {
+    if (thickness_m)
+      require(std::isfinite(*thickness_m) && *thickness_m > 0.0, "thickness must be finite and positive");
+  }
+
+  const std::string& material_name_;
+};
+
+}  // namespace detail
+
+/// Whether paths may cross a surface of this material. A constant surface: if it has a penetration loss. A dielectric
+/// and an ITU material: if it has a thickness. A perfect conductor never, and the ITU's "metal" never either, whatever
+/// its thickness: its skin depth is 5 µm at 1 GHz and 0.5 µm at 100 GHz, so that no wall or car body lets anything
+/// through that a double could hold.
+inline bool transmits(const Material& material) {
+  return std::visit([](const auto& model) { return detail::model_transmits(model); }, material.model);
+}
+
+/// Throws std::invalid_argument, naming the material, when a number is not finite or out of range: amplitude outside
+/// 0…1, loss < 0, ε' < 1, σ < 0, thickness ≤ 0, ρ² + 10^(−loss/10) > 1, or a name that no table of the ITU holds.
+inline void validate(const Material& material) {
+  std::visit(detail::MaterialCheck(material.name), material.model);
+}
+
+}  // namespace dcem
