@@ -1,0 +1,82 @@
+#pragma once
+/// The boxes that trees accept: finite ones and empty ones.
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "dcem/geometry/aabb.hpp"
+
+namespace dcem {
+
+/// Largest number of primitives of one tree: positions and slots are 32-bit numbers, and there are two slots each.
+inline constexpr std::size_t maximum_primitive_count = std::size_t{1} << 30;
+
+/// Largest coordinate of a box, metres: far beyond any scene, and its surfaces still fit into a float.
+inline constexpr double maximum_coordinate_m = 1e15;
+
+/// Every empty box becomes the one empty box: a box turned inside out on one axis would otherwise grow its parents.
+template <std::floating_point Scalar>
+Aabb<Scalar> canonical_box(const Aabb<Scalar>& box) {
+  return box.empty() ? Aabb<Scalar>{} : box;
+}
+
+/// True for a box with min ≤ max and corners within maximum_coordinate_m, and for an empty one (min > max on some
+/// axis) without NaN.
+template <std::floating_point Scalar>
+bool is_valid_box(const Aabb<Scalar>& box) {
+  const auto has_nan = [](const Vector3<Scalar>& corner) {
+    return std::isnan(corner.x) || std::isnan(corner.y) || std::isnan(corner.z);
+  };
+  if (has_nan(box.min) || has_nan(box.max)) return false;
+  const Vector3<Scalar> limit(static_cast<Scalar>(maximum_coordinate_m));
+  return box.empty() || Aabb<Scalar>{-limit, limit}.contains(box);
+}
+
+template <std::floating_point Scalar>
+void require_valid_box(const Aabb<Scalar>& box, std::size_t primitive) {
+  if (!is_valid_box(box)) {
+    throw std::invalid_argument("box of primitive " + std::to_string(primitive) +
+                                " has NaN, infinity or a corner beyond 1e15 m");
+  }
+}
+
+/// Throws std::invalid_argument for a box that is not valid, and for more boxes than a tree can number.
+template <std::floating_point Scalar>
+void require_valid_boxes(std::span<const Aabb<Scalar>> boxes) {
+  if (boxes.size() > maximum_primitive_count) throw std::invalid_argument("a tree holds at most 2^30 primitives");
+  for (std::size_t primitive = 0; primitive < boxes.size(); ++primitive) {
+    require_valid_box(boxes[primitive], primitive);
+  }
+}
+
+/// Throws std::invalid_argument unless the primitives come in groups [group_first[i], group_first[i+1]) that start at
+/// 0.
+inline void require_valid_groups(std::span<const std::uint32_t> group_first, std::size_t primitive_count) {
+  std::size_t previous = 0;
+  for (const std::uint32_t first : group_first) {
+    if (first < previous || first > primitive_count) throw std::invalid_argument("group starts must ascend");
+    previous = first;
+  }
+  const bool starts_at_zero = group_first.empty() ? primitive_count == 0 : group_first.front() == 0;
+  if (!starts_at_zero) throw std::invalid_argument("the first group must start at primitive 0");
+}
+
+/// The smallest box of another precision that holds `box`: a tree in float over geometry in double must round outward.
+template <std::floating_point Target, std::floating_point Source>
+Aabb<Target> rounded_outward(const Aabb<Source>& box) {
+  Aabb<Target> result;
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr Target infinity = std::numeric_limits<Target>::infinity();
+    const auto low = static_cast<Target>(box.min[axis]);
+    const auto high = static_cast<Target>(box.max[axis]);
+    result.min[axis] = static_cast<Source>(low) > box.min[axis] ? std::nextafter(low, -infinity) : low;
+    result.max[axis] = static_cast<Source>(high) < box.max[axis] ? std::nextafter(high, infinity) : high;
+  }
+  return result;
+}
+
+}  // namespace dcem
