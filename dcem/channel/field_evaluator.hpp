@@ -1,0 +1,168 @@
+#pragma once
+/// From the geometry of a path to its field: transfer matrix, power, delay, angles, Doppler.
+///
+/// Stateless: nothing is remembered from path to path or from frame to frame, so no gain can be stale.
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "dcem/channel/path_contribution.hpp"
+#include "dcem/core/constants.hpp"
+#include "dcem/em/antenna.hpp"
+#include "dcem/em/dyad.hpp"
+#include "dcem/em/path_loss.hpp"
+#include "dcem/em/polarization.hpp"
+#include "dcem/em/surface_model.hpp"
+#include "dcem/scene/scene.hpp"
+
+namespace dcem {
+
+/// One end of a link with its antenna.
+struct RadioEnd {
+  Vec3 position_m{0.0};
+  Vec3 velocity_mps{0.0};
+  Antenna antenna;
+};
+
+/// exp(−jkL). The whole wavelengths are taken off before the angle is formed, so the phase keeps its digits at any
+/// length.
+inline Complex propagation_phasor(double length_m, double frequency_hz) {
+  const double cycles = length_m * (frequency_hz / speed_of_light_mps);
+  return unit_phasor(-2.0 * pi * (cycles - std::floor(cycles)));
+}
+
+template <SurfaceModel Surface = MaterialTable, PathLossModel Loss = AnyPathLoss>
+class FieldEvaluator {
+ public:
+  FieldEvaluator(const Scene& scene, const Surface& surface, Loss loss, double frequency_hz)
+      : scene_(scene), surface_(surface), loss_(std::move(loss)), frequency_hz_(frequency_hz) {}
+
+  /// The field of a path between two ends.
+  PathContribution evaluate(Path path, const RadioEnd& transmitter, const RadioEnd& receiver) const;
+
+ private:
+  /// Unit propagation directions of the legs, from the transmitter on: one more than there are interactions.
+  static std::vector<Vec3> directions(const Path& path, const Vec3& from_m, const Vec3& to_m);
+
+  /// What arrives of a unit field that leaves the transmitter: all coefficients, neither spreading nor phase.
+  ComplexVector3 propagate(const Path& path, const std::vector<Vec3>& directions, ComplexVector3 field) const;
+
+  ComplexMatrix2 transfer(const Path& path, const std::vector<Vec3>& directions) const;
+
+  /// First-order Doppler shift: f = [v_tx·k_0 − v_rx·k_N + Σ v_i·(k_i − k_(i−1))]/λ, v_i the velocity of the touched
+  /// body at the point of interaction. Motion within a mirror's plane drops out, as it must.
+  double doppler_hz(const Path& path, const std::vector<Vec3>& directions, const RadioEnd& transmitter,
+                    const RadioEnd& receiver) const;
+
+  const Scene& scene_;
+  const Surface& surface_;
+  Loss loss_;
+  double frequency_hz_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+inline Direction direction_of(const Vec3& unit) {
+  return {azimuth_rad(unit), zenith_rad(unit)};
+}
+
+/// Fills ports, amplitude and power from the transfer matrix and the two antennas.
+inline void apply_antennas(PathContribution& contribution, const Antenna& transmit, const Vec3& departure,
+                           const Antenna& receive, const Vec3& arrival) {
+  contribution.transmit_ports = static_cast<int>(transmit.port_count());
+  for (std::size_t in = 0; in < transmit.port_count(); ++in) {
+    const JonesVector sent = transmit.port_jones(departure, in);
+    for (std::size_t out = 0; out < receive.port_count(); ++out) {
+      contribution.ports(out, in) = port_coupling(receive.port_jones(arrival, out), contribution.transfer, sent);
+    }
+  }
+  contribution.power_ratio = norm_squared(contribution.ports) / contribution.transmit_ports;
+  contribution.has_amplitude = !transmit.is_dual() && !receive.is_dual();
+  contribution.amplitude = contribution.has_amplitude ? contribution.ports(0, 0) : Complex{};
+}
+
+}  // namespace detail
+
+template <SurfaceModel Surface, PathLossModel Loss>
+std::vector<Vec3> FieldEvaluator<Surface, Loss>::directions(const Path& path, const Vec3& from_m, const Vec3& to_m) {
+  // A sheet bends nothing: legs between reflections are straight, so all their parts share one direction to the last
+  // bit.
+  std::vector<Vec3> result(path.interactions.size() + 1);
+  Vec3 start_m = from_m;
+  std::size_t first = 0;
+  for (std::size_t index = 0; index <= path.interactions.size(); ++index) {
+    const bool last = index == path.interactions.size();
+    if (!last && path.interactions[index].kind == InteractionKind::transmission) continue;
+    const Vec3& end_m = last ? to_m : path.interactions[index].point_m;
+    const Vec3 direction = glm::normalize(end_m - start_m);
+    for (; first <= index; ++first) result[first] = direction;
+    start_m = end_m;
+  }
+  return result;
+}
+
+template <SurfaceModel Surface, PathLossModel Loss>
+ComplexVector3 FieldEvaluator<Surface, Loss>::propagate(const Path& path, const std::vector<Vec3>& directions,
+                                                        ComplexVector3 field) const {
+  for (std::size_t index = 0; index < path.interactions.size(); ++index) {
+    const Interaction& interaction = path.interactions[index];
+    const WorldFacet& facet = scene_.facet(interaction.facet);
+    const Vec3& direction = directions[index];
+    const double cos_incidence = std::min(1.0, std::abs(glm::dot(direction, facet.plane.normal)));
+    const SurfaceResponse response = surface_.response(facet.material, cos_incidence);
+    field = interaction.kind == InteractionKind::reflection
+                ? reflect(field, direction, facet.plane.normal, response.reflection)
+                : transmit(field, direction, facet.plane.normal, response.transmission);
+  }
+  return field;
+}
+
+template <SurfaceModel Surface, PathLossModel Loss>
+ComplexMatrix2 FieldEvaluator<Surface, Loss>::transfer(const Path& path, const std::vector<Vec3>& directions) const {
+  const Vec3 departure = directions.front(), arrival = -directions.back();
+  const double wavelength_m = speed_of_light_mps / frequency_hz_;
+  const double spreading = wavelength_m / (4.0 * pi * path.length_m) * loss_.excess_amplitude(path.length_m);
+  const Complex factor = spreading * propagation_phasor(path.length_m, frequency_hz_);
+  const std::array<Vec3, 2> sent{theta_hat(departure), phi_hat(departure)};
+  const std::array<Vec3, 2> received{theta_hat(arrival), phi_hat(arrival)};
+  ComplexMatrix2 matrix;
+  for (std::size_t in = 0; in < 2; ++in) {
+    const ComplexVector3 field = propagate(path, directions, ComplexVector3(sent[in]));
+    for (std::size_t out = 0; out < 2; ++out) matrix(out, in) = factor * dot(field, received[out]);
+  }
+  return matrix;
+}
+
+template <SurfaceModel Surface, PathLossModel Loss>
+double FieldEvaluator<Surface, Loss>::doppler_hz(const Path& path, const std::vector<Vec3>& directions,
+                                                 const RadioEnd& transmitter, const RadioEnd& receiver) const {
+  double closing_mps =
+      glm::dot(transmitter.velocity_mps, directions.front()) - glm::dot(receiver.velocity_mps, directions.back());
+  for (std::size_t index = 0; index < path.interactions.size(); ++index) {
+    const Interaction& interaction = path.interactions[index];
+    const Placement& body = scene_.body_state(scene_.facet(interaction.facet).body).placement;
+    const Vec3 velocity_mps = velocity_at(body.velocity, body.pose.position_m, interaction.point_m);
+    closing_mps += glm::dot(velocity_mps, directions[index + 1] - directions[index]);
+  }
+  return closing_mps * (frequency_hz_ / speed_of_light_mps);
+}
+
+template <SurfaceModel Surface, PathLossModel Loss>
+PathContribution FieldEvaluator<Surface, Loss>::evaluate(Path path, const RadioEnd& transmitter,
+                                                         const RadioEnd& receiver) const {
+  const std::vector<Vec3> legs = directions(path, transmitter.position_m, receiver.position_m);
+  PathContribution contribution;
+  contribution.transfer = transfer(path, legs);
+  detail::apply_antennas(contribution, transmitter.antenna, legs.front(), receiver.antenna, -legs.back());
+  contribution.delay_s = path.length_m / speed_of_light_mps;
+  contribution.doppler_hz = doppler_hz(path, legs, transmitter, receiver);
+  contribution.departure = detail::direction_of(legs.front());
+  contribution.arrival = detail::direction_of(-legs.back());
+  contribution.path = std::move(path);
+  return contribution;
+}
+
+}  // namespace dcem

@@ -1,0 +1,68 @@
+#pragma once
+/// Whether a receiver could stand at a point at all.
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "dcem/paths/scene_tracer.hpp"
+
+namespace dcem {
+
+/// A closed shell: (body, number of the shell within it).
+using Shell = std::pair<BodyId, std::uint32_t>;
+
+/// Closed shells that hold a point, ascending: those that a ray from it crosses an odd number of times.
+template <typename Tree>
+std::vector<Shell> shells_around(const SceneTracer<Tree>& tracer, const Tree& tree, const Vec3& point_m) {
+  // A direction with no relation to any wall: the ray meets no edge, so each crossing is one triangle.
+  const Ray<double> ray{point_m, Vec3(0.271'828'182'8, 0.141'421'356'2, 1.0)};
+  const WatertightRay prepared(ray);
+  const Scene& scene = tracer.scene();
+  std::map<Shell, bool> odd;
+  tree.all(ray, [&](std::uint32_t triangle) {
+    const std::uint32_t shell = scene.shell_of_triangle(triangle);
+    if (shell == 0) return;
+    const std::optional<double> t = prepared.intersect(scene.corners_m(triangle));
+    if (!t || !(*t > 0.0)) return;
+    bool& inside = odd[{scene.facet(scene.facet_of_triangle(triangle)).body, shell}];
+    inside = !inside;
+  });
+  std::vector<Shell> around;
+  for (const auto& [shell, inside] : odd) {
+    if (inside) around.push_back(shell);
+  }
+  return around;
+}
+
+/// Points inside closed objects or on a surface are obstructed. A closed shell that holds a transmitter is taken for a
+/// room, any other for a solid body.
+template <typename Tree>
+class ObstructionTest {
+ public:
+  ObstructionTest(const SceneTracer<Tree>& tracer, const Tree& tree, const std::vector<Vec3>& transmitters_m)
+      : tracer_(tracer), tree_(tree) {
+    for (const Vec3& transmitter_m : transmitters_m) {
+      const std::vector<Shell> around = shells_around(tracer, tree, transmitter_m);
+      rooms_.insert(rooms_.end(), around.begin(), around.end());
+    }
+  }
+
+  bool obstructed(const Vec3& point_m) const {
+    TraversalCounters counters;
+    const double tolerance_m = tracer_.scene().settings().weld_tolerance_m;
+    if (!tracer_.facets_near(point_m, tolerance_m, {}, counters).empty()) return true;
+    const std::vector<Shell> around = shells_around(tracer_, tree_, point_m);
+    return std::any_of(around.begin(), around.end(), [&](const Shell& shell) {
+      return std::find(rooms_.begin(), rooms_.end(), shell) == rooms_.end();
+    });
+  }
+
+ private:
+  const SceneTracer<Tree>& tracer_;
+  const Tree& tree_;
+  std::vector<Shell> rooms_;
+};
+
+}  // namespace dcem

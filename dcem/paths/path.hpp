@@ -1,0 +1,51 @@
+#pragma once
+/// A propagation path is geometry and nothing else: which surfaces it touches, where, and how long it is. It knows no
+/// material constant, no frequency and no gain; those are computed anew from it in the room `channel`.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "dcem/core/ids.hpp"
+#include "dcem/geometry/vector.hpp"
+
+namespace dcem {
+
+enum class InteractionKind : char { reflection = 'R', transmission = 'T' };
+
+/// One touch of a surface.
+struct Interaction {
+  InteractionKind kind = InteractionKind::reflection;
+  FacetId facet;
+  Vec3 point_m{0.0};
+};
+
+/// A path from a transmitter to a receiver, solved for the current frame.
+struct Path {
+  std::vector<Interaction> interactions;  ///< in order from the transmitter to the receiver; empty: line of sight
+  double length_m = 0.0;                  ///< sum of the legs
+};
+
+/// One letter per interaction, from transmitter to receiver; empty for the line of sight.
+inline std::string kinds(const Path& path) {
+  std::string letters;
+  for (const Interaction& interaction : path.interactions) letters.push_back(static_cast<char>(interaction.kind));
+  return letters;
+}
+
+/// The order in which the paths of a link are reported: by length (hence delay), then kinds, then point coordinates.
+inline bool reported_before(const Path& a, const Path& b) {
+  if (a.length_m != b.length_m) return a.length_m < b.length_m;
+  const std::string kinds_a = kinds(a), kinds_b = kinds(b);
+  if (kinds_a != kinds_b) return kinds_a < kinds_b;
+  return std::lexicographical_compare(
+      a.interactions.begin(), a.interactions.end(), b.interactions.begin(), b.interactions.end(),
+      [](const Interaction& x, const Interaction& y) { return lexicographic_less(x.point_m, y.point_m); });
+}
+
+/// Whether two paths are the same: same kinds on the same facets in the same order.
+inline bool same_sequence(const Path& a, const Path& b) {
+  return std::equal(a.interactions.begin(), a.interactions.end(), b.interactions.begin(), b.interactions.end(),
+                    [](const Interaction& x, const Interaction& y) { return x.kind == y.kind && x.facet == y.facet; });
+}
+
+}  // namespace dcem

@@ -1,0 +1,26 @@
+#pragma once
+/// The name of a path, the same in every frame in which it exists.
+#include <string>
+
+#include "dcem/paths/path.hpp"
+#include "dcem/scene/scene.hpp"
+
+namespace dcem {
+
+/// Kind, object and facet of each interaction from transmitter to receiver, as in `R12-T3@car1`: reflected at facet 12
+/// of the scenery, then through facet 3 of the object `car1`. The line of sight is `LOS`. Facets are numbered within
+/// their body in an order that depends on its geometry alone, so objects that come, go or move do not rename a path.
+inline std::string path_id(const Scene& scene, const Path& path) {
+  if (path.interactions.empty()) return "LOS";
+  std::string id;
+  for (const Interaction& interaction : path.interactions) {
+    const Body& body = scene.body(scene.facet(interaction.facet).body);
+    if (!id.empty()) id += '-';
+    id += static_cast<char>(interaction.kind);
+    id += std::to_string(interaction.facet.value - body.first_facet);
+    if (!body.id.empty()) id += '@' + body.id;
+  }
+  return id;
+}
+
+}  // namespace dcem

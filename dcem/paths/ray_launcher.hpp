@@ -1,0 +1,109 @@
+#pragma once
+/// Sampled discovery: rays shot from the receiver propose sequences.
+///
+/// A sphere of rays, turned by a rotation drawn from (seed, receiver id, frame), leaves the receiver; each ray is
+/// reflected at what it hits and, at a sheet, also goes straight on. The facets a ray was reflected at, in order, are a
+/// sequence; each new one is handed on once. The number of rays does not depend on the transmitters.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "dcem/core/constants.hpp"
+#include "dcem/core/random.hpp"
+#include "dcem/paths/image_method.hpp"
+#include "dcem/paths/link_end.hpp"
+#include "dcem/paths/sequence.hpp"
+
+namespace dcem {
+
+/// Directions of a Fibonacci sphere: point i of n has height 1 − (2i + 1)/n and azimuth i·π(3 − √5).
+/// Source: Swinbank and Purser, Q. J. R. Meteorol. Soc. 132, 2006.
+inline Vec3 fibonacci_direction(std::uint32_t index, std::uint32_t count) {
+  const double z = 1.0 - (2.0 * index + 1.0) / count;
+  const double radius = std::sqrt(std::max(0.0, 1.0 - z * z));
+  const double azimuth_rad = index * (pi * (3.0 - std::sqrt(5.0)));
+  return {radius * std::cos(azimuth_rad), radius * std::sin(azimuth_rad), z};
+}
+
+/// A rotation drawn uniformly from all rotations (Shoemake, Graphics Gems III, 1992).
+inline Mat3 random_rotation(RandomStream& random) {
+  const double u1 = random.uniform(), u2 = 2.0 * pi * random.uniform(), u3 = 2.0 * pi * random.uniform();
+  const double x = std::sqrt(1.0 - u1) * std::sin(u2), y = std::sqrt(1.0 - u1) * std::cos(u2);
+  const double z = std::sqrt(u1) * std::sin(u3), w = std::sqrt(u1) * std::cos(u3);
+  return Mat3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y),  //
+              2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x),  //
+              2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y));
+}
+
+/// The rotation of the launch sphere of one receiver in one frame.
+inline Mat3 launch_rotation(std::uint64_t seed, std::string_view receiver_id, std::size_t frame) {
+  RandomStream random(hash_values(seed, hash_text(receiver_id), frame));
+  return random_rotation(random);
+}
+
+struct LaunchSettings {
+  std::uint32_t rays = 2000;
+  int max_reflections = 2;
+  int max_transmissions = 2;
+};
+
+template <typename Tree>
+class RayLauncher {
+ public:
+  RayLauncher(const SceneTracer<Tree>& tracer, const LaunchSettings& settings) : tracer_(tracer), settings_(settings) {}
+
+  /// Calls `visit(sequence, images_m)` once for the direct path and for each sequence that a ray followed.
+  template <typename Visit>
+  void for_each_sequence(const LinkEnd& receiver, const Mat3& rotation, Visit&& visit) {
+    table_ = {};
+    sequence_.clear();
+    images_m_.assign(1, receiver.position_m);
+    ignored_ = {receiver.ignored_body, std::nullopt};
+    visit(sequence_, images_m_);
+    if (settings_.max_reflections == 0) return;
+    for (std::uint32_t index = 0; index < settings_.rays; ++index) {
+      const Vec3 direction = rotation * fibonacci_direction(index, settings_.rays);
+      shoot(receiver.position_m, direction, LegEnd{receiver.mounted_on, nullptr}, settings_.max_transmissions, visit);
+    }
+  }
+
+  std::uint64_t rays() const { return rays_; }
+  const TraversalCounters& traversal() const { return traversal_; }
+
+ private:
+  template <typename Visit>
+  void shoot(const Vec3& origin_m, const Vec3& direction, const LegEnd& start, int crossings_left, Visit&& visit) {
+    ++rays_;
+    const Ray<double> ray{origin_m, direction};
+    const std::optional<SurfaceHit> hit = tracer_.closest_hit(ray, start, ignored_, traversal_);
+    if (!hit) return;
+    const FacetId mirror = hit->facet;
+    const WorldFacet& facet = tracer_.scene().facet(mirror);
+    const LegEnd here{{&mirror, 1}, &facet.plane};
+    const Vec3 point_m = ray.at(hit->t);
+    if (facet.transmits && crossings_left > 0) shoot(point_m, direction, here, crossings_left - 1, visit);
+    if (sequence_.size() == static_cast<std::size_t>(settings_.max_reflections)) return;
+    sequence_.push_back(mirror);
+    append_image(images_m_, facet.plane);
+    if (table_.insert(sequence_)) visit(sequence_, images_m_);
+    if (sequence_.size() < static_cast<std::size_t>(settings_.max_reflections)) {
+      const Vec3 reflected = direction - 2.0 * glm::dot(direction, facet.plane.normal) * facet.plane.normal;
+      shoot(point_m, reflected, here, crossings_left, visit);
+    }
+    images_m_.pop_back();
+    sequence_.pop_back();
+  }
+
+  const SceneTracer<Tree>& tracer_;
+  LaunchSettings settings_;
+  SequenceTable table_;
+  Sequence sequence_;
+  std::vector<Vec3> images_m_;
+  IgnoredBodies ignored_;
+  std::uint64_t rays_ = 0;
+  TraversalCounters traversal_;
+};
+
+}  // namespace dcem

@@ -1,0 +1,210 @@
+#pragma once
+/// Questions that paths ask of the scene: what does a ray hit, is a leg free and which sheets does it cross, which
+/// facets are at a point. `Tree` is `Bvh<double>` or its oracle `BruteForce<double>`; both hold the boxes of the
+/// scene's triangles.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dcem/accel/counters.hpp"
+#include "dcem/geometry/triangle.hpp"
+#include "dcem/scene/scene.hpp"
+
+namespace dcem {
+
+/// Where a ray meets a facet.
+struct SurfaceHit {
+  FacetId facet;
+  double t = 0.0;  ///< in units of the ray's direction
+};
+
+/// A sheet that a leg crosses.
+struct Crossing {
+  FacetId facet;
+  double t = 0.0;  ///< 0 at the start of the leg, 1 at its end
+};
+
+/// What a leg ignores at one of its ends: the facets it starts or ends on, and crossings within the weld tolerance of
+/// their plane (coplanar twins, dirt).
+struct LegEnd {
+  std::span<const FacetId> facets;
+  const Plane* plane = nullptr;  ///< of the reflecting facet; null at a device
+};
+
+/// Bodies that do not exist for a link: those that its devices ride on.
+using IgnoredBodies = std::array<std::optional<BodyId>, 2>;
+
+template <typename Tree>
+class SceneTracer {
+ public:
+  SceneTracer(const Scene& scene, const Tree& tree) : scene_(scene), tree_(tree) {}
+
+  const Scene& scene() const { return scene_; }
+
+  /// The first facet along a ray with t > 0. Of hits at the same distance the facet with the smallest id is the first.
+  std::optional<SurfaceHit> closest_hit(const Ray<double>& ray, const LegEnd& start, const IgnoredBodies& ignored,
+                                        TraversalCounters& counters) const;
+
+  /// Follows a straight leg. False where an opaque facet blocks it or more than `crossing_limit` sheets are in the way;
+  /// otherwise `crossings` holds the sheets in order (two coplanar sheets at one point count once: the material whose
+  /// name comes first).
+  bool follow_leg(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end,
+                  const IgnoredBodies& ignored, std::size_t crossing_limit, std::vector<Crossing>& crossings,
+                  TraversalCounters& counters) const;
+
+  /// Facets within `radius_m` of a point, ascending by id.
+  std::vector<FacetId> facets_near(const Vec3& point_m, double radius_m, const IgnoredBodies& ignored,
+                                   TraversalCounters& counters) const;
+
+  /// Whether a point on the facet's plane lies on the facet, its rim included.
+  bool contains(FacetId facet, const Vec3& point_m, TraversalCounters& counters) const;
+
+  bool is_ignored(BodyId body, const IgnoredBodies& ignored) const { return ignored[0] == body || ignored[1] == body; }
+
+  /// Whether `one` stands for `other` where both lie on top of each other: by material name, then id.
+  bool precedes(FacetId one, FacetId other) const {
+    const std::string& name_one = scene_.material(scene_.facet(one).material).name;
+    const std::string& name_other = scene_.material(scene_.facet(other).material).name;
+    return name_one != name_other ? name_one < name_other : one < other;
+  }
+
+  /// Whether the planes of two facets are parallel to within the angle that makes triangles coplanar.
+  bool parallel(FacetId one, FacetId other) const {
+    return std::abs(glm::dot(scene_.facet(one).plane.normal, scene_.facet(other).plane.normal)) >
+           detail::coplanar_cosine;
+  }
+
+ private:
+  /// Facets of more triangles than this are searched through the tree.
+  static constexpr std::uint32_t direct_test_limit = 16;
+
+  bool skips(const LegEnd& end, FacetId facet, const Vec3& point_m) const {
+    if (std::find(end.facets.begin(), end.facets.end(), facet) != end.facets.end()) return true;
+    return end.plane != nullptr &&
+           std::abs(signed_distance_m(*end.plane, point_m)) <= scene_.settings().weld_tolerance_m;
+  }
+
+  /// Where a leg meets the plane of a facet: the same number whichever of the facet's triangles was hit.
+  double plane_parameter(const WorldFacet& facet, const Ray<double>& leg, double t_triangle) const {
+    const double from = signed_distance_m(facet.plane, leg.origin);
+    const double slope = glm::dot(facet.plane.normal, leg.direction);
+    const double t = slope == 0.0 ? t_triangle : -from / slope;
+    return std::clamp(t, 0.0, 1.0);
+  }
+
+  void sort_and_merge(std::vector<Crossing>& crossings, double length_m) const;
+
+  const Scene& scene_;
+  const Tree& tree_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+template <typename Tree>
+std::optional<SurfaceHit> SceneTracer<Tree>::closest_hit(const Ray<double>& ray, const LegEnd& start,
+                                                         const IgnoredBodies& ignored,
+                                                         TraversalCounters& counters) const {
+  const WatertightRay prepared(ray);
+  std::optional<SurfaceHit> best;
+  tree_.closest(
+      ray,
+      [&](std::uint32_t triangle, double& t_max) {
+        const std::optional<double> t = prepared.intersect(scene_.corners_m(triangle));
+        if (!t || !(*t > ray.t_min) || *t > t_max) return;
+        const FacetId facet = scene_.facet_of_triangle(triangle);
+        if (best && *t == best->t && best->facet < facet) return;
+        if (is_ignored(scene_.facet(facet).body, ignored) || skips(start, facet, ray.at(*t))) return;
+        best = SurfaceHit{facet, *t};
+        t_max = *t;
+      },
+      &counters);
+  return best;
+}
+
+template <typename Tree>
+bool SceneTracer<Tree>::follow_leg(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end,
+                                   const IgnoredBodies& ignored, std::size_t crossing_limit,
+                                   std::vector<Crossing>& crossings, TraversalCounters& counters) const {
+  crossings.clear();
+  const Ray<double> leg = segment_between(from_m, to_m);
+  const WatertightRay prepared(leg);
+  const auto blocks = [&](std::uint32_t triangle) {
+    const std::optional<double> t = prepared.intersect(scene_.corners_m(triangle));
+    if (!t || *t < 0.0 || *t > 1.0) return false;
+    const FacetId id = scene_.facet_of_triangle(triangle);
+    const WorldFacet& facet = scene_.facet(id);
+    const Vec3 point_m = leg.at(*t);
+    if (is_ignored(facet.body, ignored) || skips(start, id, point_m) || skips(end, id, point_m)) return false;
+    if (!facet.transmits || crossing_limit == 0) return true;
+    crossings.push_back({id, plane_parameter(facet, leg, *t)});
+    return false;
+  };
+  if (tree_.any(leg, blocks, &counters)) return false;
+  if (crossings.size() > 1) sort_and_merge(crossings, glm::distance(from_m, to_m));
+  return crossings.size() <= crossing_limit;
+}
+
+template <typename Tree>
+void SceneTracer<Tree>::sort_and_merge(std::vector<Crossing>& crossings, double length_m) const {
+  std::sort(crossings.begin(), crossings.end(),
+            [&](const Crossing& a, const Crossing& b) { return a.t != b.t ? a.t < b.t : precedes(a.facet, b.facet); });
+  std::vector<Crossing> merged;
+  for (const Crossing& crossing : crossings) {
+    const auto twin = std::find_if(merged.begin(), merged.end(), [&](const Crossing& other) {
+      return other.facet == crossing.facet ||
+             ((crossing.t - other.t) * length_m <= scene_.settings().weld_tolerance_m &&
+              parallel(other.facet, crossing.facet));
+    });
+    if (twin == merged.end()) {
+      merged.push_back(crossing);
+    } else if (precedes(crossing.facet, twin->facet)) {
+      *twin = crossing;
+    }
+  }
+  crossings.swap(merged);
+}
+
+template <typename Tree>
+std::vector<FacetId> SceneTracer<Tree>::facets_near(const Vec3& point_m, double radius_m, const IgnoredBodies& ignored,
+                                                    TraversalCounters& counters) const {
+  std::vector<FacetId> near;
+  tree_.overlapping(
+      inflated(Aabb<double>{point_m, point_m}, radius_m),
+      [&](std::uint32_t triangle) {
+        const FacetId facet = scene_.facet_of_triangle(triangle);
+        if (is_ignored(scene_.facet(facet).body, ignored)) return;
+        if (distance_to_triangle_m(scene_.corners_m(triangle), point_m) <= radius_m) near.push_back(facet);
+      },
+      &counters);
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
+
+template <typename Tree>
+bool SceneTracer<Tree>::contains(FacetId id, const Vec3& point_m, TraversalCounters& counters) const {
+  const WorldFacet& facet = scene_.facet(id);
+  if (facet.triangle_count <= direct_test_limit) {
+    for (std::uint32_t index = 0; index < facet.triangle_count; ++index) {
+      if (contains_projected(scene_.corners_m(facet.first_triangle + index), facet.plane.normal, point_m)) return true;
+    }
+    return false;
+  }
+  // Triangles of a facet stray from its plane by no more than the limit at which it would have been split.
+  const double reach_m = 1.01 * detail::stray_tolerances * scene_.settings().planarity_tolerance_m;
+  bool found = false;
+  tree_.overlapping(
+      inflated(Aabb<double>{point_m, point_m}, reach_m),
+      [&](std::uint32_t triangle) {
+        found = found || (scene_.facet_of_triangle(triangle) == id &&
+                          contains_projected(scene_.corners_m(triangle), facet.plane.normal, point_m));
+      },
+      &counters);
+  return found;
+}
+
+}  // namespace dcem

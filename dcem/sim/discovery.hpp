@@ -1,0 +1,31 @@
+#pragma once
+/// Which discovery a scene gets.
+#include <stdexcept>
+#include <string>
+
+#include "dcem/scene/scene.hpp"
+#include "dcem/sim/settings.hpp"
+
+namespace dcem {
+
+/// Facets up to which `automatic` chooses exact discovery, by the order of reflection: the number of sequences grows
+/// with the power of the order.
+inline std::size_t automatic_exact_facet_limit(int reflections) {
+  if (reflections <= 2) return exact_discovery_facet_limit;
+  if (reflections == 3) return 200;
+  return 32;
+}
+
+/// Exact or sampled: what a simulation with these settings really does. Throws std::invalid_argument where exact
+/// discovery is asked for by name in a scene that is too large for it: what was asked for is never weakened in silence.
+inline Discovery resolve_discovery(const PropagationSettings& propagation, const Scene& scene) {
+  const std::size_t facets = scene.facets().size();
+  if (propagation.discovery == Discovery::exact && facets > exact_discovery_facet_limit) {
+    throw std::invalid_argument("discovery exact: not in this version for " + std::to_string(facets) +
+                                " facets; expected at most " + std::to_string(exact_discovery_facet_limit));
+  }
+  if (propagation.discovery != Discovery::automatic) return propagation.discovery;
+  return facets <= automatic_exact_facet_limit(reflection_order(propagation)) ? Discovery::exact : Discovery::sampled;
+}
+
+}  // namespace dcem

@@ -1,0 +1,61 @@
+#pragma once
+/// What a frame brings forth.
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "dcem/channel/link_statistics.hpp"
+#include "dcem/channel/path_contribution.hpp"
+
+namespace dcem {
+
+/// One transmitter and one receiver in one frame.
+struct LinkResult {
+  std::size_t transmitter = 0;          ///< index into the scene's transmitters
+  std::size_t receiver = 0;             ///< index into the receivers that were solved
+  bool complete = false;                ///< every valid path within the declared orders is there
+  std::vector<PathContribution> paths;  ///< by delay, then kinds, then points
+  LinkStatistics statistics;
+};
+
+/// Work done, counted. Counts do not depend on the number of threads.
+struct WorkCounters {
+  std::uint64_t rays = 0;                ///< rays shot to discover sequences, branches included
+  std::uint64_t legs = 0;                ///< legs tested for obstruction
+  std::uint64_t sequences_proposed = 0;  ///< distinct sequences of facets, over all receivers
+  std::uint64_t sequences_solved = 0;    ///< (sequence, transmitter) pairs handed to the image method
+  std::uint64_t paths = 0;
+  std::uint64_t nodes_visited = 0;
+  std::uint64_t primitives_tested = 0;
+
+  WorkCounters& operator+=(const WorkCounters& other) {
+    rays += other.rays;
+    legs += other.legs;
+    sequences_proposed += other.sequences_proposed;
+    sequences_solved += other.sequences_solved;
+    paths += other.paths;
+    nodes_visited += other.nodes_visited;
+    primitives_tested += other.primitives_tested;
+    return *this;
+  }
+};
+
+/// How the tree followed the frame.
+struct TreeReport {
+  std::uint64_t nodes_kept = 0;
+  std::uint64_t nodes_refit = 0;
+  std::uint64_t nodes_rebuilt = 0;
+  double sah_cost = 0.0;
+};
+
+struct FrameResult {
+  std::size_t index = 0;
+  double time_s = 0.0;
+  std::vector<LinkResult> links;  ///< by transmitter, then receiver; links of absent devices are left out
+  WorkCounters work;
+  TreeReport tree;
+  double update_time_s = 0.0;  ///< wall-clock time to move the scene and the tree
+  double solve_time_s = 0.0;   ///< wall-clock time to find paths and compute fields
+};
+
+}  // namespace dcem

@@ -1,0 +1,63 @@
+#pragma once
+/// Everything a simulation can be told, one sentence, unit and default per field.
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "dcem/em/itu_p2040.hpp"
+#include "dcem/em/path_loss.hpp"
+
+namespace dcem {
+
+/// How paths are found.
+enum class Discovery {
+  automatic,  ///< exact where the scene is small enough for it, else sampled; the result says which
+  exact,      ///< every valid path within the declared orders
+  sampled     ///< rays shot from the receiver propose sequences; completeness is not promised
+};
+
+/// Exact discovery tries sequences of facets; this version offers it up to this many facets.
+inline constexpr std::size_t exact_discovery_facet_limit = 1000;
+
+struct PropagationSettings {
+  bool line_of_sight = true;            ///< report the direct path
+  int max_reflections = 2;              ///< reflections of a path, 0…10
+  int max_transmissions = 2;            ///< sheets a path may cross, 0…10
+  std::optional<int> max_interactions;  ///< reflections (and, later, diffractions) together; default: no further bound
+  Discovery discovery = Discovery::automatic;  ///< how paths are found
+  std::uint32_t rays = 2000;                   ///< rays per receiver and frame in sampled discovery
+  std::uint64_t seed = 1;                      ///< turns the sphere of rays, with receiver id and frame number
+  std::optional<double> min_path_gain_db;      ///< paths weaker than this are dropped after their field is known, dB
+  AnyPathLoss path_loss{};                     ///< a real factor beside free-space spreading
+};
+
+struct SimulationSettings {
+  double frequency_hz = 30e9;
+  ItuSettings itu;  ///< revision of the material tables, and whether they may be extrapolated
+  PropagationSettings propagation;
+  unsigned threads = 0;  ///< 0: all cores. Never changes a result
+};
+
+/// The number of reflections that is really in force.
+inline int reflection_order(const PropagationSettings& propagation) {
+  const int bound = propagation.max_interactions.value_or(propagation.max_reflections);
+  return bound < propagation.max_reflections ? bound : propagation.max_reflections;
+}
+
+/// Throws std::invalid_argument, naming the field, where a value is out of range.
+inline void validate(const SimulationSettings& settings) {
+  const auto check = [](bool holds, const char* message) {
+    if (!holds) throw std::invalid_argument(message);
+  };
+  const PropagationSettings& propagation = settings.propagation;
+  check(settings.frequency_hz > 0.0 && settings.frequency_hz <= 1e15, "frequency_hz: expected a number in (0, 1e15]");
+  check(propagation.max_reflections >= 0 && propagation.max_reflections <= 10, "max_reflections: expected 0 to 10");
+  check(propagation.max_transmissions >= 0 && propagation.max_transmissions <= 10,
+        "max_transmissions: expected 0 to 10");
+  check(!propagation.max_interactions || *propagation.max_interactions >= 0, "max_interactions: expected 0 or more");
+  check(propagation.rays >= 1 && propagation.rays <= 100'000'000, "rays: expected 1 to 1e8");
+}
+
+}  // namespace dcem
