@@ -1,0 +1,20 @@
+# Run by ctest with -P: runs a maker of data and compares each file it makes with the one in data/, byte for byte.
+cmake_minimum_required(VERSION 3.22)
+file(REMOVE_RECURSE "${MADE_DIR}")
+file(MAKE_DIRECTORY "${MADE_DIR}")
+execute_process(COMMAND "${MAKER}" "${MADE_DIR}" RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${MAKER} failed (${status})")
+endif()
+
+file(GLOB_RECURSE made RELATIVE "${MADE_DIR}" "${MADE_DIR}/*")
+if(NOT made)
+  message(FATAL_ERROR "${MAKER} made nothing")
+endif()
+foreach(path IN LISTS made)
+  execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${MADE_DIR}/${path}" "${DATA_DIR}/${path}"
+                  RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    message(SEND_ERROR "data/${path} is not what ${MAKER} makes")
+  endif()
+endforeach()

@@ -1,0 +1,23 @@
+# How DCEM's own targets are compiled. Nothing here reaches a project that uses DCEM.
+
+get_property(is_multi_config GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
+if(PROJECT_IS_TOP_LEVEL AND NOT is_multi_config AND NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, RelWithDebInfo or Debug" FORCE)
+endif()
+
+function(dcem_enable_warnings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+                                           $<$<BOOL:${DCEM_WARNINGS_AS_ERRORS}>:-Werror>)
+  # GCC 12 warns of overlapping copies inside std::string where there are none (GCC bug 105651, mended in 13).
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-restrict)
+  endif()
+endfunction()
+
+# One program from one or more sources, in ${CMAKE_BINARY_DIR}/bin.
+function(dcem_add_program target)
+  add_executable(${target} ${ARGN})
+  target_link_libraries(${target} PRIVATE dcem::io)
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+  dcem_enable_warnings(${target})
+endfunction()

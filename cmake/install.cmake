@@ -1,0 +1,29 @@
+# Headers, dcem::io, the program, and the files that find_package(dcem CONFIG [COMPONENTS io]) reads.
+include(CMakePackageConfigHelpers)
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/dcem")
+
+if(NOT DCEM_BUILD_IO)
+  set(headers_left_out PATTERN io EXCLUDE)
+endif()
+# A directory rather than a FILE_SET: that needs CMake 3.23, and 3.22 is promised. io/src is private.
+install(DIRECTORY dcem DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.hpp" PATTERN src EXCLUDE
+                                                                                    ${headers_left_out})
+
+# Two export sets, so that a project that wants the headers alone need not have the libraries of dcem::io.
+install(TARGETS dcem EXPORT dcemTargets)
+install(EXPORT dcemTargets NAMESPACE dcem:: DESTINATION "${package_dir}")
+if(DCEM_BUILD_IO)
+  install(TARGETS dcem_io EXPORT dcemIoTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(EXPORT dcemIoTargets NAMESPACE dcem:: DESTINATION "${package_dir}")
+endif()
+if(TARGET dcem_program)
+  install(TARGETS dcem_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+endif()
+
+configure_package_config_file(cmake/dcemConfig.cmake.in "${PROJECT_BINARY_DIR}/dcemConfig.cmake"
+                              INSTALL_DESTINATION "${package_dir}")
+# Before 1.0 any minor version may change the interface.
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/dcemConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/dcemConfig.cmake" "${PROJECT_BINARY_DIR}/dcemConfigVersion.cmake"
+        DESTINATION "${package_dir}")
+install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")

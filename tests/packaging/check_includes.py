@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""Checks which header includes which: the order of the rooms, and what public headers may show.
+
+    check_includes.py REPOSITORY     lists the violations; exit status 1 if there are any
+    check_includes.py --self-check   plants one violation of each rule in a scratch tree and expects it to be found
+"""
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+# What each room may include besides itself. `paths` lacks `em` on purpose: a path is geometry, so that a gain can never
+# be cached by mistake. `accel` and `em` do not know each other. Nothing includes `io`.
+ROOMS = {
+    "core": [],
+    "geometry": ["core"],
+    "accel": ["core", "geometry"],
+    "em": ["core", "geometry"],
+    "scene": ["core", "geometry", "accel", "em"],
+    "paths": ["core", "geometry", "accel", "scene"],
+    "channel": ["core", "geometry", "accel", "em", "scene", "paths"],
+    "sim": ["core", "geometry", "accel", "em", "scene", "paths", "channel"],
+    "debug": ["core", "geometry", "accel", "em", "scene", "paths", "channel", "sim"],
+    "io": ["core", "geometry", "accel", "em", "scene", "paths", "channel", "sim", "debug"],
+}
+UMBRELLA = "dcem/dcem.hpp"  # stands outside the rooms; includes every public header but those of io
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+STANDARD_OR_GLM = re.compile(r"^([a-z_0-9]+|glm/.+)$")  # <vector>, <glm/vec3.hpp>; not <unistd.h>, <nlohmann/json.hpp>
+PROJECT_FOLDERS = ["dcem", "examples", "tests", "bench"]
+
+
+def room_of(path):
+    """'em' for dcem/em/material.hpp; None for the umbrella."""
+    parts = path.split("/")
+    return parts[1] if len(parts) > 2 else None
+
+
+def is_public_header(path):
+    return path.endswith(".hpp") and not path.startswith("dcem/io/src/")
+
+
+def check_target(path, target, root):
+    """A line about an include of one of the project's own headers that the rooms forbid, or None."""
+    if not (root / target).is_file():
+        return f"{path}: includes {target}, which does not exist"
+    room, target_room = room_of(path), room_of(target)
+    if target == UMBRELLA:
+        return f"{path}: includes the umbrella {target}; include what is used"
+    if room is None:
+        return f"{path}: the umbrella includes {target}; io is not part of it" if target_room == "io" else None
+    if target_room != room and target_room not in ROOMS[room]:
+        return f"{path}: {room} must not include {target}"
+    return None
+
+
+def check_include(path, bracket, target, root):
+    own = target.startswith("dcem/")
+    if own and bracket == '"':
+        return check_target(path, target, root)
+    if own or bracket == '"':
+        return f'{path}: own headers are included as "dcem/room/file.hpp", not {bracket}{target}'
+    if is_public_header(path) and not STANDARD_OR_GLM.match(target):
+        return f"{path}: a public header includes <{target}>; only the standard library and GLM may show"
+    return None
+
+
+def reachable_from(start, includes):
+    seen, waiting = set(), [start]
+    while waiting:
+        path = waiting.pop()
+        if path not in seen:
+            seen.add(path)
+            waiting += [target for _, target in includes.get(path, [])]
+    return seen
+
+
+def check_tree(root):
+    """All violations in the tree at `root`, one line each."""
+    lines = []
+    texts = {p.relative_to(root).as_posix(): p.read_text(encoding="utf-8")
+             for folder in PROJECT_FOLDERS for p in sorted((root / folder).rglob("*.[hc]pp"))}
+    library = {path: text for path, text in texts.items() if path.startswith("dcem/")}
+    includes = {path: INCLUDE.findall(text) for path, text in library.items()}
+
+    for path, text in library.items():
+        room = room_of(path)
+        if path != UMBRELLA and room not in ROOMS:
+            lines.append(f"{path}: stands in no known room")
+            continue
+        lines += filter(None, (check_include(path, bracket, target, root) for bracket, target in includes[path]))
+        if path.endswith(".hpp") and not text.startswith("#pragma once\n"):
+            lines.append(f"{path}: does not begin with #pragma once")
+        if path.endswith(".cpp") and not path.startswith("dcem/io/src/"):
+            lines.append(f"{path}: compiled code stands in dcem/io/src only")
+    lines += [f"{path}: defines GLM_FORCE_..., which changes GLM for whoever includes it"
+              for path, text in texts.items() if re.search(r"#\s*define\s+GLM_FORCE_", text)]
+
+    if UMBRELLA in library:
+        reached = reachable_from(UMBRELLA, includes)
+        lines += [f"{UMBRELLA}: does not reach {path}" for path in library
+                  if is_public_header(path) and room_of(path) != "io" and path not in reached]
+    return lines
+
+
+SOUND_TREE = {
+    UMBRELLA: '#pragma once\n#include "dcem/paths/path.hpp"\n',
+    "dcem/core/ids.hpp": "#pragma once\n#include <cstdint>\n",
+    "dcem/accel/bvh.hpp": '#pragma once\n#include <glm/vec3.hpp>\n#include "dcem/core/ids.hpp"\n',
+    "dcem/em/fresnel.hpp": '#pragma once\n#include "dcem/core/ids.hpp"\n',
+    "dcem/scene/scene.hpp": '#pragma once\n#include "dcem/accel/bvh.hpp"\n#include "dcem/em/fresnel.hpp"\n',
+    "dcem/paths/path.hpp": '#pragma once\n#include "dcem/scene/scene.hpp"\n',
+    "dcem/io/load.hpp": '#pragma once\n#include "dcem/paths/path.hpp"\n',
+    "dcem/io/src/load.cpp": '#include "dcem/io/load.hpp"\n#include <nlohmann/json.hpp>\n',
+    "examples/first_path.cpp": '#include "dcem/dcem.hpp"\n',
+}
+PLANTED = [  # file, the line put at its end, a piece of the message it must cause
+    ("dcem/core/ids.hpp", '#include "dcem/accel/bvh.hpp"', "core must not include"),
+    ("dcem/accel/bvh.hpp", '#include "dcem/scene/scene.hpp"', "accel must not include"),
+    ("dcem/accel/bvh.hpp", '#  include "dcem/em/fresnel.hpp"', "accel must not include"),
+    ("dcem/em/fresnel.hpp", '#include "dcem/accel/bvh.hpp"', "em must not include"),
+    ("dcem/paths/path.hpp", '#include "dcem/em/fresnel.hpp"', "paths must not include"),
+    ("dcem/paths/path.hpp", '#include "dcem/io/load.hpp"', "paths must not include"),
+    ("dcem/paths/path.hpp", '#include "../em/fresnel.hpp"', "own headers are included as"),
+    ("dcem/paths/path.hpp", "#include <dcem/core/ids.hpp>", "own headers are included as"),
+    ("dcem/paths/path.hpp", '#include "dcem/core/no_such.hpp"', "does not exist"),
+    ("dcem/paths/path.hpp", '#include "dcem/dcem.hpp"', "includes the umbrella"),
+    ("dcem/io/load.hpp", "#include <nlohmann/json.hpp>", "a public header includes"),
+    ("dcem/io/load.hpp", "#include <tiny_obj_loader.h>", "a public header includes"),
+    ("dcem/io/load.hpp", "#include <CLI/CLI.hpp>", "a public header includes"),
+    (UMBRELLA, '#include "dcem/io/load.hpp"', "io is not part of it"),
+    ("dcem/core/lost.hpp", "#pragma once", "does not reach dcem/core/lost.hpp"),
+    ("dcem/core/guard.hpp", "#ifndef GUARD", "does not begin with #pragma once"),
+    ("dcem/core/code.cpp", "", "compiled code stands in"),
+    ("dcem/tools/x.hpp", "#pragma once", "stands in no known room"),
+    ("examples/first_path.cpp", "#define GLM_FORCE_RADIANS", "defines GLM_FORCE_"),
+]
+
+
+def self_check():
+    def violations(extra):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            for path, text in {**SOUND_TREE, **extra}.items():
+                (root / path).parent.mkdir(parents=True, exist_ok=True)
+                (root / path).write_text(text, encoding="utf-8")
+            return check_tree(root)
+
+    failures = [f"a sound tree is called wrong: {line}" for line in violations({})]
+    for path, line, message in PLANTED:
+        found = violations({path: SOUND_TREE.get(path, "") + line + "\n"})
+        if not any(message in violation and path in violation for violation in found):
+            failures.append(f"planted in {path}: {line!r}: expected '{message}', found {found}")
+    return failures
+
+
+def main(arguments):
+    if len(arguments) != 1:
+        sys.exit(__doc__)
+    violations = self_check() if arguments[0] == "--self-check" else check_tree(Path(arguments[0]).resolve())
+    print("\n".join(violations) if violations else "no violations")
+    sys.exit(1 if violations else 0)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,13 @@
+#include <cstdio>
+#include <fstream>
+
+#include "dcem/io/obj_reader.hpp"
+
+int main() {
+  // 123456.789 is not a number of single precision: it shows that the double-precision loader was linked.
+  std::ofstream("triangle.obj") << "v 123456.789 0 0\nv 123457.789 0 0\nv 123456.789 1 0\nf 1 2 3\n";
+  const dcem::io::ObjFile file = dcem::io::read_obj("triangle.obj");
+  const bool right = file.mesh.triangles.size() == 1 && file.mesh.vertices_m.at(0).x == 123456.789;
+  std::puts(right ? "io works" : "io is wrong");
+  return right ? 0 : 1;
+}
