@@ -104,13 +104,14 @@ inline std::optional<JonesVector> jones_vector(const Polarization& polarization)
   return std::nullopt;
 }
 
-/// What a receiving port makes of a transfer matrix and a transmitting port: c_rxᴴ·T·c_tx, both vectors in (θ̂, φ̂) of
-/// the direction out of their antenna. For linear polarizations it does not matter that c_rx is conjugated. Circular
-/// ones: c_rx is the state of the incident field to which the receiver answers, in its own basis, where the handedness
-/// of a wave that comes in looks reversed; on a line of sight RHC therefore answers to LHC, and not to RHC.
+/// What a receiving port makes of a transfer matrix and a transmitting port: c_rxᵀ·T·c_tx, both vectors in (θ̂, φ̂) of
+/// the direction out of their antenna, each as its antenna would transmit. No conjugate: an antenna answers to a field
+/// E with E·c (reciprocity theorem), so that swapping the ends, which transposes T, changes nothing, and on a line of
+/// sight RHC hears RHC. Texts that write c_rxᴴ mean by c_rx the incident field; for linear polarizations it is the
+/// same.
 inline Complex port_coupling(const JonesVector& receive, const ComplexMatrix2& transfer, const JonesVector& transmit) {
   const ComplexVector2 field = transfer * transmit;
-  return std::conj(receive[0]) * field[0] + std::conj(receive[1]) * field[1];
+  return receive[0] * field[0] + receive[1] * field[1];
 }
 
 }  // namespace dcem

@@ -1,6 +1,7 @@
 #pragma once
 /// Where the field gets its reflection and transmission coefficients from: a concept for models of the user's own, and
 /// the table of the built-in materials.
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <optional>
