@@ -4,6 +4,10 @@
 
 namespace dcem {
 
+/// An end this close to a mirror's plane has no reflection there, and a point this close to a rim is on it, metres: in
+/// exact arithmetic it would be.
+inline constexpr double in_plane_guard_m = 1e-9;
+
 struct Plane {
   Vec3 point_m{0.0};
   Vec3 normal{0.0, 0.0, 1.0};  ///< unit length

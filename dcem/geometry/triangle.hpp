@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "dcem/core/constants.hpp"
 #include "dcem/geometry/ray.hpp"
 #include "dcem/geometry/vector.hpp"
 
@@ -52,15 +53,54 @@ class WatertightRay {
   int x_ = 0, y_ = 1, z_ = 2;
 };
 
-/// Whether the foot of `point_m` along `normal` lies in the triangle, its edges included. The corners must come in the
-/// same order of their vertex indices wherever two triangles share an edge (ascending): then both evaluate the same
-/// number, and no point on the edge falls between them.
-inline bool contains_projected(const TriangleCorners& corners, const Vec3& normal, const Vec3& point_m) {
+/// How the foot of a point along `normal` lies to a triangle.
+struct TriangleContact {
+  /// In the triangle, its edges included. The corners must come in the same order of their vertex indices wherever two
+  /// triangles share an edge (ascending): then both evaluate the same number, and no point falls between them.
+  bool contains = false;
+  /// The share of a full turn around the foot that the triangle covers, radians: 2π inside, π on an edge, the angle of
+  /// the corner on a corner, 0 outside.
+  double covered_rad = 0.0;
+};
+
+namespace detail {
+
+inline double corner_angle_rad(const Vec3& corner, const Vec3& one, const Vec3& other) {
+  const Vec3 a = one - corner, b = other - corner;
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+}  // namespace detail
+
+/// Points closer than `rim_m` to an edge or a corner are on it.
+inline TriangleContact contact(const TriangleCorners& corners, const Vec3& normal, const Vec3& point_m, double rim_m) {
   const auto side = [&](const Vec3& from, const Vec3& to) {
     return glm::dot(normal, glm::cross(to - from, point_m - from));
   };
   const double ab = side(corners[0], corners[1]), bc = side(corners[1], corners[2]), ca = -side(corners[0], corners[2]);
-  return (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
+  TriangleContact result;
+  result.contains = (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
+  const double turn = ab + bc + ca >= 0.0 ? 1.0 : -1.0;
+  const double from_ab_m = turn * ab / glm::distance(corners[0], corners[1]);
+  const double from_bc_m = turn * bc / glm::distance(corners[1], corners[2]);
+  const double from_ca_m = turn * ca / glm::distance(corners[2], corners[0]);
+  if (std::min({from_ab_m, from_bc_m, from_ca_m}) < -rim_m) return result;
+  const bool on_ab = from_ab_m <= rim_m, on_bc = from_bc_m <= rim_m, on_ca = from_ca_m <= rim_m;
+  if (on_ab && on_ca) {
+    result.covered_rad = detail::corner_angle_rad(corners[0], corners[1], corners[2]);
+  } else if (on_ab && on_bc) {
+    result.covered_rad = detail::corner_angle_rad(corners[1], corners[2], corners[0]);
+  } else if (on_bc && on_ca) {
+    result.covered_rad = detail::corner_angle_rad(corners[2], corners[0], corners[1]);
+  } else {
+    result.covered_rad = on_ab || on_bc || on_ca ? pi : 2.0 * pi;
+  }
+  return result;
+}
+
+/// Whether the foot of `point_m` along `normal` lies in the triangle, its edges included.
+inline bool contains_projected(const TriangleCorners& corners, const Vec3& normal, const Vec3& point_m) {
+  return contact(corners, normal, point_m, 0.0).contains;
 }
 
 inline double distance_to_segment_m(const Vec3& point_m, const Vec3& from_m, const Vec3& to_m) {

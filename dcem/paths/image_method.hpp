@@ -13,10 +13,6 @@
 
 namespace dcem {
 
-/// An end this close to a mirror's plane has no reflection there, metres: in exact arithmetic it would lie on the
-/// plane.
-inline constexpr double in_plane_guard_m = 1e-9;
-
 /// Appends the image of `images.back()` in `plane`.
 inline void append_image(std::vector<Vec3>& images_m, const Plane& plane) {
   images_m.push_back(mirrored(plane, images_m.back()));

@@ -76,7 +76,7 @@ class PathSolver {
       const FacetId id =
           mirrors[mirrors.size() - 1 - index];  // points run from the transmitter, mirrors from the receiver
       if (!facet(id).present || tracer_.is_ignored(facet(id).body, ignored)) return false;
-      if (!tracer_.contains(id, points_m_[index], counters_.traversal)) return false;
+      if (!tracer_.reflects_at(id, points_m_[index], ignored, counters_.traversal)) return false;
     }
     return true;
   }

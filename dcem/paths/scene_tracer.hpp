@@ -60,8 +60,10 @@ class SceneTracer {
   std::vector<FacetId> facets_near(const Vec3& point_m, double radius_m, const IgnoredBodies& ignored,
                                    TraversalCounters& counters) const;
 
-  /// Whether a point on the facet's plane lies on the facet, its rim included.
-  bool contains(FacetId facet, const Vec3& point_m, TraversalCounters& counters) const;
+  /// Whether a point on the facet's plane lies where the facet reflects: on it, and not on its rim, unless coplanar
+  /// facets go on there. A path whose point is on the very rim of a mirror is no path: it is the boundary of the lit
+  /// region.
+  bool reflects_at(FacetId facet, const Vec3& point_m, const IgnoredBodies& ignored, TraversalCounters& counters) const;
 
   bool is_ignored(BodyId body, const IgnoredBodies& ignored) const { return ignored[0] == body || ignored[1] == body; }
 
@@ -97,6 +99,18 @@ class SceneTracer {
   }
 
   void sort_and_merge(std::vector<Crossing>& crossings, double length_m) const;
+
+  /// The angle that coplanar facets cover around a point, radians: 2π inside, more where they overlap.
+  double covered_rad(FacetId facet, const Vec3& point_m, const IgnoredBodies& ignored,
+                     TraversalCounters& counters) const;
+
+  /// Triangles whose facet's plane may hold the point: triangles stray from it by no more than the limit at which the
+  /// facet would have been split.
+  template <typename Visit>
+  void for_each_triangle_at(const Vec3& point_m, TraversalCounters& counters, Visit&& visit) const {
+    const double reach_m = 1.01 * detail::stray_tolerances * scene_.settings().planarity_tolerance_m;
+    tree_.overlapping(inflated(Aabb<double>{point_m, point_m}, reach_m), visit, &counters);
+  }
 
   const Scene& scene_;
   const Tree& tree_;
@@ -186,25 +200,37 @@ std::vector<FacetId> SceneTracer<Tree>::facets_near(const Vec3& point_m, double 
 }
 
 template <typename Tree>
-bool SceneTracer<Tree>::contains(FacetId id, const Vec3& point_m, TraversalCounters& counters) const {
+bool SceneTracer<Tree>::reflects_at(FacetId id, const Vec3& point_m, const IgnoredBodies& ignored,
+                                    TraversalCounters& counters) const {
   const WorldFacet& facet = scene_.facet(id);
+  bool contains = false, inside = false;
+  const auto test = [&](std::uint32_t triangle) {
+    const TriangleContact touch = contact(scene_.corners_m(triangle), facet.plane.normal, point_m, in_plane_guard_m);
+    contains = contains || touch.contains;
+    inside = inside || touch.covered_rad == 2.0 * pi;
+  };
   if (facet.triangle_count <= direct_test_limit) {
-    for (std::uint32_t index = 0; index < facet.triangle_count; ++index) {
-      if (contains_projected(scene_.corners_m(facet.first_triangle + index), facet.plane.normal, point_m)) return true;
-    }
-    return false;
+    for (std::uint32_t index = 0; index < facet.triangle_count && !inside; ++index) test(facet.first_triangle + index);
+  } else {
+    for_each_triangle_at(point_m, counters, [&](std::uint32_t triangle) {
+      if (scene_.facet_of_triangle(triangle) == id) test(triangle);
+    });
   }
-  // Triangles of a facet stray from its plane by no more than the limit at which it would have been split.
-  const double reach_m = 1.01 * detail::stray_tolerances * scene_.settings().planarity_tolerance_m;
-  bool found = false;
-  tree_.overlapping(
-      inflated(Aabb<double>{point_m, point_m}, reach_m),
-      [&](std::uint32_t triangle) {
-        found = found || (scene_.facet_of_triangle(triangle) == id &&
-                          contains_projected(scene_.corners_m(triangle), facet.plane.normal, point_m));
-      },
-      &counters);
-  return found;
+  return inside || (contains && covered_rad(id, point_m, ignored, counters) > 2.0 * pi - 1e-3);
+}
+
+template <typename Tree>
+double SceneTracer<Tree>::covered_rad(FacetId id, const Vec3& point_m, const IgnoredBodies& ignored,
+                                      TraversalCounters& counters) const {
+  double sum_rad = 0.0;
+  for_each_triangle_at(point_m, counters, [&](std::uint32_t triangle) {
+    const FacetId other = scene_.facet_of_triangle(triangle);
+    if (!parallel(id, other) || is_ignored(scene_.facet(other).body, ignored)) return;
+    if (distance_to_triangle_m(scene_.corners_m(triangle), point_m) > scene_.settings().weld_tolerance_m) return;
+    sum_rad +=
+        contact(scene_.corners_m(triangle), scene_.facet(id).plane.normal, point_m, in_plane_guard_m).covered_rad;
+  });
+  return sum_rad;
 }
 
 }  // namespace dcem
