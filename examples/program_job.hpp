@@ -1,0 +1,33 @@
+#pragma once
+/// What `dcem run` and `dcem map` have in common.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dcem/io/summary.hpp"
+#include "dcem/sim/simulator.hpp"
+#include "program_options.hpp"
+
+namespace dcem::program {
+
+/// A scenario as the command line wants it. Throws InputError and UsageError.
+struct Job {
+  io::Scenario scenario;
+  FrameRange frames;
+  std::filesystem::path folder;
+};
+Job prepare_job(const ScenarioOptions& options);
+
+/// Takes the scene out of the job. What the simulator refuses is an InputError that names the scenario file.
+Simulator<> make_simulator(Job& job, const ScenarioOptions& options);
+
+io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t receivers);
+
+/// One line per warning on the error stream, unless the user wants quiet. Called when nothing in the input can be wrong
+/// any more, because an error is to be the only line.
+void print_warnings(const Job& job, const ScenarioOptions& options);
+
+/// The progress bar's mode, which is never when the user wants quiet.
+io::ProgressMode progress_mode(const ScenarioOptions& options);
+
+}  // namespace dcem::program

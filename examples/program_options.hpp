@@ -1,0 +1,51 @@
+#pragma once
+/// What the command line of the program `dcem` says, and the commands that act on it.
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "dcem/io/inspection.hpp"
+#include "dcem/io/progress.hpp"
+#include "dcem/io/scenario.hpp"
+
+namespace dcem::program {
+
+/// The command line asks for what cannot be: "command line: what is wrong; what was expected".
+class UsageError : public std::runtime_error {
+ public:
+  UsageError(const std::string& problem, const std::string& expectation)
+      : std::runtime_error("command line: " + problem + "; expected " + expectation) {}
+};
+
+/// Frames first, first + 1, …, last − 1.
+struct FrameRange {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  std::size_t count() const { return last - first; }
+};
+
+struct ScenarioOptions {
+  std::string scenario;
+  std::string folder;               ///< where results go; empty: out/<scenario name>
+  std::optional<unsigned> threads;  ///< absent: as the scenario says, which is all cores
+  std::string frames;               ///< "A:B"; empty: all
+  io::ScenarioOverrides overrides;
+  io::ProgressMode progress = io::ProgressMode::automatic;
+  bool quiet = false;
+};
+
+struct InspectOptions {
+  std::string obj;
+  io::InspectionSettings settings;
+  bool json = false;
+};
+
+// The commands. They return when everything is written; errors are thrown.
+
+void run_scenario(const ScenarioOptions& options);
+void map_scenario(const ScenarioOptions& options);
+void inspect_scene(const InspectOptions& options);
+
+}  // namespace dcem::program
