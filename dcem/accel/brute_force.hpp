@@ -67,7 +67,7 @@ class BruteForce {
   template <class Leaf>
   void closest(const Ray<Scalar>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
     const SlabTest<Scalar> slab(ray);
-    Scalar t_max = ray.t_max;
+    Scalar t_max = slab.t_max();
     const auto ask = [&](std::uint32_t primitive) {
       leaf(primitive, t_max);
       return false;
@@ -77,12 +77,12 @@ class BruteForce {
   template <class Leaf>
   bool any(const Ray<Scalar>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
     const SlabTest<Scalar> slab(ray);
-    return loop([&](const Box& box) { return slab.meets(box, ray.t_max); }, leaf, counters);
+    return loop([&](const Box& box) { return slab.meets(box, slab.t_max()); }, leaf, counters);
   }
   template <class Leaf>
   void all(const Ray<Scalar>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
     const SlabTest<Scalar> slab(ray);
-    visit([&](const Box& box) { return slab.meets(box, ray.t_max); }, leaf, counters);
+    visit([&](const Box& box) { return slab.meets(box, slab.t_max()); }, leaf, counters);
   }
   template <class Leaf>
   void overlapping(const Box& box, Leaf&& leaf, TraversalCounters* counters = nullptr) const {

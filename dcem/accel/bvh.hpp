@@ -79,14 +79,14 @@ class Bvh {
   template <class Leaf>
   bool any(const Ray<Scalar>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
     const SlabTest<Scalar> slab(ray);
-    return walk([&](const Box& box) { return slab.meets(box, ray.t_max); }, leaf, counters);
+    return walk([&](const Box& box) { return slab.meets(box, slab.t_max()); }, leaf, counters);
   }
 
   /// Calls `leaf(primitive)` once for every primitive whose box the ray meets.
   template <class Leaf>
   void all(const Ray<Scalar>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
     const SlabTest<Scalar> slab(ray);
-    visit([&](const Box& box) { return slab.meets(box, ray.t_max); }, leaf, counters);
+    visit([&](const Box& box) { return slab.meets(box, slab.t_max()); }, leaf, counters);
   }
 
   /// Calls `leaf(primitive)` once for every primitive whose box has a point in common with `box`.

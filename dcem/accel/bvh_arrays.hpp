@@ -35,7 +35,7 @@ struct BvhArrays {
   /// The first of two neighbouring slots.
   std::uint32_t take_pair();
 
-  /// Frees every slot below `root`, which itself stays.
+  /// Frees every slot below `root`, which itself stays and must be planted anew.
   void free_below(std::uint32_t root);
 
   /// Copies a tree in the layout of SahBuilder::build into `slot` and newly taken pairs, and calls

@@ -9,37 +9,15 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <vector>
 
+#include "dcem/accel/build_item.hpp"
 #include "dcem/accel/bvh_node.hpp"
 #include "dcem/accel/sah_settings.hpp"
 #include "dcem/core/error.hpp"
 #include "dcem/geometry/aabb.hpp"
 
 namespace dcem {
-
-/// What a tree is built from: a box (finite or canonically empty), its centre, and the number the caller knows it by.
-template <std::floating_point Scalar>
-struct BuildItem {
-  Aabb<Scalar> box;
-  Vector3<Scalar> center{0};
-  std::uint32_t index = 0;
-
-  BuildItem() = default;
-  BuildItem(const Aabb<Scalar>& item_box, std::uint32_t item_index)
-      : box(item_box), center(item_box.empty() ? Vector3<Scalar>(0) : item_box.center()), index(item_index) {}
-
-  /// A total order along one axis; the index decides only between equal boxes.
-  bool before(const BuildItem& other, int axis) const {
-    if (center[axis] != other.center[axis]) return center[axis] < other.center[axis];
-    const auto key = [](const BuildItem& item) {
-      const auto& [low, high] = item.box;
-      return std::tuple(low.x, low.y, low.z, high.x, high.y, high.z, item.index);
-    };
-    return key(*this) < key(other);
-  }
-};
 
 /// Top-down builder. Binned SAH over the bounds of the centres, every split tried in small ranges, the object median
 /// where no plane divides or where depth runs short. The tree depends on the set of boxes alone, not on their order.
@@ -64,7 +42,7 @@ class SahBuilder {
     items_ = items;
     has_empty_ = std::ranges::any_of(items, [](const Item& item) { return item.box.empty(); });
     nodes_.emplace_back();
-    grow(0, {0, items.size()}, bounds_of(items), levels);
+    grow(0, {0, items.size()}, bounds_of<Scalar>(items), levels);
     return std::move(nodes_);
   }
 
@@ -111,17 +89,6 @@ class SahBuilder {
 
   std::span<Item> of(Range range) const { return items_.subspan(range.begin, range.size()); }
 
-  static Aabb<Scalar> bounds_of(std::span<const Item> items) {
-    Aabb<Scalar> box;
-    for (const Item& item : items) box.extend(item.box);
-    return box;
-  }
-  static Aabb<Scalar> center_bounds_of(std::span<const Item> items) {
-    Aabb<Scalar> box;
-    for (const Item& item : items) box.extend(item.center);
-    return box;
-  }
-
   void grow(std::size_t slot, Range range, const Aabb<Scalar>& box, std::uint32_t levels);
   std::optional<std::size_t> divide(Range range, const Aabb<Scalar>& box, std::uint32_t levels);
   std::size_t divide_at_median(Range range);
@@ -148,8 +115,8 @@ void SahBuilder<Scalar>::grow(std::size_t slot, Range range, const Aabb<Scalar>&
   }
   Range larger{range.begin, *middle};
   Range smaller{*middle, range.end};
-  Aabb<Scalar> larger_box = bounds_of(of(larger));
-  Aabb<Scalar> smaller_box = bounds_of(of(smaller));
+  Aabb<Scalar> larger_box = bounds_of<Scalar>(of(larger));
+  Aabb<Scalar> smaller_box = bounds_of<Scalar>(of(smaller));
   if (larger_box.half_area() < smaller_box.half_area()) {
     std::swap(larger, smaller);
     std::swap(larger_box, smaller_box);
@@ -175,7 +142,7 @@ std::optional<std::size_t> SahBuilder<Scalar>::divide(Range range, const Aabb<Sc
     const std::size_t middle = divide_off_empty(range);
     if (middle != range.begin && middle != range.end) return middle;
   }
-  const Split split = best_split(range, center_bounds_of(of(range)));
+  const Split split = best_split(range, center_bounds_of<Scalar>(of(range)));
   if (split.left_count == 0) {
     return range.size() <= settings_.leaf_maximum ? std::nullopt : std::optional(divide_at_median(range));
   }
@@ -188,7 +155,7 @@ std::optional<std::size_t> SahBuilder<Scalar>::divide(Range range, const Aabb<Sc
 
 template <std::floating_point Scalar>
 std::size_t SahBuilder<Scalar>::divide_at_median(Range range) {
-  const Vector3<Scalar> extent = center_bounds_of(of(range)).extent();
+  const Vector3<Scalar> extent = center_bounds_of<Scalar>(of(range)).extent();
   Split split;
   split.left_count = range.size() / 2;
   split.axis = extent.y > extent.x ? 1 : 0;
@@ -204,7 +171,7 @@ std::size_t SahBuilder<Scalar>::divide_at(Range range, const Split& split) {
     std::nth_element(items.begin(), middle, items.end(),
                      [&](const Item& a, const Item& b) { return a.before(b, split.axis); });
   } else {
-    const BinScale scale = bin_scale(center_bounds_of(items), split.axis);
+    const BinScale scale = bin_scale(center_bounds_of<Scalar>(items), split.axis);
     std::partition(items.begin(), items.end(),
                    [&](const Item& item) { return scale(item.center[split.axis]) < split.bin; });
   }

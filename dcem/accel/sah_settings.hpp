@@ -16,8 +16,8 @@ struct SahSettings {
   double intersection_cost = 0.5;
   /// Bins per axis over the range of the centres (number, 2 … 64). Default 32.
   std::uint32_t bins = 32;
-  /// Ranges up to this many primitives try every split instead of bins (number, 0 … 64; 0 is off). Default 64.
-  std::uint32_t sweep_limit = 64;
+  /// Ranges up to this many primitives try every split instead of bins (number, 0 … 64; 0 is off). Default 16.
+  std::uint32_t sweep_limit = 16;
   /// A range of at most this many primitives may become a leaf (number, 1 … leaf_maximum). Default 4.
   std::uint32_t leaf_limit = 4;
   /// A range that no plane can divide becomes a leaf up to this size (number, leaf_limit … 8). Default 8.

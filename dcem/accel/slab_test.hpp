@@ -33,14 +33,19 @@ struct SlabEntry {
 template <std::floating_point Scalar>
 class SlabTest {
  public:
-  explicit SlabTest(const Ray<Scalar>& ray) : t_min_(ray.t_min) {
+  explicit SlabTest(const Ray<Scalar>& ray) : t_min_(ray.t_min), t_max_(ray.t_max) {
     bool usable = ray.t_min <= ray.t_max;
     for (int axis = 0; axis < 3; ++axis) {
       prepare_axis(axis, ray.origin[axis], ray.direction[axis]);
       usable = usable && std::isfinite(ray.origin[axis]) && std::isfinite(ray.direction[axis]);
     }
     if (!usable) t_min_ = std::numeric_limits<Scalar>::quiet_NaN();
+    if (ray.direction == Vector3<Scalar>(0)) t_max_ = t_min_;
   }
+
+  /// Where a query along the whole ray starts to narrow: the ray's t_max, but for a ray without direction, which is the
+  /// same point for every t, its t_min.
+  Scalar t_max() const { return t_max_; }
 
   /// Where the ray enters `box` on the way to `t_max`.
   /// (Inlined by force: every step of a walk is this, and g++ would call it.)
@@ -87,6 +92,7 @@ class SlabTest {
   std::array<Corner, 3> near_corner_{};
   std::array<Corner, 3> far_corner_{};
   Scalar t_min_;
+  Scalar t_max_;
 };
 
 }  // namespace dcem

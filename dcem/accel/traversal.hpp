@@ -26,7 +26,7 @@ TraversalCounters walk_closest(const BvhArrays<Scalar>& arrays, const Ray<Scalar
   TraversalCounters counters;
   if (arrays.empty()) return counters;
   const SlabTest<Scalar> slab(ray);
-  Scalar t_max = ray.t_max;
+  Scalar t_max = slab.t_max();
   ++counters.nodes_visited;
   if (!slab.meets(arrays.nodes[0].box, t_max)) return counters;
   std::array<Pending, traversal_stack_size> stack;
