@@ -48,7 +48,7 @@ Placement placement_at(const Motion& motion, double time_s);
 
 namespace detail {
 
-inline bool is_finite(const Pose& pose) {
+inline bool is_finite_pose(const Pose& pose) {
   return dcem::is_finite(pose.position_m) && std::isfinite(pose.yaw_rad) && std::isfinite(pose.pitch_rad) &&
          std::isfinite(pose.roll_rad);
 }
@@ -82,15 +82,17 @@ inline Placement placement_at(const LinearMotion& motion, double time_s) {
 
 inline Placement placement_at(const WaypointMotion& motion, double time_s) {
   const auto& points = motion.waypoints;
-  if (time_s < points.front().time_s) return {points.front().pose, {}};
-  if (time_s >= points.back().time_s) return {points.back().pose, {}};
+  if (points.size() == 1 || time_s < points.front().time_s) return {points.front().pose, {}};
+  if (time_s > points.back().time_s) return {points.back().pose, {}};
   const auto after = std::upper_bound(points.begin(), points.end(), time_s,
                                       [](double t, const auto& point) { return t < point.time_s; });
-  return placement_between(*(after - 1), *after, time_s);
+  const auto to = after == points.end() ? after - 1 : after;  // the last instant is held by the last segment
+  return placement_between(*(to - 1), *to, time_s);
 }
 
 inline void validate(const LinearMotion& motion) {
-  if (!is_finite(motion.pose) || !dcem::is_finite(motion.velocity_mps) || !std::isfinite(motion.reference_time_s)) {
+  if (!is_finite_pose(motion.pose) || !dcem::is_finite(motion.velocity_mps) ||
+      !std::isfinite(motion.reference_time_s)) {
     throw std::invalid_argument("motion: a number is not finite");
   }
 }
@@ -99,7 +101,7 @@ inline void validate(const WaypointMotion& motion) {
   if (motion.waypoints.empty()) throw std::invalid_argument("motion: no waypoint; at least one is needed");
   for (std::size_t index = 0; index < motion.waypoints.size(); ++index) {
     const auto& point = motion.waypoints[index];
-    if (!std::isfinite(point.time_s) || !is_finite(point.pose)) {
+    if (!std::isfinite(point.time_s) || !is_finite_pose(point.pose)) {
       throw std::invalid_argument("motion: waypoint " + std::to_string(index) + " has a number that is not finite");
     }
     if (index > 0 && !(point.time_s > motion.waypoints[index - 1].time_s)) {

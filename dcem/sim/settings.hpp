@@ -35,8 +35,8 @@ struct PropagationSettings {
 
 struct SimulationSettings {
   double frequency_hz = 30e9;
-  ItuSettings itu;  ///< revision of the material tables, and whether they may be extrapolated
-  PropagationSettings propagation;
+  ItuSettings itu{};  ///< revision of the material tables, and whether they may be extrapolated
+  PropagationSettings propagation{};
   unsigned threads = 0;  ///< 0: all cores. Never changes a result
 };
 
