@@ -1,0 +1,56 @@
+#pragma once
+/// The scenario file (JSON): everything a run needs, read and checked.
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dcem/channel/power_delay_profile.hpp"
+#include "dcem/scene/scene.hpp"
+#include "dcem/sim/settings.hpp"
+
+namespace dcem::io {
+
+/// The instants at which frames are solved.
+struct TimeSettings {
+  double start_s = 0.0;
+  double step_s = 0.1;
+  std::size_t frames = 1;
+};
+
+/// Which result files are written.
+struct OutputSettings {
+  bool paths = false;
+  bool links = true;
+  bool pdp = false;
+  double pdp_bin_s = 1e-9;
+  PdpMode pdp_mode = PdpMode::incoherent;
+};
+
+/// What the command line may override. Absent: the scenario file decides.
+struct ScenarioOverrides {
+  std::optional<std::string> discovery;  ///< "exact" or "sampled"
+  std::optional<std::string> cache;      ///< "off"; anything else is not in this version
+  std::optional<long long> rays;
+  std::optional<long long> seed;
+  std::optional<std::string> output;  ///< KEY[,KEY…] in place of the file's `output` keys
+};
+
+struct Scenario {
+  std::string name;  ///< the file's name without folder and extension
+  Scene scene;
+  SimulationSettings settings;
+  TimeSettings time;
+  OutputSettings output;
+  std::vector<ReceiverGrid> grids;  ///< not yet among the scene's receivers
+  std::vector<std::string> warnings;
+
+  /// Instant of a frame.
+  double time_s(std::size_t frame) const { return time.start_s + static_cast<double>(frame) * time.step_s; }
+};
+
+/// Reads a scenario and everything it names. Throws InputError.
+Scenario load_scenario(const std::filesystem::path& file, const ScenarioOverrides& overrides = {});
+
+}  // namespace dcem::io

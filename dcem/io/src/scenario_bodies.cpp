@@ -1,0 +1,177 @@
+#include <algorithm>
+
+#include "dcem/io/input_error.hpp"
+#include "dcem/io/src/scenario_parts.hpp"
+#include "dcem/io/src/text_input.hpp"
+
+namespace dcem::io {
+
+namespace {
+
+ObjSettings read_obj_settings(const JsonObject& owner) {
+  ObjSettings settings;
+  if (const auto up = owner.find("up")) settings.up = up->one_of({"z", "y"}) == "y" ? UpAxis::y : UpAxis::z;
+  settings.unit_m = owner.number("unit_m", settings.unit_m, {1e-9, 1e6});
+  return settings;
+}
+
+MaterialKey read_material_key(const std::string& name, const JsonValue& value) {
+  MaterialKey key{0.0, value.place(), value.path()};
+  if (const NumberRange* range = material_number_range(name)) {
+    key.value = value.number(*range);
+  } else if (name == "model" || name == "itu") {
+    key.value = value.text();
+  }
+  return key;
+}
+
+}  // namespace
+
+void BodyLoader::load() {
+  const JsonObject scene =
+      scenario_.at("scene").object({"obj", "up", "unit_m", "weld_tolerance_m", "planarity_tolerance_m"});
+  result_.scene = Scene(read_surface_settings(scene));
+  read_scenario_materials();
+  const ObjFile& scenery = read_mesh(scene);
+  read_objects();
+  add_materials();
+  reported_at(scene.at("obj"), [&] { result_.scene.set_scenery(scenery.mesh); });
+  if (result_.scene.facets().empty()) scene.at("obj").fail("no face has an area; expected at least one");
+  for (Object& object : objects_) {
+    reported_at(object.value, [&] { result_.scene.add_object(object.id, object.mesh, std::move(object.motion)); });
+  }
+}
+
+const ObjFile& BodyLoader::read_mesh(const JsonObject& owner) {
+  const JsonValue name = owner.at("obj");
+  const std::filesystem::path file = folder_ / name.text();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    name.fail(in_quotes(name.text()) + " is not there; expected an OBJ file, relative to the scenario");
+  }
+  const ObjSettings settings = read_obj_settings(owner);
+  const FileKey key{file.string(), settings.up, settings.unit_m};
+  const auto known = files_.find(key);
+  if (known != files_.end()) return known->second;
+  const ObjFile& read = files_.emplace(key, read_obj(file, settings)).first->second;
+  collect_mtl_materials(read);
+  collect_used_materials(read, file.string());
+  result_.warnings.insert(result_.warnings.end(), read.warnings.begin(), read.warnings.end());
+  return read;
+}
+
+TriangleMesh BodyLoader::read_object_mesh(const JsonObject& object) {
+  if (object.exactly_one_of({"obj", "box_m"}) == "obj") {
+    if (object.has("material")) object.at("material").fail("goes with box_m only; expected no such key");
+    return read_mesh(object).mesh;
+  }
+  for (const char* key : {"up", "unit_m"}) {
+    if (object.has(key)) object.at(key).fail("goes with obj only; expected no such key");
+  }
+  const auto sizes = object.at("box_m").elements(3, "three lengths [along x, along y, along z]");
+  Vec3 size_m(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    size_m[axis] = sizes[static_cast<std::size_t>(axis)].number({0.0, 1e6, true});
+  }
+  const JsonValue material = object.at("material");
+  used_materials_.try_emplace(material.line(), material.place());
+  return make_box(size_m, material.line());
+}
+
+void BodyLoader::read_objects() {
+  const auto list = scenario_.find("objects");
+  if (!list) return;
+  for (const JsonValue& element : list->elements()) {
+    const JsonObject object = element.object({"id", "obj", "up", "unit_m", "box_m", "material", "motion", "foliage"});
+    if (object.boolean("foliage", false)) object.at("foliage").not_in_this_version("false");
+    const std::string id = object.at("id").identifier();
+    const bool known =
+        std::any_of(objects_.begin(), objects_.end(), [&](const Object& other) { return other.id == id; });
+    if (known) object.at("id").fail(in_quotes(id) + " is there twice; expected a new id");
+    const auto motion = object.find("motion");
+    objects_.push_back({element, id, read_object_mesh(object),
+                        motion ? read_motion(*motion, result_.time.start_s) : Motion(LinearMotion{})});
+  }
+}
+
+void BodyLoader::collect_used_materials(const ObjFile& file, const std::string& name) {
+  const TriangleMesh& mesh = file.mesh;
+  std::vector<bool> used(mesh.material_names.size(), false);
+  for (const TriangleMesh::Triangle& triangle : mesh.triangles) used[triangle.material] = true;
+  for (std::size_t index = 0; index < used.size(); ++index) {
+    const std::string& material = mesh.material_names[index];
+    if (used[index]) used_materials_.try_emplace(material, name + ":" + std::to_string(file.used_at.at(material)));
+  }
+}
+
+void BodyLoader::collect_mtl_materials(const ObjFile& file) {
+  for (const auto& [name, mtl] : file.materials) {
+    MaterialKeys keys = keys_from_mtl(mtl);
+    std::vector<MaterialKeys>& definitions = mtl_materials_[name];
+    const bool known = std::any_of(definitions.begin(), definitions.end(),
+                                   [&](const MaterialKeys& other) { return same_definition(other, keys); });
+    if (!known) definitions.push_back(std::move(keys));
+  }
+}
+
+void BodyLoader::read_scenario_materials() {
+  const auto block = scenario_.find("materials");
+  if (!block) return;
+  for (const auto& [name, value] : block->entries()) {
+    const JsonObject object = value.object(material_key_names());
+    if (!is_printable(name)) value.fail("the name holds control characters; expected a name on one line");
+    MaterialKeys keys{value.place(), {}};
+    for (const auto& [key, member] : value.entries()) keys.keys.emplace(key, read_material_key(key, member));
+    scenario_materials_.emplace(name, std::move(keys));
+  }
+}
+
+/// The keys of a material from all files together.
+MaterialKeys BodyLoader::definition(const std::string& name) const {
+  const auto in_mtl = mtl_materials_.find(name);
+  const auto in_scenario = scenario_materials_.find(name);
+  const bool overrides = in_scenario != scenario_materials_.end();
+  if (in_mtl == mtl_materials_.end()) {
+    return overrides ? in_scenario->second : MaterialKeys{used_materials_.at(name), {}};
+  }
+  const std::vector<MaterialKeys>& definitions = in_mtl->second;
+  if (definitions.size() == 1) return overrides ? merged(definitions[0], in_scenario->second) : definitions[0];
+  if (overrides && in_scenario->second.keys.contains("model")) return in_scenario->second;
+  throw InputError(definitions[1].place,
+                   "material " + in_quotes(name) + " differs from " + definitions[0].place +
+                       "; expected one definition, or a model for it in the scenario's materials");
+}
+
+void BodyLoader::add_materials() {
+  for (const auto& [name, used_at] : used_materials_) {
+    const MaterialKeys keys = definition(name);
+    const std::optional<Material> material = make_material(name, keys);
+    if (!material) {
+      throw InputError(used_at, "material " + in_quotes(name) +
+                                    " is used but defined nowhere; expected em_* keys in the MTL file, an entry in "
+                                    "the scenario's materials, or a name such as itu_concrete");
+    }
+    check_frequency(*material);
+    result_.scene.add_material(*material);
+  }
+  for (const auto& [name, keys] : scenario_materials_) {
+    if (!used_materials_.contains(name)) make_material(name, keys);  // only to check it
+  }
+}
+
+void BodyLoader::check_frequency(const Material& material) {
+  const auto* model = std::get_if<ItuMaterial>(&material.model);
+  if (!model) return;
+  const JsonValue place = scenario_.at("frequency_hz");
+  try {
+    const SimulationSettings& settings = result_.settings;
+    if (!itu_properties(model->name, settings.frequency_hz, settings.itu).extrapolated) return;
+  } catch (const std::invalid_argument& error) {
+    place.fail(in_quotes(material.name) + ": " + error.what() +
+               "; expected a frequency of the table (or itu.allow_extrapolation, or another itu.revision)");
+  }
+  result_.warnings.push_back(place.place() + ": material " + in_quotes(material.name) + " ('" + model->name +
+                             "' of ITU-R P.2040) is extrapolated to a frequency outside its table");
+}
+
+}  // namespace dcem::io

@@ -1,0 +1,173 @@
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+
+#include "dcem/io/src/scenario_parts.hpp"
+
+namespace dcem::io {
+
+namespace {
+
+constexpr long long highest_order = 10;
+
+/// The keys of `output` that this version does not write.
+const std::vector<std::string> later_outputs{"cfr",      "doppler", "npz",  "mat",  "qd",   "p2m",
+                                             "deepmimo", "kml",     "gltf", "html", "plots"};
+
+/// The value from the command line, or else the one from the file.
+std::optional<JsonValue> chosen(const JsonObject& command_line, const std::string& option,
+                                const std::optional<JsonObject>& file, const std::string& key) {
+  const std::optional<JsonValue> overriding = command_line.find(option);
+  if (overriding || !file) return overriding;
+  return file->find(key);
+}
+
+std::optional<JsonObject> find_object(const JsonObject& parent, const std::string& key,
+                                      const std::vector<std::string>& known_keys) {
+  const std::optional<JsonValue> value = parent.find(key);
+  return value ? std::optional(value->object(known_keys)) : std::nullopt;
+}
+
+Discovery read_discovery(const JsonValue& value) {
+  return value.one_of({"exact", "sampled"}) == "exact" ? Discovery::exact : Discovery::sampled;
+}
+
+void refuse_cache(const JsonValue& value) {
+  if (value.one_of({"off", "seed", "exact"}) != "off") value.not_in_this_version("off");
+}
+
+AnyPathLoss read_path_loss(const JsonValue& value) {
+  const JsonObject object = value.object({"model", "exponent", "attenuation_db_per_m"});
+  if (object.at("model").one_of({"free_space", "close_in"}) == "free_space") {
+    for (const char* key : {"exponent", "attenuation_db_per_m"}) {
+      if (object.has(key)) object.at(key).fail("does not go with model 'free_space'; expected no such key");
+    }
+    return {FreeSpace{}};
+  }
+  const CloseIn model{object.number("exponent", 2.0, {0.0, 10.0, true}),
+                      object.number("attenuation_db_per_m", 0.0, {0.0, 1000.0})};
+  return {reported_at(value, [&] { return validate(model), model; })};
+}
+
+void refuse_later_propagation(const JsonObject& propagation) {
+  if (const auto value = propagation.find("max_diffractions"); value && value->integer(0, 3) != 0) {
+    value->not_in_this_version("0");
+  }
+  for (const char* key : {"diffraction", "rays_steady"}) {
+    if (propagation.has(key)) propagation.at(key).not_in_this_version("no such key");
+  }
+  for (const char* key : {"atmosphere", "antenna_array"}) {
+    if (const auto value = propagation.find(key); value && !value->is_null()) value->not_in_this_version("null");
+  }
+  const auto diffuse =
+      find_object(propagation, "diffuse", {"enabled", "tile_max_m", "tolerance_db", "phases", "list_paths"});
+  if (diffuse && diffuse->boolean("enabled", false)) diffuse->at("enabled").not_in_this_version("false");
+}
+
+void read_pdp(const JsonValue& value, OutputSettings& output) {
+  if (value.is_boolean()) {
+    output.pdp = value.boolean();
+    return;
+  }
+  const JsonObject object = value.object({"bin_s", "mode"});
+  output.pdp = true;
+  output.pdp_bin_s = object.number("bin_s", output.pdp_bin_s, {1e-15, 1.0});
+  const auto mode = object.find("mode");
+  if (!mode) return;
+  const std::string name = mode->one_of({"incoherent", "coherent", "band_limited"});
+  if (name == "band_limited") mode->not_in_this_version("incoherent or coherent");
+  output.pdp_mode = name == "coherent" ? PdpMode::coherent : PdpMode::incoherent;
+}
+
+OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) {
+  std::vector<std::string> known{"paths", "links", "pdp"};
+  known.insert(known.end(), later_outputs.begin(), later_outputs.end());
+  const JsonObject object = value.object(known);
+  for (const std::string& key : later_outputs) {
+    const auto later = object.find(key);
+    if (later && !(later->is_boolean() && !later->boolean())) later->not_in_this_version("false");
+  }
+  OutputSettings output;
+  output.paths = object.boolean("paths", false);
+  output.links = object.boolean("links", links_unless_said);
+  if (const auto pdp = object.find("pdp")) read_pdp(*pdp, output);
+  return output;
+}
+
+}  // namespace
+
+TimeSettings read_time(const JsonObject& scenario) {
+  TimeSettings time;
+  const auto object = find_object(scenario, "time", {"start_s", "step_s", "frames"});
+  if (!object) return time;
+  time.start_s = object->number("start_s", time.start_s, any_instant_s);
+  time.step_s = object->number("step_s", time.step_s, {0.0, 1e9, true});
+  time.frames = static_cast<std::size_t>(object->integer("frames", 1, 1, 1'000'000'000));
+  return time;
+}
+
+ItuSettings read_itu(const JsonObject& scenario) {
+  ItuSettings itu;
+  const auto object = find_object(scenario, "itu", {"revision", "allow_extrapolation"});
+  if (!object) return itu;
+  itu.revision = static_cast<int>(object->integer("revision", itu.revision, 3, 4));
+  itu.allow_extrapolation = object->boolean("allow_extrapolation", itu.allow_extrapolation);
+  return itu;
+}
+
+SurfaceSettings read_surface_settings(const JsonObject& scene) {
+  const NumberRange tolerance_m{1e-9, 1.0};
+  SurfaceSettings settings;
+  settings.weld_tolerance_m = scene.number("weld_tolerance_m", settings.weld_tolerance_m, tolerance_m);
+  settings.planarity_tolerance_m = scene.number("planarity_tolerance_m", settings.planarity_tolerance_m, tolerance_m);
+  return settings;
+}
+
+PropagationSettings read_propagation(const JsonObject& scenario, const JsonObject& command_line) {
+  PropagationSettings settings;
+  const auto file = find_object(scenario, "propagation",
+                                {"line_of_sight", "max_reflections", "max_transmissions", "max_diffractions",
+                                 "max_interactions", "discovery", "rays", "rays_steady", "seed", "cache", "diffraction",
+                                 "diffuse", "path_loss", "atmosphere", "antenna_array", "min_path_gain_db"});
+  if (file) {
+    refuse_later_propagation(*file);
+    settings.line_of_sight = file->boolean("line_of_sight", settings.line_of_sight);
+    settings.max_reflections =
+        static_cast<int>(file->integer("max_reflections", settings.max_reflections, 0, highest_order));
+    settings.max_transmissions =
+        static_cast<int>(file->integer("max_transmissions", settings.max_transmissions, 0, highest_order));
+    if (const auto value = file->find("max_interactions")) {
+      settings.max_interactions = static_cast<int>(value->integer(0, highest_order + 3));
+    }
+    if (const auto value = file->find("path_loss")) settings.path_loss = read_path_loss(*value);
+    if (const auto value = file->find("min_path_gain_db"); value && !value->is_null()) {
+      settings.min_path_gain_db = value->number({-10'000.0, 1000.0});
+    }
+  }
+  if (const auto value = chosen(command_line, "--cache", file, "cache")) refuse_cache(*value);
+  if (const auto value = chosen(command_line, "--discovery", file, "discovery")) {
+    settings.discovery = read_discovery(*value);
+  }
+  if (const auto value = chosen(command_line, "--rays", file, "rays")) {
+    settings.rays = static_cast<std::uint32_t>(value->integer(1, 100'000'000));
+  }
+  if (const auto value = chosen(command_line, "--seed", file, "seed")) {
+    settings.seed = static_cast<std::uint64_t>(value->integer(0, 9'000'000'000'000'000'000));
+  }
+  return settings;
+}
+
+OutputSettings read_output(const JsonObject& scenario, const JsonObject& command_line) {
+  if (const auto value = command_line.find("--output")) return read_output_keys(*value, false);
+  const auto value = scenario.find("output");
+  return value ? read_output_keys(*value, true) : OutputSettings{};
+}
+
+void refuse_later_blocks(const JsonObject& scenario) {
+  for (const char* key : {"mobility", "geo", "noise"}) {
+    if (scenario.has(key)) scenario.at(key).not_in_this_version("no such key");
+  }
+  const auto links = scenario.find("links");
+  if (links && !(links->is_string() && links->text() == "all")) links->not_in_this_version("\"all\"");
+}
+
+}  // namespace dcem::io
