@@ -1,0 +1,96 @@
+#pragma once
+/// Result files that appear under their final name only when they are complete.
+///
+/// A file is written aside, in the same folder under a hidden temporary name, and renamed by `commit()`; a rename
+/// within one folder is atomic, so a reader sees the old file or the whole new one. What is not committed is removed
+/// by the destructor. This guards against a run that fails, a full disk and a program that is interrupted between two
+/// files; it does not wait for the disk (no fsync), so it promises nothing about a power failure.
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dcem::io {
+
+/// A result could not be written. The text reads "PATH: what is wrong; what was expected".
+class OutputError : public std::runtime_error {
+ public:
+  OutputError(const std::filesystem::path& path, const std::string& problem, const std::string& expectation);
+};
+
+/// One file, written aside and renamed by `commit()`. Can be moved, not copied. Not for use by several threads at once.
+class AtomicFile {
+ public:
+  /// Opens the temporary file beside `target` (binary, nothing is translated).
+  /// Throws `OutputError` where the folder is missing or cannot be written, or where `target` exists and is not a
+  /// regular file.
+  explicit AtomicFile(std::filesystem::path target);
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  /// Removes the temporary file unless `commit()` succeeded.
+  ~AtomicFile();
+
+  /// The stream to write to. Its errors need no check by the caller: `close()` and `commit()` throw on them.
+  [[nodiscard]] std::ostream& stream() { return stream_; }
+
+  /// Writes bytes and throws `OutputError` at once when the disk does not take them.
+  void write(std::string_view bytes);
+
+  /// Flushes, checks for errors and closes; the file stays aside. A program that collects hundreds of files calls it
+  /// to give back the file handle. Calling it twice is harmless.
+  void close();
+
+  /// `close()`, then renames to the final name, replacing a file of that name. Throws `OutputError` on any failure;
+  /// the final name then is as it was before.
+  void commit();
+
+  [[nodiscard]] const std::filesystem::path& target() const { return target_; }
+
+ private:
+  [[noreturn]] void fail(int error_number) const;
+
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;  // empty after commit() and in a moved-from object
+  std::ofstream stream_;
+  bool closed_ = false;
+};
+
+/// Several files of one folder that appear together: none has its final name before `commit()`.
+/// A run that fails leaves nothing: temporary files are removed, and so are the folders that this object created, as
+/// long as nothing else was put there.
+class OutputFolder {
+ public:
+  /// Creates the folder (and its parents) where absent and tries whether it can be written, so that a long run fails
+  /// at its start and not at its end. Throws `OutputError`.
+  explicit OutputFolder(std::filesystem::path folder);
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder();
+
+  /// Starts the file `name` in this folder. The reference stays valid as long as this object.
+  /// Throws `std::invalid_argument` for a name that is not a plain file name or that was opened before, and
+  /// `OutputError` as `AtomicFile` does.
+  AtomicFile& open(const std::string& name);
+
+  /// Closes and checks every file, then renames all of them. Throws `OutputError`; should a rename fail in the midst,
+  /// the files of this object that already had their final name are removed, so that no partial result stays.
+  void commit();
+
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+
+ private:
+  void create_folders();
+  void remove_created_folders() noexcept;
+  void rename_all();
+
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> created_;  // outermost first
+  std::vector<std::unique_ptr<AtomicFile>> files_;
+  bool committed_ = false;
+};
+
+}  // namespace dcem::io

@@ -1,0 +1,93 @@
+#pragma once
+/// Pictures of values over a regular grid: coverage maps, delay maps.
+///
+/// The picture has axes in metres at true aspect ratio, a colour bar with ticks and unit, a title, walls, transmitters
+/// and a legend. One grid point is one block of equal pixels, never blended with its neighbours.
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dcem/io/atomic_file.hpp"
+#include "dcem/io/image.hpp"
+
+namespace dcem::io {
+
+/// The lowest and the highest value of a colour bar.
+struct ValueRange {
+  double low = 0.0;
+  double high = 1.0;
+};
+
+/// A map to be drawn. Grid point (column, row) lies at (origin_x_m + column · spacing_x_m, origin_y_m + row ·
+/// spacing_y_m) in the middle of its cell, so the picture reaches half a spacing beyond the outer points.
+struct HeatMap {
+  /// A place to point out: a symbol with a label beside it.
+  struct Marker {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    std::string label;
+  };
+
+  std::string title;
+  std::string label = "received power";
+  std::string unit = "dBm";
+  double origin_x_m = 0.0;
+  double origin_y_m = 0.0;
+  double spacing_x_m = 1.0;
+  double spacing_y_m = 1.0;
+  std::size_t columns = 0;
+  std::size_t rows = 0;
+  std::vector<double>
+      values;  // in `unit`, row by row, the row of the smallest y first; not finite, or beyond ±1e100: no value
+  std::vector<char> hatched;  // empty, or one per value; not 0 = inside an object or on a wall, hatched
+  std::vector<std::array<double, 4>> walls_m;  // segments x0, y0, x1, y1
+  std::vector<Marker> transmitters;
+  std::optional<ValueRange> range;  // ends of the colour bar; default: `default_value_range`
+};
+
+/// The colour range of a map that names none: from the 2nd percentile of its values (so that a few deep fades do not
+/// take the colours from the rest) to their maximum, both rounded outwards to 5 for units that begin with "dB", else
+/// to a tenth of the span rounded to 1, 2 or 5 · 10^n. Never of zero width; nothing where no value is drawn.
+/// Throws as `heat_map_layout`.
+std::optional<ValueRange> default_value_range(const HeatMap& map);
+
+/// Where the parts of the picture lie.
+struct HeatMapLayout {
+  int width_px = 0;
+  int height_px = 0;
+  PixelRect plot;         // the cells, without the frame around them
+  PixelRect bar;          // the colours of the bar; empty where the map has no value
+  double left_m = 0.0;    // x of the left edge of the plot
+  double bottom_m = 0.0;  // y of its lower edge
+  double horizontal_px_per_m = 1.0;
+  double vertical_px_per_m = 1.0;   // the same, but for rounding, unless `to_scale` is false
+  std::size_t sampling = 1;         // one point in so many along each axis is shown
+  bool to_scale = true;             // false where a very long or flat grid was stretched to be seen at all
+  std::optional<ValueRange> range;  // what the colours mean
+
+  /// Continuous pixel coordinates of a place.
+  [[nodiscard]] PixelPoint point(double x_m, double y_m) const {
+    return {plot.x + (x_m - left_m) * horizontal_px_per_m, plot.bottom() - (y_m - bottom_m) * vertical_px_per_m};
+  }
+};
+
+/// The layout that `draw_heat_map` uses. The longer side of the plot is about 800 pixels: a whole number of pixels per
+/// cell (at most 240), one pixel per cell for up to 1,500 cells, and one cell of k × k, its middle one, beyond.
+/// Throws `std::invalid_argument` where sizes do not fit together, a spacing lies outside 1e-6…1e9 m or is lost beside
+/// its origin (below 1e-12 of it), a coordinate is not finite, or the range is empty.
+HeatMapLayout heat_map_layout(const HeatMap& map);
+
+/// Draws the map. Values outside the colour range take the colour of its end, and the bar then ends in a tip.
+/// Cells without a value are light grey; cells in objects are hatched; the legend below says what of this occurs.
+/// Labels of transmitters that find no free place are left out, the symbols stay. Throws as `heat_map_layout`.
+Image draw_heat_map(const HeatMap& map);
+
+/// `draw_heat_map` into a file that appears only when complete. Throws `OutputError`.
+void write_heat_map_png(const HeatMap& map, const std::filesystem::path& path);
+/// The same into a file of an `OutputFolder`; the caller commits.
+void write_heat_map_png(const HeatMap& map, AtomicFile& file);
+
+}  // namespace dcem::io

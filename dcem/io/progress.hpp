@@ -1,0 +1,62 @@
+#pragma once
+/// A progress bar for long work, on the error stream so that results on the output stream stay clean.
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <iostream>
+#include <mutex>
+#include <string>
+
+namespace dcem::io {
+
+/// When a bar is shown: `automatic` only where the error stream is a terminal.
+enum class ProgressMode { automatic, always, never };
+
+/// One line of progress, at most 79 characters: label, bar, percentage, done/total and the time left, which is
+/// `elapsed_s` · (total − done) / done (unknown, "--:--", before the first piece is done).
+std::string progress_line(const std::string& label, std::uint64_t done, std::uint64_t total, double elapsed_s);
+
+/// `duration_s` as "m:ss" or "h:mm:ss", rounded to whole seconds.
+std::string format_duration(double duration_s);
+
+/// Shows how far a loop of known length is. `advance()` may be called by any number of threads at once; the line is
+/// drawn at most ten times a second, whatever the number of calls.
+class ProgressBar {
+ public:
+  /// `total`: number of pieces of work; `stream` is where an `always` bar goes (tests). `automatic` looks at the
+  /// process's error stream, and shows nothing on any other stream.
+  ProgressBar(std::string label, std::uint64_t total, ProgressMode mode, std::ostream& stream = std::cerr);
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  /// Calls `finish()`.
+  ~ProgressBar();
+
+  /// Reports `pieces` more as done.
+  void advance(std::uint64_t pieces = 1);
+
+  /// Replaces the bar by a last line, "label: 100 of 100 in 0:12", and ends it; work that was cut short reads
+  /// "label: stopped at 40 of 100 after 0:05". Later calls do nothing.
+  void finish();
+
+  [[nodiscard]] std::uint64_t done() const { return done_.load(std::memory_order_relaxed); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] double elapsed_s() const;
+  void show(const std::string& line);
+
+  const std::string label_;
+  const std::uint64_t total_;
+  const bool shown_;
+  std::ostream& stream_;
+  const Clock::time_point start_ = Clock::now();
+  std::atomic<std::uint64_t> done_{0};
+  std::atomic<std::int64_t> next_draw_ns_{0};  // nanoseconds since start_
+  std::mutex mutex_;                           // guards the stream and the two members below
+  std::size_t shown_width_ = 0;
+  bool finished_ = false;
+};
+
+}  // namespace dcem::io

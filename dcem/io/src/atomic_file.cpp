@@ -1,0 +1,161 @@
+#include "dcem/io/atomic_file.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace dcem::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string describe(int error_number) {
+  if (error_number == 0) return "could not be written to its end";
+  return "cannot be written (" + std::generic_category().message(error_number) + ")";
+}
+
+// Process number and a counter: two programs, or two files of one program, never share a temporary name.
+fs::path temporary_beside(const fs::path& target) {
+  static std::atomic<unsigned> counter{0};
+  const std::string suffix = "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".part";
+  return target.parent_path() / ("." + target.filename().string() + suffix);
+}
+
+void check_target(const fs::path& target) {
+  if (!target.has_filename()) throw OutputError(target, "is no file name", "the name of a file to write");
+  std::error_code ignored;
+  const fs::file_status status = fs::status(target, ignored);
+  if (fs::is_directory(status)) throw OutputError(target, "is a folder", "the name of a file to write");
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw OutputError(target, "is not a regular file", "the name of a file to write");
+  }
+}
+
+}  // namespace
+
+OutputError::OutputError(const fs::path& path, const std::string& problem, const std::string& expectation)
+    : std::runtime_error(path.string() + ": " + problem + "; expected " + expectation) {}
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
+  check_target(target_);
+  const fs::path temporary = temporary_beside(target_);
+  errno = 0;
+  stream_.open(temporary, std::ios::binary | std::ios::trunc);
+  if (!stream_) fail(errno);
+  temporary_ = temporary;
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      stream_(std::move(other.stream_)),
+      closed_(std::exchange(other.closed_, true)) {}
+
+AtomicFile::~AtomicFile() {
+  if (temporary_.empty()) return;
+  stream_.close();
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::fail(int error_number) const {
+  throw OutputError(target_, describe(error_number), "a folder that can be written, with space left");
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  errno = 0;
+  if (!stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()))) fail(errno);
+}
+
+void AtomicFile::close() {
+  if (closed_) return;
+  errno = 0;
+  const bool written = static_cast<bool>(stream_.flush());
+  const int error_number = errno;
+  stream_.close();
+  // A stream that failed stays failed: the next close() or commit() must not take the file for complete.
+  if (!written || !stream_) fail(error_number);
+  closed_ = true;
+}
+
+void AtomicFile::commit() {
+  if (temporary_.empty()) return;
+  close();
+  std::error_code error;
+  fs::rename(temporary_, target_, error);
+  if (error) fail(error.value());
+  temporary_.clear();
+}
+
+OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
+  if (folder_.empty()) folder_ = ".";
+  try {
+    create_folders();
+    const AtomicFile probe(folder_ / "dcem-probe");
+  } catch (...) {
+    remove_created_folders();
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  files_.clear();
+  if (!committed_) remove_created_folders();
+}
+
+AtomicFile& OutputFolder::open(const std::string& name) {
+  if (name.empty() || name == "." || name == ".." || fs::path(name).filename() != fs::path(name)) {
+    throw std::invalid_argument("OutputFolder: '" + name + "' is not a plain file name");
+  }
+  const fs::path target = folder_ / name;
+  const bool known =
+      std::any_of(files_.begin(), files_.end(), [&](const auto& file) { return file->target() == target; });
+  if (known) throw std::invalid_argument("OutputFolder: '" + name + "' was opened before");
+  files_.push_back(std::make_unique<AtomicFile>(target));
+  return *files_.back();
+}
+
+void OutputFolder::commit() {
+  for (const auto& file : files_) file->close();
+  rename_all();
+  committed_ = true;
+}
+
+void OutputFolder::rename_all() {
+  std::size_t renamed = 0;
+  try {
+    for (; renamed < files_.size(); ++renamed) files_[renamed]->commit();
+  } catch (...) {
+    std::error_code ignored;
+    for (std::size_t i = 0; i < renamed; ++i) fs::remove(files_[i]->target(), ignored);
+    throw;
+  }
+}
+
+void OutputFolder::create_folders() {
+  std::vector<fs::path> missing;
+  std::error_code error;
+  for (fs::path path = fs::absolute(folder_).lexically_normal(); !path.empty() && !fs::exists(path, error);
+       path = path.parent_path()) {
+    missing.push_back(path);
+    if (path == path.parent_path()) break;
+  }
+  std::reverse(missing.begin(), missing.end());
+  for (const fs::path& path : missing) {
+    // A trailing separator yields the same folder twice; the second time nothing is created.
+    if (fs::create_directory(path, error)) created_.push_back(path);
+    if (error) throw OutputError(folder_, "cannot be created (" + error.message() + ")", "a place that can be written");
+  }
+  if (!fs::is_directory(folder_, error)) throw OutputError(folder_, "is not a folder", "a folder for the results");
+}
+
+void OutputFolder::remove_created_folders() noexcept {
+  std::error_code ignored;
+  for (auto path = created_.rbegin(); path != created_.rend(); ++path) fs::remove(*path, ignored);
+}
+
+}  // namespace dcem::io

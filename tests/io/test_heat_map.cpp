@@ -1,0 +1,459 @@
+#include "dcem/io/heat_map.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "dcem/io/src/colour_map.hpp"
+#include "tests/io/png_reader.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+using namespace dcem::io;
+using dcem::test::Png;
+using dcem::test::TemporaryFolder;
+
+namespace {
+
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+constexpr Colour no_value_grey{217, 217, 217};
+
+// Entries of the original viridis table (Matplotlib 3.8.4, _cm_listed.py, times 255 and rounded), none of them one of
+// the control points of the code.
+struct TableEntry {
+  int index;  // of 255
+  std::array<int, 3> colour;
+};
+constexpr std::array<TableEntry, 9> viridis_table{{{8, {71, 13, 96}},
+                                                   {40, {69, 55, 129}},
+                                                   {77, {52, 96, 141}},
+                                                   {100, {42, 118, 142}},
+                                                   {127, {33, 144, 141}},
+                                                   {128, {33, 145, 140}},
+                                                   {160, {40, 174, 128}},
+                                                   {200, {112, 207, 87}},
+                                                   {222, {168, 219, 52}}}};
+
+int difference(Colour colour, const std::array<int, 3>& other) {
+  return std::max(
+      {std::abs(colour.red - other[0]), std::abs(colour.green - other[1]), std::abs(colour.blue - other[2])});
+}
+
+// CIE 1976 lightness L* of an sRGB colour (IEC 61966-2-1 for the linear parts, D65 white).
+double lightness(Colour colour) {
+  const auto linear = [](std::uint8_t channel) {
+    const double share = channel / 255.0;
+    return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+  };
+  const double luminance = 0.2126 * linear(colour.red) + 0.7152 * linear(colour.green) + 0.0722 * linear(colour.blue);
+  return luminance > 216.0 / 24389.0 ? 116.0 * std::cbrt(luminance) - 16.0 : luminance * 24389.0 / 27.0;
+}
+
+HeatMap plain_map(std::size_t columns, std::size_t rows, double value) {
+  HeatMap map;
+  map.title = "test";
+  map.columns = columns;
+  map.rows = rows;
+  map.values.assign(columns * rows, value);
+  return map;
+}
+
+// A room of 20 m × 12 m, points every half metre, levels that rise to the upper right.
+HeatMap room() {
+  HeatMap map = plain_map(40, 24, 0.0);
+  map.spacing_x_m = 0.5;
+  map.spacing_y_m = 0.5;
+  map.origin_x_m = 0.25;
+  map.origin_y_m = 0.25;
+  for (std::size_t i = 0; i < map.values.size(); ++i) {
+    map.values[i] = -100.0 + static_cast<double>(i % 40) + static_cast<double>(i / 40);
+  }
+  return map;
+}
+
+Png drawn(const HeatMap& map) {
+  const TemporaryFolder folder;
+  write_heat_map_png(map, folder / "map.png");
+  CHECK(folder.names() == std::vector<std::string>{"map.png"});
+  return dcem::test::read_png(folder / "map.png");
+}
+
+// The pixels of one cell, without those at its rim.
+PixelRect cell_area(const HeatMap& map, const HeatMapLayout& layout, std::size_t column, std::size_t row) {
+  const double x_m = map.origin_x_m + static_cast<double>(column) * map.spacing_x_m;
+  const double y_m = map.origin_y_m + static_cast<double>(row) * map.spacing_y_m;
+  const PixelPoint low = layout.point(x_m - 0.5 * map.spacing_x_m, y_m + 0.5 * map.spacing_y_m);
+  const PixelPoint high = layout.point(x_m + 0.5 * map.spacing_x_m, y_m - 0.5 * map.spacing_y_m);
+  const int x = static_cast<int>(std::lround(low.x));
+  const int y = static_cast<int>(std::lround(low.y));
+  return {x, y, static_cast<int>(std::lround(high.x)) - x, static_cast<int>(std::lround(high.y)) - y};
+}
+
+Colour colour_at(const Png& png, const HeatMapLayout& layout, double x_m, double y_m) {
+  const PixelPoint place = layout.point(x_m, y_m);
+  return png.at(static_cast<int>(place.x), static_cast<int>(place.y));
+}
+
+long count_colour(const Png& png, Colour colour) {
+  return std::count(png.pixels.begin(), png.pixels.end(), colour);
+}
+
+// Groups of ink along a row of labels, at least `gap_px` blank columns apart.
+int groups_of_ink(const Png& png, const PixelRect& strip, int gap_px) {
+  int groups = 0;
+  int blank = gap_px;
+  for (int x = strip.x; x < strip.right(); ++x) {
+    bool ink = false;
+    for (int y = strip.y; y < strip.bottom(); ++y) ink = ink || lightness(png.at(x, y)) < 50.0;
+    if (ink && blank >= gap_px) ++groups;
+    blank = ink ? 0 : blank + 1;
+  }
+  return groups;
+}
+
+}  // namespace
+
+TEST_CASE("the colours are those of the viridis table") {
+  for (const TableEntry& entry : viridis_table) {
+    // Straight lines between every fifteenth entry of the table stray from it by at most 4.9, and rounding adds a half.
+    CHECK(difference(viridis(entry.index / 255.0), entry.colour) <= 5);
+  }
+  CHECK(viridis(0.0) == Colour{68, 1, 84});
+  CHECK(viridis(1.0) == Colour{253, 231, 37});
+  CHECK(viridis(-3.0) == viridis(0.0));
+  CHECK(viridis(1e9) == viridis(1.0));
+}
+
+TEST_CASE("lightness grows with the value, in even steps") {
+  for (int i = 1; i <= 64; ++i) {
+    const double step = lightness(viridis(i / 64.0)) - lightness(viridis((i - 1) / 64.0));
+    // L* runs from about 15 to 91: 1.2 per step. Viridis is even to about a third, 8-bit channels add some 0.2.
+    CHECK(step > 0.6);
+    CHECK(step < 1.8);
+  }
+}
+
+TEST_CASE("each cell is one block in the colour of its value") {
+  HeatMap map = plain_map(3, 3, 0.0);
+  map.range = ValueRange{-100.0, -49.0};
+  for (std::size_t i = 0; i < 9; ++i) map.values[i] = -100.0 + 51.0 * viridis_table[i].index / 255.0;
+  const HeatMapLayout layout = heat_map_layout(map);
+  const Png png = drawn(map);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const PixelRect area = cell_area(map, layout, i % 3, i / 3);
+    REQUIRE(area.width > 100);
+    CHECK(area.width == area.height);
+    const Colour colour = png.at(area.x, area.y);
+    CHECK(difference(colour, viridis_table[i].colour) <= 5);  // as in the test of the table
+    for (int y = area.y; y < area.bottom(); ++y) {
+      for (int x = area.x; x < area.right(); ++x) REQUIRE(png.at(x, y) == colour);
+    }
+  }
+}
+
+TEST_CASE("values beyond the range take its end colours, and the bar says so by a tip") {
+  HeatMap map = plain_map(2, 1, -60.0);
+  map.range = ValueRange{-70.0, -50.0};
+  const HeatMapLayout layout = heat_map_layout(map);
+  const int middle = layout.bar.x + layout.bar.width / 2;
+  const Png without = drawn(map);
+  CHECK(without.at(middle, layout.bar.bottom() + 4) == Colour{255, 255, 255});
+  CHECK(without.at(middle, layout.bar.y - 5) == Colour{255, 255, 255});
+  map.values = {-300.0, 20.0};
+  const Png png = drawn(map);
+  CHECK(colour_at(png, layout, 0.0, 0.0) == viridis(0.0));
+  CHECK(colour_at(png, layout, 1.0, 0.0) == viridis(1.0));
+  CHECK(png.at(middle, layout.bar.bottom() + 4) == viridis(0.0));
+  CHECK(png.at(middle, layout.bar.y - 5) == viridis(1.0));
+}
+
+TEST_CASE("the colour bar runs from the lowest colour to the highest without a step back") {
+  const HeatMap map = room();
+  const HeatMapLayout layout = heat_map_layout(map);
+  const Png png = drawn(map);
+  const int x = layout.bar.x + layout.bar.width / 2;
+  for (int y = layout.bar.y + 1; y < layout.bar.bottom(); ++y) {
+    // Rounding of a channel to 8 bits can take back at most 0.3 of lightness.
+    CHECK(lightness(png.at(x, y)) <= lightness(png.at(x, y - 1)) + 0.3);
+  }
+  CHECK(difference(png.at(x, layout.bar.y), {253, 231, 37}) <= 2);
+  CHECK(difference(png.at(x, layout.bar.bottom() - 1), {68, 1, 84}) <= 2);
+}
+
+TEST_CASE("metres are as long upwards as sideways, and cells are whole pixels") {
+  const HeatMap map = room();
+  const HeatMapLayout layout = heat_map_layout(map);
+  CHECK(layout.to_scale);
+  CHECK(layout.plot.width == 800);  // 40 cells of 20 pixels
+  CHECK(layout.plot.height == 480);
+  CHECK(layout.horizontal_px_per_m == layout.vertical_px_per_m);
+  CHECK(std::max(layout.width_px, layout.height_px) <= 1100);
+  HeatMap oblong = plain_map(10, 30, -60.0);
+  oblong.spacing_x_m = 0.73;
+  oblong.spacing_y_m = 0.31;
+  const HeatMapLayout other = heat_map_layout(oblong);
+  // The sides are rounded to whole pixels, half a pixel of some 600 to 800.
+  CHECK(other.horizontal_px_per_m == doctest::Approx(other.vertical_px_per_m).epsilon(0.001));
+}
+
+TEST_CASE("empty cells are grey, cells in objects are hatched, and the legend tells of what occurs") {
+  HeatMap map = room();
+  CHECK(count_colour(drawn(map), no_value_grey) == 0);
+  const int plain_height = heat_map_layout(map).height_px;
+  map.values[5 * 40 + 7] = no_value;
+  map.values[6 * 40 + 7] = -std::numeric_limits<double>::infinity();
+  const HeatMapLayout layout = heat_map_layout(map);
+  CHECK(layout.height_px > plain_height);
+  const Png grey = drawn(map);
+  CHECK(colour_at(grey, layout, 3.75, 2.75) == no_value_grey);
+  CHECK(colour_at(grey, layout, 3.75, 3.25) == no_value_grey);
+  CHECK(count_colour(grey, no_value_grey) > 2 * 20 * 20);  // the two cells and the sample in the legend
+
+  map.hatched.assign(map.values.size(), 0);
+  map.hatched[10 * 40 + 20] = 1;
+  const Png hatched = drawn(map);
+  const PixelRect area = cell_area(map, heat_map_layout(map), 20, 10);
+  int lines = 0;
+  int ground = 0;
+  for (int y = area.y; y < area.bottom(); ++y) {
+    for (int x = area.x; x < area.right(); ++x) {
+      lines += hatched.at(x, y) == Colour{105, 105, 105} ? 1 : 0;
+      ground += hatched.at(x, y) == Colour{245, 245, 245} ? 1 : 0;
+    }
+  }
+  CHECK(lines + ground == 400);
+  CHECK(lines == doctest::Approx(400.0 / 6.0).epsilon(0.1));        // one of six, but for the cut at the rim
+  CHECK(colour_at(hatched, layout, 10.75, 5.25) != no_value_grey);  // the neighbour keeps its colour
+}
+
+TEST_CASE("a value in a hatched cell counts for nothing") {
+  HeatMap map = plain_map(10, 10, -60.0);
+  map.hatched.assign(100, 0);
+  map.hatched[3] = 1;
+  map.values[3] = 500.0;
+  CHECK(default_value_range(map)->high <= -55.0);
+}
+
+TEST_CASE("walls are dark lines within the plot") {
+  HeatMap map = room();
+  map.walls_m = {{-100.0, 6.0, 100.0, 6.0}, {4.0, 1.0, 9.0, 4.0}};
+  const HeatMapLayout layout = heat_map_layout(map);
+  const Png png = drawn(map);
+  for (double x_m = 0.1; x_m < 20.0; x_m += 0.7) {
+    const PixelPoint place = layout.point(x_m, 6.0);
+    CHECK(lightness(png.at(static_cast<int>(place.x), static_cast<int>(std::lround(place.y)))) < 10.0);
+  }
+  // Of the pixels around a point of a slanting wall at least one is covered in full.
+  double darkest = 100.0;
+  const PixelPoint slanting = layout.point(6.5, 2.5);
+  for (int i = 0; i < 9; ++i) {
+    darkest = std::min(
+        darkest, lightness(png.at(static_cast<int>(slanting.x) - 1 + i % 3, static_cast<int>(slanting.y) - 1 + i / 3)));
+  }
+  CHECK(darkest < 10.0);
+  const double untouched =
+      lightness(viridis((map.values[8 * 40 + 13] - layout.range->low) / (layout.range->high - layout.range->low)));
+  CHECK(lightness(colour_at(png, layout, 6.75, 4.25)) == untouched);
+  // Left of the frame and its tick marks nothing of the long wall is seen.
+  const PixelPoint edge = layout.point(0.0, 6.0);
+  CHECK(png.at(static_cast<int>(edge.x) - 12, static_cast<int>(edge.y) - 12) == Colour{255, 255, 255});
+  CHECK(png.at(layout.plot.right() + 4, static_cast<int>(edge.y)) == Colour{255, 255, 255});
+}
+
+TEST_CASE("transmitters are marked where they stand") {
+  HeatMap map = room();
+  map.transmitters = {{5.0, 5.0, "tx1"}, {19.9, 11.9, "tx2"}, {500.0, 5.0, "far"}};
+  const HeatMapLayout layout = heat_map_layout(map);
+  const Png png = drawn(map);
+  const Colour centre = colour_at(png, layout, 5.0, 5.0);
+  CHECK(centre.red > 180);
+  CHECK(centre.green < 80);
+  CHECK(colour_at(png, layout, 19.9, 11.9) == centre);
+  // The label of the second one finds its place to the lower left, the other ways being cut by the rim.
+  const PixelPoint corner = layout.point(19.9, 11.9);
+  CHECK(groups_of_ink(png, {static_cast<int>(corner.x) - 50, static_cast<int>(corner.y) + 10, 38, 20}, 20) == 1);
+  HeatMap bare = room();
+  const Png without = drawn(bare);
+  CHECK(count_colour(without, centre) == 0);
+}
+
+TEST_CASE("labels of transmitters do not cover one another or a marker") {
+  HeatMap map = room();
+  for (int i = 0; i < 60; ++i) {
+    map.transmitters.push_back({8.0 + 0.35 * (i % 8), 4.0 + 0.35 * (i / 8), "transmitter " + std::to_string(i)});
+  }
+  const HeatMapLayout layout = heat_map_layout(map);
+  const Png png = drawn(map);
+  const Colour centre = colour_at(png, layout, 8.0, 4.0);
+  for (const auto& transmitter : map.transmitters) {
+    CHECK(colour_at(png, layout, transmitter.x_m, transmitter.y_m) == centre);
+  }
+}
+
+TEST_CASE("a label gives way to one that was placed before") {
+  HeatMap map = room();
+  map.values.assign(map.values.size(), 0.0);
+  map.range = ValueRange{-1.0, 0.0};  // all cells are bright
+  map.transmitters = {{10.0, 5.0, "first"}};
+  HeatMap both = map;
+  both.transmitters.push_back({10.0, 5.5, "next"});  // 20 pixels higher: beside it the label would reach the first one
+  const HeatMapLayout layout = heat_map_layout(both);
+  const PixelPoint place = layout.point(10.0, 5.5);
+  const PixelRect left{static_cast<int>(place.x) - 62, static_cast<int>(place.y) - 9, 50, 18};
+  CHECK(groups_of_ink(drawn(map), left, 20) == 0);
+  CHECK(groups_of_ink(drawn(both), left, 20) == 1);
+}
+
+TEST_CASE("every tick has its own label, apart from its neighbours") {
+  for (const double origin_m : {0.0, -1000.0, 691'000.25, 5'334'000.0}) {
+    for (const double spacing_m : {0.05, 0.1, 1.0, 7.3, 250.0}) {
+      HeatMap map = plain_map(90, 30, -60.0);
+      map.origin_x_m = origin_m;
+      map.spacing_x_m = spacing_m;
+      map.spacing_y_m = spacing_m;
+      const HeatMapLayout layout = heat_map_layout(map);
+      const Png png = drawn(map);
+      const int ticks = groups_of_ink(png, {layout.plot.x - 1, layout.plot.bottom() + 4, layout.plot.width + 2, 1}, 2);
+      // Digits of one label are at most 10 pixels apart, labels at least 20.
+      const int labels = groups_of_ink(png, {0, layout.plot.bottom() + 14, layout.bar.x - 8, 16}, 15);
+      CHECK(ticks >= 2);
+      CHECK(ticks <= 14);
+      CHECK(labels == ticks);
+    }
+  }
+}
+
+TEST_CASE("the colour range runs from the second percentile to the maximum, rounded outwards to 5 dB") {
+  HeatMap map = plain_map(100, 1, 0.0);
+  for (std::size_t i = 0; i < 100; ++i) map.values[i] = -101.5 + static_cast<double>(i);  // -101.5 ... -2.5
+  ValueRange range = *default_value_range(map);
+  CHECK(range.low == -100.0);  // the third lowest of 100 is -99.5
+  CHECK(range.high == 0.0);
+  map.values[0] = -400.0;  // one deep fade changes nothing
+  CHECK(default_value_range(map)->low == -100.0);
+  map.values.assign(100, -60.0);
+  range = *default_value_range(map);
+  CHECK(range.low == -65.0);
+  CHECK(range.high == -55.0);
+  map.values.assign(100, no_value);
+  CHECK_FALSE(default_value_range(map).has_value());
+  map.unit = "ns";
+  for (std::size_t i = 0; i < 100; ++i) map.values[i] = 0.031 * static_cast<double>(i);  // 0.062 ... 3.069
+  range = *default_value_range(map);
+  CHECK(range.low == 0.0);  // a tenth of the span, rounded: 0.5
+  CHECK(range.high == 3.5);
+}
+
+TEST_CASE("odd maps give a sound picture") {
+  std::vector<HeatMap> maps;
+  maps.push_back(plain_map(1, 1, -60.0));
+  maps.push_back(plain_map(1, 1, no_value));
+  maps.push_back(plain_map(500, 1, -60.0));
+  maps.push_back(plain_map(1, 500, -60.0));
+  maps.push_back(plain_map(1'000'000, 1, -60.0));
+  maps.push_back(plain_map(1000, 1000, no_value));
+  maps.push_back(plain_map(4000, 20, -60.0));
+  maps.push_back(plain_map(1, 1, no_value));
+  maps.back().hatched = {1};
+  maps.back().origin_y_m = 5'334'000.3;  // long labels leave little room for the legend
+  maps.back().transmitters = {{50.0, 0.0, "far"}};
+  maps.push_back(plain_map(2, 2, 1e300));
+  maps.push_back(plain_map(2, 2, -1e100));
+  maps.push_back(plain_map(2, 2, 0.0));
+  maps.push_back(plain_map(30, 20, 1e-9));
+  maps.back().unit = "s";
+  maps.push_back(plain_map(30, 20, -60.0));
+  maps.back().values[0] = std::nextafter(-60.0, 0.0);
+  maps.push_back(plain_map(30, 20, -60.0));
+  maps.back().values = std::vector<double>(600, 1e99);
+  maps.back().values[0] = -1e99;
+  maps.push_back(plain_map(30, 20, -60.0));
+  maps.back().hatched.assign(600, 1);
+  maps.push_back(plain_map(30, 20, -60.0));
+  maps.back().origin_x_m = 1e9;
+  maps.back().spacing_x_m = 0.01;
+  maps.push_back(plain_map(30, 20, -60.0));
+  maps.back().spacing_x_m = 1e9;
+  maps.back().spacing_y_m = 1e-6;
+  maps.push_back(plain_map(30, 20, -60.0));
+  maps.back().range = ValueRange{-60.0, std::nextafter(-60.0, 0.0)};
+  maps.push_back(plain_map(30, 20, -60.0));
+  maps.back().title = std::string(500, 'T');
+  maps.back().label = std::string(50, 'l');
+  maps.back().transmitters = {{5.0, 5.0, std::string(300, 'x')}, {5.0, 6.0, ""}};
+  for (const HeatMap& map : maps) {
+    CAPTURE(map.columns);
+    CAPTURE(map.rows);
+    const HeatMapLayout layout = heat_map_layout(map);
+    const Image image = draw_heat_map(map);
+    CHECK(image.width() >= 300);
+    CHECK(image.height() >= 150);
+    CHECK(image.width() <= 2300);
+    CHECK(image.height() <= 2000);
+    CHECK(intersection(layout.plot, image.bounds()) == layout.plot);
+    CHECK(intersection(layout.bar, image.bounds()) == layout.bar);
+    CHECK(layout.plot.right() < image.width());
+    // Nothing is cut at the rim: a seam of eight pixels is left blank.
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 0; x < image.width(); ++x) {
+        const bool in_seam = std::min({x, y, image.width() - 1 - x, image.height() - 1 - y}) < 8;
+        if (in_seam) REQUIRE(image.pixel(x, y) == Colour{255, 255, 255});
+      }
+    }
+  }
+}
+
+TEST_CASE("a million cells are drawn one by one") {
+  HeatMap map = plain_map(1000, 1000, 0.0);
+  map.range = ValueRange{0.0, 1.0};
+  for (std::size_t i = 0; i < map.values.size(); ++i) map.values[i] = static_cast<double>((i % 1000 + i / 1000) % 2);
+  const HeatMapLayout layout = heat_map_layout(map);
+  REQUIRE(layout.plot.width == 1000);
+  const Image image = draw_heat_map(map);
+  long wrong = 0;
+  for (int y = 0; y < 1000; ++y) {
+    for (int x = 0; x < 1000; ++x) {
+      const double value = (x + (999 - y)) % 2;
+      wrong += image.pixel(layout.plot.x + x, layout.plot.y + y) == viridis(value) ? 0 : 1;
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("maps that do not fit together are refused") {
+  const auto refused = [](const auto& change) {
+    HeatMap map = plain_map(4, 3, -60.0);
+    change(map);
+    CHECK_THROWS_AS(draw_heat_map(map), std::invalid_argument);
+  };
+  refused([](HeatMap& map) { map.columns = 0; });
+  refused([](HeatMap& map) { map.rows = 0; });
+  refused([](HeatMap& map) { map.values.push_back(0.0); });
+  refused([](HeatMap& map) { map.columns = std::numeric_limits<std::size_t>::max(); });
+  refused([](HeatMap& map) { map.hatched.resize(3); });
+  refused([](HeatMap& map) { map.spacing_x_m = 0.0; });
+  refused([](HeatMap& map) { map.spacing_y_m = -1.0; });
+  refused([](HeatMap& map) { map.spacing_y_m = no_value; });
+  refused([](HeatMap& map) { map.origin_x_m = no_value; });
+  refused([](HeatMap& map) { map.origin_y_m = 1e15; });
+  refused([](HeatMap& map) { map.range = ValueRange{1.0, 1.0}; });
+  refused([](HeatMap& map) { map.range = ValueRange{no_value, 1.0}; });
+  refused([](HeatMap& map) { map.walls_m.push_back({0.0, 0.0, no_value, 1.0}); });
+  refused([](HeatMap& map) { map.transmitters.push_back({no_value, 0.0, "tx"}); });
+}
+
+TEST_CASE("the same map gives the same bytes, and a place that cannot be written keeps nothing") {
+  const TemporaryFolder folder;
+  write_heat_map_png(room(), folder / "a.png");
+  OutputFolder results(folder / "results");
+  write_heat_map_png(room(), results.open("b.png"));
+  results.commit();
+  CHECK(dcem::test::file_bytes(folder / "a.png") == dcem::test::file_bytes(folder / "results/b.png"));
+  CHECK_THROWS_AS(write_heat_map_png(room(), folder / "absent/map.png"), OutputError);
+  CHECK(folder.names() == std::vector<std::string>{"a.png", "results"});
+}
