@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -38,7 +39,11 @@ void parallel_for(std::size_t count, unsigned threads, Body&& body) {
     }
   };
   std::vector<std::thread> pool;
-  for (unsigned worker = 1; worker < workers; ++worker) pool.emplace_back(work, worker);
+  try {
+    for (unsigned worker = 1; worker < workers; ++worker) pool.emplace_back(work, worker);
+  } catch (const std::system_error&) {
+    // The system gives no more threads: those that are there, and this one, do the work.
+  }
   work(0);
   for (std::thread& thread : pool) thread.join();
   if (failure) std::rethrow_exception(failure);

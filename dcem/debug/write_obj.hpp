@@ -1,5 +1,6 @@
 #pragma once
 /// Paths and boxes as plain Wavefront OBJ, to be looked at in any viewer.
+#include <limits>
 #include <ostream>
 #include <span>
 
@@ -10,7 +11,9 @@
 namespace dcem::debug {
 
 inline void write_vertex(std::ostream& out, const Vec3& point_m) {
+  const auto before = out.precision(std::numeric_limits<double>::max_digits10);
   out << "v " << point_m.x << ' ' << point_m.y << ' ' << point_m.z << '\n';
+  out.precision(before);
 }
 
 /// One polyline through the two ends and all points of a path. Vertices are numbered from the end of the file (negative

@@ -35,6 +35,7 @@ struct Aabb {
            box.min.z <= max.z;
   }
 
+  /// Precondition: the box is not empty.
   Vector3<Scalar> center() const { return (min + max) * Scalar(0.5); }
   Vector3<Scalar> extent() const { return empty() ? Vector3<Scalar>(0) : max - min; }
 

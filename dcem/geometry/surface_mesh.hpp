@@ -35,6 +35,7 @@ struct SurfaceReport {
   std::size_t crowded_edges = 0;           ///< edges of more than two triangles
   std::size_t uneven_sets = 0;             ///< coplanar sets that bend too far and fell back to their triangles
   std::size_t closed_shells = 0;           ///< connected sets of triangles without an open or crowded edge
+  std::size_t standing_shells = 0;         ///< the same but for open edges at their foot: houses without a floor
 };
 
 struct SurfaceMesh {
@@ -42,8 +43,10 @@ struct SurfaceMesh {
   std::vector<Vec3> vertices_m;             ///< in lexicographic order
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> facet_of_triangle;
-  /// Which closed shell a triangle belongs to, counted from 1; 0 where its connected set has open or crowded edges.
+  /// Which enclosing shell a triangle belongs to, counted from 1; 0 where its connected set has crowded edges, or open
+  /// ones elsewhere than at its foot.
   std::vector<std::uint32_t> shell_of_triangle;
+  std::vector<double> shell_foot_m;  ///< lowest z of each enclosing shell; entry 0 is shell 1
   std::vector<Facet> facets;
   std::vector<Vec3> hull_points_m;  ///< corners of each facet's convex hull, on its plane, in order around it
   SurfaceReport report;

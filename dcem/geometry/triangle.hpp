@@ -20,7 +20,7 @@ using TriangleCorners = std::array<Vec3, 3>;
 /// meets all of them (edges belong to the triangle). Needs a*b − c*d evaluated without contraction.
 class WatertightRay {
  public:
-  /// Precondition: the direction is not zero.
+  /// Precondition: the direction's length is at least 1e-150.
   explicit WatertightRay(const Ray<double>& ray) : origin_(ray.origin) {
     const Vec3 size = glm::abs(ray.direction);
     z_ = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);

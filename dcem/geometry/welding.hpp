@@ -19,8 +19,8 @@ struct WeldedVertices {
   std::vector<std::uint32_t> new_index;  ///< for each vertex handed in, its index in `vertices_m`
 };
 
-/// Joins vertices within `tolerance_m`, transitively: a chain of close vertices is one vertex. Of each cluster the
-/// lexicographically smallest vertex stands for all, so nothing depends on the order of the input.
+/// Joins vertices no further apart than `tolerance_m`, transitively: a chain of close vertices is one vertex. Of each
+/// cluster the lexicographically smallest vertex stands for all, so nothing depends on the order of the input.
 inline WeldedVertices weld(const std::vector<Vec3>& vertices_m, double tolerance_m);
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -96,7 +96,10 @@ class WeldGrid {
 }  // namespace detail
 
 inline WeldedVertices weld(const std::vector<Vec3>& vertices_m, double tolerance_m) {
-  const detail::DistinctVertices distinct = detail::distinct_vertices(vertices_m);
+  std::vector<Vec3> unsigned_zeros_m = vertices_m;
+  for (Vec3& vertex : unsigned_zeros_m)
+    vertex += Vec3(0.0);  // −0 is 0: they compare equal, so either might have stayed
+  const detail::DistinctVertices distinct = detail::distinct_vertices(unsigned_zeros_m);
   DisjointSets sets(distinct.vertices_m.size());
   if (tolerance_m > 0.0) {
     const detail::WeldGrid grid(distinct.vertices_m, tolerance_m);

@@ -37,6 +37,9 @@ struct Placement {
   friend bool operator==(const Placement&, const Placement&) = default;
 };
 
+/// Throws std::invalid_argument where a number is not finite.
+void validate(const Placement& placement);
+
 /// Throws std::invalid_argument where a number is not finite, a waypoint is missing or times do not increase.
 void validate(const Motion& motion);
 
@@ -53,7 +56,7 @@ inline bool is_finite_pose(const Pose& pose) {
          std::isfinite(pose.roll_rad);
 }
 
-/// The difference of two angles in (−π, π].
+/// The difference of two angles in (−π, π]: half a turn goes to the left.
 inline double shortest_arc_rad(double from_rad, double to_rad) {
   const double difference = std::remainder(to_rad - from_rad, 2.0 * pi);
   return difference == -pi ? pi : difference;
@@ -63,12 +66,14 @@ inline Placement placement_between(const WaypointMotion::Waypoint& from, const W
                                    double time_s) {
   const double duration_s = to.time_s - from.time_s;
   const double share = (time_s - from.time_s) / duration_s;
+  const bool arrived = time_s == to.time_s;  // then the pose is the waypoint's own, to the last bit
   const double yaw_arc = shortest_arc_rad(from.pose.yaw_rad, to.pose.yaw_rad);
   const double pitch_arc = shortest_arc_rad(from.pose.pitch_rad, to.pose.pitch_rad);
   const double roll_arc = shortest_arc_rad(from.pose.roll_rad, to.pose.roll_rad);
-  const Pose pose{from.pose.position_m + share * (to.pose.position_m - from.pose.position_m),
-                  from.pose.yaw_rad + share * yaw_arc, from.pose.pitch_rad + share * pitch_arc,
-                  from.pose.roll_rad + share * roll_arc};
+  const Pose between{from.pose.position_m + share * (to.pose.position_m - from.pose.position_m),
+                     from.pose.yaw_rad + share * yaw_arc, from.pose.pitch_rad + share * pitch_arc,
+                     from.pose.roll_rad + share * roll_arc};
+  const Pose& pose = arrived ? to.pose : between;
   return {pose,
           {(to.pose.position_m - from.pose.position_m) / duration_s,
            angular_velocity(pose, yaw_arc / duration_s, pitch_arc / duration_s, roll_arc / duration_s)}};
@@ -111,6 +116,13 @@ inline void validate(const WaypointMotion& motion) {
 }
 
 }  // namespace detail
+
+inline void validate(const Placement& placement) {
+  if (!detail::is_finite_pose(placement.pose) || !is_finite(placement.velocity.linear_mps) ||
+      !is_finite(placement.velocity.angular_rad_per_s)) {
+    throw std::invalid_argument("pose: a number is not finite");
+  }
+}
 
 inline void validate(const Motion& motion) {
   std::visit([](const auto& kind) { detail::validate(kind); }, motion);

@@ -1,11 +1,9 @@
 #pragma once
 /// The world: materials, bodies and devices. The only state that changes from frame to frame.
 ///
-/// Body 0 is the standing scenery, every object is a body of its own. All vertices, triangles and facets of all bodies
-/// stand in common arrays, body after body, in world coordinates of the current frame, so a facet id or a triangle
-/// index names one thing for as long as the scene lives.
-#include <algorithm>
+/// Body 0 is the standing scenery, every object is a body of its own.
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -19,30 +17,18 @@
 #include "dcem/core/error.hpp"
 #include "dcem/core/ids.hpp"
 #include "dcem/em/material.hpp"
-#include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/facet_builder.hpp"
 #include "dcem/scene/device.hpp"
 #include "dcem/scene/frame.hpp"
+#include "dcem/scene/world_geometry.hpp"
 
 namespace dcem {
 
-/// A facet of the world in the current frame.
-struct WorldFacet {
-  Plane plane;
-  MaterialId material;
-  BodyId body;
-  std::uint32_t first_triangle = 0, triangle_count = 0;
-  std::uint32_t first_hull_point = 0, hull_point_count = 0;
-  bool transmits = false;  ///< a leg may cross it; an opaque facet blocks
-  bool present = true;     ///< false while its body is not there
-};
-
-/// The standing scenery or an object: where its parts stand in the common arrays.
+/// The standing scenery or an object.
 struct Body {
   std::string id;  ///< empty for the scenery
   Motion motion;
   SurfaceMesh mesh;  ///< in local coordinates
-  std::uint32_t first_vertex = 0, first_triangle = 0, first_facet = 0, first_hull_point = 0;
 };
 
 /// A device at an instant.
@@ -56,7 +42,10 @@ struct DeviceState {
 
 class Scene {
  public:
-  explicit Scene(SurfaceSettings settings = {}) : settings_(settings) { bodies_.push_back({"", LinearMotion{}, {}}); }
+  explicit Scene(SurfaceSettings settings = {}) : settings_(settings) {
+    validate(settings);
+    append({"", LinearMotion{}, {}});
+  }
 
   // Building. Each function throws std::invalid_argument, naming what is wrong, and then has changed nothing.
 
@@ -91,23 +80,22 @@ class Scene {
   std::span<const Device> transmitters() const { return transmitters_; }
   std::span<const Device> receivers() const { return receivers_; }
 
-  std::span<const WorldFacet> facets() const { return facets_; }
-  const WorldFacet& facet(FacetId id) const { return facets_[id.value]; }
-  std::span<const Vec3> vertices_m() const { return vertices_m_; }
-  std::span<const std::array<std::uint32_t, 3>> triangles() const { return triangles_; }
-  FacetId facet_of_triangle(std::uint32_t triangle) const { return facet_of_triangle_[triangle]; }
-  /// Which closed shell of its body a triangle belongs to, counted from 1; 0: none.
-  std::uint32_t shell_of_triangle(std::uint32_t triangle) const { return shell_of_triangle_[triangle]; }
-  std::span<const Vec3> hull_m(const WorldFacet& facet) const {
-    return std::span(hull_points_m_).subspan(facet.first_hull_point, facet.hull_point_count);
-  }
-  std::array<Vec3, 3> corners_m(std::uint32_t triangle) const {
-    const auto& index = triangles_[triangle];
-    return {vertices_m_[index[0]], vertices_m_[index[1]], vertices_m_[index[2]]};
-  }
-
+  const WorldGeometry& world() const { return world_; }
+  std::span<const WorldFacet> facets() const { return world_.facets(); }
+  const WorldFacet& facet(FacetId id) const { return world_.facets()[id.value]; }
+  std::span<const Vec3> vertices_m() const { return world_.vertices_m(); }
+  std::span<const std::array<std::uint32_t, 3>> triangles() const { return world_.triangles(); }
+  std::array<Vec3, 3> corners_m(std::uint32_t triangle) const { return world_.corners_m(triangle); }
+  FacetId facet_of_triangle(std::uint32_t triangle) const { return world_.facet_of_triangle(triangle); }
+  /// Which enclosing shell of its body a triangle belongs to, counted from 1; 0: none.
+  std::uint32_t shell_of_triangle(std::uint32_t triangle) const { return world_.shell_of_triangle(triangle); }
+  /// Corners of a facet's convex hull, in order around it.
+  std::span<const Vec3> hull_m(const WorldFacet& facet) const { return world_.hull_m(facet); }
   /// Boxes of all triangles, in the order of `triangles()`; empty for triangles of an absent body.
-  std::span<const Aabb<double>> triangle_boxes() const { return boxes_; }
+  std::span<const Aabb<double>> triangle_boxes() const { return world_.triangle_boxes(); }
+  /// The number of a facet within its body: it does not change when other bodies come or go.
+  std::uint32_t facet_number(FacetId id) const { return id.value - world_.first(facet(id).body).facet; }
+
   /// Index of the first triangle of each body: the groups of the tree.
   std::vector<std::uint32_t> first_triangles() const;
   /// The triangles of a body as a range of indices [first, last).
@@ -115,27 +103,34 @@ class Scene {
 
  private:
   void append(Body body);
-  void place(BodyId id);
-  std::vector<MaterialId> resolve_materials(const SurfaceMesh& mesh) const;
+  std::vector<SurfaceMaterial> resolve_materials(const SurfaceMesh& mesh) const;
   void check_device(const Device& device, const std::unordered_set<std::string>& ids) const;
 
   SurfaceSettings settings_;
   std::vector<Material> materials_;
   std::vector<Body> bodies_;
-  std::vector<BodyState> states_{BodyState{}};
+  std::vector<BodyState> states_;
   std::vector<Device> transmitters_, receivers_;
   std::unordered_set<std::string> transmitter_ids_, receiver_ids_;
   std::unordered_map<std::string, BodyId> body_by_id_;
-
-  std::vector<WorldFacet> facets_;
-  std::vector<Vec3> vertices_m_, hull_points_m_;
-  std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<FacetId> facet_of_triangle_;
-  std::vector<std::uint32_t> shell_of_triangle_;
-  std::vector<Aabb<double>> boxes_;
+  WorldGeometry world_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+/// Does something, and puts `name` before the message where it throws std::invalid_argument.
+template <typename Action>
+void naming(const std::string& name, Action&& action) {
+  try {
+    action();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(name + ": " + error.what());
+  }
+}
+
+}  // namespace detail
 
 inline MaterialId Scene::add_material(Material material) {
   validate(material);
@@ -159,96 +154,53 @@ inline std::optional<BodyId> Scene::find_body(const std::string& id) const {
 }
 
 inline void Scene::set_scenery(const TriangleMesh& mesh) {
-  if (bodies_.size() != 1 || !triangles_.empty()) {
+  if (bodies_.size() != 1 || !triangles().empty()) {
     throw std::invalid_argument("scene: the scenery is set once, before any object");
   }
   Body scenery{"", LinearMotion{}, build_surface_mesh(mesh, settings_)};
   resolve_materials(scenery.mesh);
   bodies_.clear();
   states_.clear();
+  world_.clear();
   append(std::move(scenery));
 }
 
 inline BodyId Scene::add_object(std::string id, const TriangleMesh& mesh, Motion motion) {
-  validate(motion);
+  const std::string name = "object '" + id + "'";
   if (id.empty() || find_body(id)) {
-    throw std::invalid_argument("object '" + id + "': expected an id that is not empty and not there yet");
+    throw std::invalid_argument(name + ": expected an id that is not empty and not there yet");
   }
-  Body body{std::move(id), std::move(motion), build_surface_mesh(mesh, settings_)};
-  resolve_materials(body.mesh);
+  Body body{std::move(id), std::move(motion), {}};
+  detail::naming(name, [&] {
+    validate(body.motion);
+    body.mesh = build_surface_mesh(mesh, settings_);
+    resolve_materials(body.mesh);
+  });
   body_by_id_.emplace(body.id, BodyId(bodies_.size()));
   append(std::move(body));
   return BodyId(bodies_.size() - 1);
 }
 
-inline std::vector<MaterialId> Scene::resolve_materials(const SurfaceMesh& mesh) const {
-  std::vector<MaterialId> ids(mesh.material_names.size());
+inline std::vector<SurfaceMaterial> Scene::resolve_materials(const SurfaceMesh& mesh) const {
+  std::vector<SurfaceMaterial> resolved(mesh.material_names.size());
   for (const Facet& facet : mesh.facets) {
-    const std::optional<MaterialId> id = find_material(mesh.material_names[facet.material]);
-    if (!id) {
-      throw std::invalid_argument("material '" + mesh.material_names[facet.material] +
-                                  "' is used but not defined; add it first");
-    }
-    ids[facet.material] = *id;
+    const std::string& name = mesh.material_names[facet.material];
+    const std::optional<MaterialId> id = find_material(name);
+    if (!id) throw std::invalid_argument("material '" + name + "' is used but not defined; add it first");
+    resolved[facet.material] = {*id, transmits(material(*id))};
   }
-  return ids;
+  return resolved;
 }
 
 inline void Scene::append(Body body) {
-  const BodyId id(bodies_.size());
-  const std::vector<MaterialId> material_of = resolve_materials(body.mesh);
-  body.first_vertex = static_cast<std::uint32_t>(vertices_m_.size());
-  body.first_triangle = static_cast<std::uint32_t>(triangles_.size());
-  body.first_facet = static_cast<std::uint32_t>(facets_.size());
-  body.first_hull_point = static_cast<std::uint32_t>(hull_points_m_.size());
-  for (const Facet& local : body.mesh.facets) {
-    facets_.push_back({local.plane, material_of[local.material], id, body.first_triangle + local.first_triangle,
-                       local.triangle_count, body.first_hull_point + local.first_hull_point, local.hull_point_count,
-                       transmits(material(material_of[local.material])), true});
-  }
-  for (std::size_t index = 0; index < body.mesh.triangles.size(); ++index) {
-    const auto& local = body.mesh.triangles[index];
-    triangles_.push_back({body.first_vertex + local[0], body.first_vertex + local[1], body.first_vertex + local[2]});
-    facet_of_triangle_.push_back(FacetId(body.first_facet + body.mesh.facet_of_triangle[index]));
-    shell_of_triangle_.push_back(body.mesh.shell_of_triangle[index]);
-  }
-  vertices_m_.insert(vertices_m_.end(), body.mesh.vertices_m.begin(), body.mesh.vertices_m.end());
-  hull_points_m_.insert(hull_points_m_.end(), body.mesh.hull_points_m.begin(), body.mesh.hull_points_m.end());
-  boxes_.resize(triangles_.size());
-  states_.push_back({true, placement_at(body.motion, 0.0)});
+  const BodyState state{true, placement_at(body.motion, 0.0)};
+  world_.append(body.mesh, resolve_materials(body.mesh), state);
+  states_.push_back(state);
   bodies_.push_back(std::move(body));
-  place(id);
-}
-
-inline void Scene::place(BodyId id) {
-  const Body& body = bodies_[id.value];
-  const BodyState& state = states_[id.value];
-  const Mat3 rotation = rotation_matrix(state.placement.pose);
-  const auto to_world = [&](const Vec3& local) { return state.placement.pose.position_m + rotation * local; };
-  const bool stands = id == BodyId{};  // the scenery's coordinates are the world's, to the last bit
-  for (std::size_t index = 0; index < body.mesh.vertices_m.size() && !stands; ++index) {
-    vertices_m_[body.first_vertex + index] = to_world(body.mesh.vertices_m[index]);
-  }
-  for (std::size_t index = 0; index < body.mesh.hull_points_m.size() && !stands; ++index) {
-    hull_points_m_[body.first_hull_point + index] = to_world(body.mesh.hull_points_m[index]);
-  }
-  for (std::size_t index = 0; index < body.mesh.facets.size(); ++index) {
-    WorldFacet& facet = facets_[body.first_facet + index];
-    const Plane& local = body.mesh.facets[index].plane;
-    if (!stands) facet.plane = {to_world(local.point_m), rotation * local.normal};
-    facet.present = state.present;
-  }
-  for (std::size_t index = 0; index < body.mesh.triangles.size(); ++index) {
-    Aabb<double> box;
-    const auto triangle = static_cast<std::uint32_t>(body.first_triangle + index);
-    if (state.present) {
-      for (const Vec3& corner : corners_m(triangle)) box.extend(corner);
-    }
-    boxes_[triangle] = box;
-  }
 }
 
 inline Frame Scene::frame_at(double time_s, std::size_t index) const {
+  if (!std::isfinite(time_s)) throw std::invalid_argument("frame: its time is not finite");
   Frame frame{index, time_s, {}};
   for (const Body& body : bodies_) frame.bodies.push_back({true, placement_at(body.motion, time_s)});
   return frame;
@@ -258,12 +210,16 @@ inline ChangeSet Scene::apply(const Frame& frame) {
   if (frame.bodies.size() != bodies_.size()) {
     throw std::invalid_argument("frame: expected one state per body of the scene");
   }
+  for (std::size_t index = 1; index < bodies_.size(); ++index) {
+    if (frame.bodies[index] == states_[index]) continue;
+    detail::naming("object '" + bodies_[index].id + "'", [&] { validate(frame.bodies[index].placement); });
+  }
   ChangeSet changes;
-  for (std::size_t index = 0; index < bodies_.size(); ++index) {
+  for (std::size_t index = 1; index < bodies_.size(); ++index) {  // the scenery stands
     const BodyState before = std::exchange(states_[index], frame.bodies[index]);
     const BodyState& now = states_[index];
-    if (index == 0 || (before.present == now.present && before.placement.pose == now.placement.pose)) continue;
-    place(BodyId(index));
+    if (before.present == now.present && before.placement.pose == now.placement.pose) continue;
+    world_.place(BodyId(index), bodies_[index].mesh, now);
     changes.moved.push_back(BodyId(index));
   }
   return changes;
@@ -275,7 +231,7 @@ inline DeviceState Scene::device_state(const Device& device, const Frame& frame)
     return {placement.pose.position_m, placement.velocity.linear_mps, std::nullopt, true};
   }
   const std::optional<BodyId> body = find_body(device.attachment->object);
-  DCEM_ASSERT(body.has_value());
+  DCEM_ASSERT(body.has_value() && frame.bodies.size() == bodies_.size());
   const BodyState& state = frame.bodies[body->value];
   const Pose& pose = state.placement.pose;
   const Vec3 position_m = pose.position_m + rotation_matrix(pose) * device.attachment->offset_m;
@@ -287,10 +243,10 @@ inline void Scene::check_device(const Device& device, const std::unordered_set<s
   const std::string name = "device '" + device.id + "': ";
   if (device.id.empty()) throw std::invalid_argument("device: its id is empty; expected a name");
   if (ids.contains(device.id)) throw std::invalid_argument(name + "is there twice; expected a new id");
-  validate(device.antenna);
+  detail::naming("device '" + device.id + "'", [&] { validate(device.antenna); });
   if (!std::isfinite(device.power_dbm)) throw std::invalid_argument(name + "power_dbm is not finite");
   if (!device.attachment) {
-    validate(device.motion);
+    detail::naming("device '" + device.id + "'", [&] { validate(device.motion); });
   } else if (!find_body(device.attachment->object)) {
     throw std::invalid_argument(name + "rides on '" + device.attachment->object + "', which is no object of the scene");
   } else if (!is_finite(device.attachment->offset_m)) {
@@ -312,13 +268,13 @@ inline void Scene::add_receiver(Device device) {
 
 inline std::vector<std::uint32_t> Scene::first_triangles() const {
   std::vector<std::uint32_t> first;
-  for (const Body& body : bodies_) first.push_back(body.first_triangle);
+  for (std::size_t index = 0; index < bodies_.size(); ++index) first.push_back(world_.first(BodyId(index)).triangle);
   return first;
 }
 
 inline std::pair<std::uint32_t, std::uint32_t> Scene::triangle_range(BodyId id) const {
-  const Body& body = bodies_[id.value];
-  return {body.first_triangle, body.first_triangle + static_cast<std::uint32_t>(body.mesh.triangles.size())};
+  const std::uint32_t first = world_.first(id).triangle;
+  return {first, first + static_cast<std::uint32_t>(body(id).mesh.triangles.size())};
 }
 
 }  // namespace dcem

@@ -1,0 +1,91 @@
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "dcem/core/parallel_for.hpp"
+
+using namespace dcem;
+
+TEST_CASE("every index is called exactly once, by a worker that exists") {
+  for (const unsigned threads : {0U, 1U, 2U, 3U, 8U}) {
+    for (const std::size_t count :
+         {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{7}, std::size_t{5000}}) {
+      std::vector<std::atomic<int>> calls(count);
+      std::atomic<unsigned> highest_worker{0};
+      parallel_for(count, threads, [&](std::size_t index, unsigned worker) {
+        ++calls[index];
+        unsigned highest = highest_worker;
+        while (worker > highest && !highest_worker.compare_exchange_weak(highest, worker)) {
+        }
+      });
+      CAPTURE(threads);
+      CAPTURE(count);
+      CHECK(highest_worker < resolve_thread_count(threads));
+      for (const auto& times : calls) CHECK_UNARY(times == 1);
+    }
+  }
+}
+
+TEST_CASE("scratch space per worker is never shared by two threads at a time") {
+  std::vector<std::atomic<int>> busy(4);
+  std::atomic<bool> shared{false};
+  parallel_for(20'000, 4, [&](std::size_t, unsigned worker) {
+    if (++busy.at(worker) != 1) shared = true;
+    --busy[worker];
+  });
+  CHECK_FALSE(shared);
+}
+
+TEST_CASE("an exception keeps its type and its text, and stops the loop") {
+  for (const unsigned threads : {1U, 4U}) {
+    std::atomic<int> calls{0};
+    CHECK_THROWS_WITH_AS(parallel_for(1'000'000, threads,
+                                      [&](std::size_t index, unsigned) {
+                                        ++calls;
+                                        if (index == 10) throw std::out_of_range("index ten");
+                                        if (index > 10) std::this_thread::sleep_for(std::chrono::microseconds(50));
+                                      }),
+                         "index ten", std::out_of_range);
+    CHECK(calls >= 11);
+    CHECK(calls < 1'000'000);  // the rest was not done
+  }
+}
+
+TEST_CASE("of many exceptions one comes out, after all threads have ended") {
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    std::atomic<int> inside{0};
+    CHECK_THROWS_AS(parallel_for(64, 8,
+                                 [&](std::size_t, unsigned) {
+                                   ++inside;
+                                   std::this_thread::yield();
+                                   --inside;
+                                   throw std::runtime_error("each fails");
+                                 }),
+                    std::runtime_error);
+    CHECK(inside == 0);
+  }
+}
+
+TEST_CASE("exceptions that are no std::exception pass too") {
+  CHECK_THROWS_AS(parallel_for(8, 2, [](std::size_t, unsigned) { throw 42; }), int);
+}
+
+TEST_CASE("the body is used, not copied") {
+  struct Body {
+    std::unique_ptr<std::atomic<int>> sum = std::make_unique<std::atomic<int>>(0);
+    void operator()(std::size_t index, unsigned) { *sum += static_cast<int>(index); }
+  } body;
+  parallel_for(101, 3, body);
+  CHECK(*body.sum == 5050);
+}
+
+TEST_CASE("0 threads are all threads of the machine, and at least one") {
+  CHECK(resolve_thread_count(0) >= 1);
+  CHECK(resolve_thread_count(7) == 7);
+}
