@@ -10,13 +10,26 @@
 
 namespace dcem {
 
-/// A closed shell: (body, number of the shell within it).
+/// An enclosing shell: (body, number of the shell within it).
 using Shell = std::pair<BodyId, std::uint32_t>;
 
-/// Closed shells that hold a point, ascending: those that a ray from it crosses an odd number of times.
+namespace detail {
+
+/// Whether a point is above the foot of a shell, which may be open there, in the body's own coordinates.
+inline bool above_foot(const Scene& scene, const Shell& shell, const Vec3& point_m) {
+  const auto& [body, number] = shell;
+  const Pose& pose = scene.body_state(body).placement.pose;
+  const double height_m = glm::dot(rotation_matrix(pose)[2], point_m - pose.position_m);  // along the body's own z
+  return height_m >= scene.body(body).mesh.shell_foot_m[number - 1];
+}
+
+}  // namespace detail
+
+/// Enclosing shells that hold a point, ascending: those that a ray upwards from it crosses an odd number of times.
 template <typename Tree>
 std::vector<Shell> shells_around(const SceneTracer<Tree>& tracer, const Tree& tree, const Vec3& point_m) {
-  // A direction with no relation to any wall: the ray meets no edge, so each crossing is one triangle.
+  // Upwards, because a house may lack its floor; with no relation to any wall, so that the ray meets no edge and each
+  // crossing is one triangle.
   const Ray<double> ray{point_m, Vec3(0.271'828'182'8, 0.141'421'356'2, 1.0)};
   const WatertightRay prepared(ray);
   const Scene& scene = tracer.scene();
@@ -31,7 +44,7 @@ std::vector<Shell> shells_around(const SceneTracer<Tree>& tracer, const Tree& tr
   });
   std::vector<Shell> around;
   for (const auto& [shell, inside] : odd) {
-    if (inside) around.push_back(shell);
+    if (inside && detail::above_foot(scene, shell, point_m)) around.push_back(shell);
   }
   return around;
 }

@@ -17,7 +17,7 @@ inline std::string path_id(const Scene& scene, const Path& path) {
     const Body& body = scene.body(scene.facet(interaction.facet).body);
     if (!id.empty()) id += '-';
     id += static_cast<char>(interaction.kind);
-    id += std::to_string(interaction.facet.value - body.first_facet);
+    id += std::to_string(scene.facet_number(interaction.facet));
     if (!body.id.empty()) id += '@' + body.id;
   }
   return id;

@@ -77,6 +77,9 @@ class PathSolver {
           mirrors[mirrors.size() - 1 - index];  // points run from the transmitter, mirrors from the receiver
       if (!facet(id).present || tracer_.is_ignored(facet(id).body, ignored)) return false;
       if (!tracer_.reflects_at(id, points_m_[index], ignored, counters_.traversal)) return false;
+      if (index > 0 && tracer_.lies_along(facet(id), facet(mirrors[mirrors.size() - index]).plane, points_m_[index])) {
+        return false;  // nothing bounces between two coplanar patches that are a hair apart
+      }
     }
     return true;
   }

@@ -28,8 +28,8 @@ struct Crossing {
   double t = 0.0;  ///< 0 at the start of the leg, 1 at its end
 };
 
-/// What a leg ignores at one of its ends: the facets it starts or ends on, and crossings within the weld tolerance of
-/// their plane (coplanar twins, dirt).
+/// What a leg ignores at one of its ends: the facets it starts or ends on, and what lies along the reflecting one
+/// within the weld tolerance (coplanar twins, dirt). A wall that stands on that facet is not ignored, however close.
 struct LegEnd {
   std::span<const FacetId> facets;
   const Plane* plane = nullptr;  ///< of the reflecting facet; null at a device
@@ -80,14 +80,21 @@ class SceneTracer {
            detail::coplanar_cosine;
   }
 
+  /// Whether a facet lies along a plane at one of its points: within the weld tolerance, and hardly tilted.
+  bool lies_along(const WorldFacet& facet, const Plane& plane, const Vec3& point_m) const {
+    return std::abs(signed_distance_m(plane, point_m)) <= scene_.settings().weld_tolerance_m &&
+           std::abs(glm::dot(plane.normal, facet.plane.normal)) > along_cosine;
+  }
+
  private:
   /// Facets of more triangles than this are searched through the tree.
   static constexpr std::uint32_t direct_test_limit = 16;
+  /// Facets within about 6 degrees of a plane lie along it: small patches of a dirty wall are tilted by their rounding.
+  static constexpr double along_cosine = 0.995;
 
   bool skips(const LegEnd& end, FacetId facet, const Vec3& point_m) const {
     if (std::find(end.facets.begin(), end.facets.end(), facet) != end.facets.end()) return true;
-    return end.plane != nullptr &&
-           std::abs(signed_distance_m(*end.plane, point_m)) <= scene_.settings().weld_tolerance_m;
+    return end.plane != nullptr && lies_along(scene_.facet(facet), *end.plane, point_m);
   }
 
   /// Where a leg meets the plane of a facet: the same number whichever of the facet's triangles was hit.
@@ -203,10 +210,10 @@ template <typename Tree>
 bool SceneTracer<Tree>::reflects_at(FacetId id, const Vec3& point_m, const IgnoredBodies& ignored,
                                     TraversalCounters& counters) const {
   const WorldFacet& facet = scene_.facet(id);
-  bool contains = false, inside = false;
+  bool touches = false, inside = false;
   const auto test = [&](std::uint32_t triangle) {
     const TriangleContact touch = contact(scene_.corners_m(triangle), facet.plane.normal, point_m, in_plane_guard_m);
-    contains = contains || touch.contains;
+    touches = touches || touch.covered_rad > 0.0;
     inside = inside || touch.covered_rad == 2.0 * pi;
   };
   if (facet.triangle_count <= direct_test_limit) {
@@ -216,7 +223,7 @@ bool SceneTracer<Tree>::reflects_at(FacetId id, const Vec3& point_m, const Ignor
       if (scene_.facet_of_triangle(triangle) == id) test(triangle);
     });
   }
-  return inside || (contains && covered_rad(id, point_m, ignored, counters) > 2.0 * pi - 1e-3);
+  return inside || (touches && covered_rad(id, point_m, ignored, counters) > 2.0 * pi - 1e-3);
 }
 
 template <typename Tree>
