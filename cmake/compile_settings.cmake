@@ -8,9 +8,10 @@ endif()
 function(dcem_enable_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
                                            $<$<BOOL:${DCEM_WARNINGS_AS_ERRORS}>:-Werror>)
-  # GCC 12 warns of overlapping copies inside std::string where there are none (GCC bug 105651, mended in 13).
+  # GCC 12 warns of overlapping or overlong copies inside std::string where there are none (GCC bugs 105651, 105329; mended
+  # in 13).
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    target_compile_options(${target} PRIVATE -Wno-restrict)
+    target_compile_options(${target} PRIVATE -Wno-restrict -Wno-array-bounds)
   endif()
 endfunction()
 

@@ -46,7 +46,8 @@ inline const std::map<std::string, std::string>& law_materials() {
       {"wall", "em_model constant\nem_reflection 0.7\nem_penetration_loss_db 20\n"},
       {"glass", "em_model constant\nem_reflection 0.74\nem_penetration_loss_db 5\n"},
       {"lossless", "em_model dielectric\nem_relative_permittivity 3.7\nem_thickness_m 0.0123\n"},
-      {"lossy", "em_model dielectric\nem_relative_permittivity 5.1\nem_conductivity_s_per_m 0.2\nem_thickness_m 0.02\n"},
+      {"lossy",
+       "em_model dielectric\nem_relative_permittivity 5.1\nem_conductivity_s_per_m 0.2\nem_thickness_m 0.02\n"},
       {"half_space", "em_model dielectric\nem_relative_permittivity 4.4\nem_conductivity_s_per_m 0.05\n"},
       {"itu_concrete", ""}};
   return materials;
@@ -220,7 +221,8 @@ inline RandomRoom random_room(std::uint64_t seed, std::size_t sheets, std::size_
   RandomRoom room;
   room.size_m = dice.inside(Vec3(6, 5, 2.5), Vec3(14, 11, 5));
   room.patches = box_faces(Vec3(0.0), room.size_m, "half_space");
-  for (Patch& wall : room.patches) wall.material = dice.material({"opaque", "wall", "half_space", "pec", "itu_concrete"});
+  for (Patch& wall : room.patches)
+    wall.material = dice.material({"opaque", "wall", "half_space", "pec", "itu_concrete"});
   const auto somewhere = [&](double margin_m) { return dice.inside(Vec3(margin_m), room.size_m - margin_m); };
   for (std::size_t index = 0; index < sheets; ++index) {
     const Vec3 u = dice.direction(), v = glm::normalize(glm::cross(u, dice.direction()));
@@ -231,10 +233,39 @@ inline RandomRoom random_room(std::uint64_t seed, std::size_t sheets, std::size_
     const Vec3 half = dice.inside(Vec3(0.2), Vec3(1.1, 0.9, 0.6)), centre = somewhere(0.8);
     const Mat3 turn = rotation_about(Vec3(0, 0, 1), dice.between(-pi, pi));
     const Patches box = box_faces(-half, half, dice.material({"glass", "wall", "opaque", "pec", "lossy"}));
-    for (const Patch& face : mapped(box, [&](const Vec3& p) { return centre + turn * p; })) room.patches.push_back(face);
+    for (const Patch& face : mapped(box, [&](const Vec3& p) { return centre + turn * p; }))
+      room.patches.push_back(face);
   }
   room.transmitter_m = somewhere(0.2);
   room.receiver_m = somewhere(0.2);
+  return room;
+}
+
+/// A storey as architects draw it: everything upright, partitions from wall to wall with a doorway each, cupboards
+/// without a bottom on the floor. Planes are parallel, patches share planes and edges, sheets end on walls.
+inline RandomRoom furnished_room(std::uint64_t seed) {
+  Dice dice(seed);
+  RandomRoom room;
+  room.size_m = dice.inside(Vec3(8, 6, 2.6), Vec3(14, 10, 3.4));
+  const double length = room.size_m.x, width = room.size_m.y, height = room.size_m.z;
+  room.patches = box_faces(Vec3(0.0), room.size_m, "opaque");
+  room.patches[0].material = "glass";
+  room.patches[3].material = "wall";
+  for (const double share : {0.3, 0.7}) {
+    const double x = length * (share + dice.between(-0.05, 0.05)), y = width * dice.between(0.3, 0.6);
+    const std::string material = dice.material({"wall", "glass", "opaque"});
+    room.patches.push_back({{Vec3(x, 0, 0), Vec3(x, y, 0), Vec3(x, y, height), Vec3(x, 0, height)}, material});
+    room.patches.push_back(
+        {{Vec3(x, y + 1, 0), Vec3(x, width, 0), Vec3(x, width, height), Vec3(x, y + 1, height)}, material});
+    room.patches.push_back(
+        {{Vec3(x, y, 2.1), Vec3(x, y + 1, 2.1), Vec3(x, y + 1, height), Vec3(x, y, height)}, material});
+  }
+  const Vec3 low(dice.between(0.2, length - 1.5), dice.between(0.2, width - 1.5), 0.0);
+  Patches cupboard = box_faces(low, low + dice.inside(Vec3(0.5, 0.4, 0.7), Vec3(1.2, 1.0, 2.0)), "pec");
+  cupboard.erase(cupboard.begin() + 4);
+  room.patches.insert(room.patches.end(), cupboard.begin(), cupboard.end());
+  room.transmitter_m = dice.inside(Vec3(0.2), room.size_m - 0.2);
+  room.receiver_m = dice.inside(Vec3(0.2), room.size_m - 0.2);
   return room;
 }
 
@@ -242,12 +273,18 @@ inline RandomRoom random_room(std::uint64_t seed, std::size_t sheets, std::size_
 
 /// Every number of a path, so that two results can be compared bit for bit.
 inline std::vector<double> all_numbers(const PathContribution& path) {
-  std::vector<double> numbers{path.path.length_m,          path.delay_s,
-                              path.doppler_hz,             path.power_ratio,
-                              path.departure.azimuth_rad,  path.departure.zenith_rad,
-                              path.arrival.azimuth_rad,    path.arrival.zenith_rad,
-                              path.amplitude.real(),       path.amplitude.imag(),
-                              double(path.transmit_ports), double(path.has_amplitude)};
+  std::vector<double> numbers{path.path.length_m,
+                              path.delay_s,
+                              path.doppler_hz,
+                              path.power_ratio,
+                              path.departure.azimuth_rad,
+                              path.departure.zenith_rad,
+                              path.arrival.azimuth_rad,
+                              path.arrival.zenith_rad,
+                              path.amplitude.real(),
+                              path.amplitude.imag(),
+                              double(path.transmit_ports),
+                              double(path.has_amplitude)};
   for (const ComplexMatrix2* matrix : {&path.transfer, &path.ports}) {
     for (std::size_t entry = 0; entry < 4; ++entry) {
       numbers.push_back((*matrix)(entry / 2, entry % 2).real());
@@ -255,8 +292,8 @@ inline std::vector<double> all_numbers(const PathContribution& path) {
     }
   }
   for (const Interaction& interaction : path.path.interactions) {
-    numbers.insert(numbers.end(), {double(interaction.kind == InteractionKind::reflection),
-                                   interaction.point_m.x, interaction.point_m.y, interaction.point_m.z});
+    numbers.insert(numbers.end(), {double(interaction.kind == InteractionKind::reflection), interaction.point_m.x,
+                                   interaction.point_m.y, interaction.point_m.z});
   }
   return numbers;
 }

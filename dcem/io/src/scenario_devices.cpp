@@ -1,10 +1,9 @@
 #include <cmath>
 #include <set>
 
-#include "dcem/io/src/scenario_parts.hpp"
-
 #include "dcem/channel/radio_map.hpp"
 #include "dcem/core/units.hpp"
+#include "dcem/io/src/scenario_parts.hpp"
 #include "dcem/io/src/text_input.hpp"
 
 namespace dcem::io {

@@ -1,0 +1,42 @@
+#pragma once
+/// Coverage maps as CSV and as a picture.
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dcem/channel/radio_map.hpp"
+#include "dcem/io/atomic_file.hpp"
+#include "dcem/io/heat_map.hpp"
+#include "dcem/scene/scene.hpp"
+
+namespace dcem::io {
+
+inline constexpr std::string_view map_csv_header =
+    "x_m,y_m,z_m,power_dbm,power_incoherent_dbm,path_gain_db,field_strength_dbuv_per_m,mean_delay_s,rms_delay_spread_s,"
+    "line_of_sight,path_count,strongest_kinds";
+
+/// `map_<grid>_<transmitter>[_<frame>]`, without an ending. Characters of the ids that a file name cannot hold stand as
+/// % and two hexadecimal digits. `frame` is absent where there is only one.
+std::string map_name(const std::string& grid, const std::string& transmitter, std::optional<std::size_t> frame = {});
+
+/// Writes a line per point, row by row. Of an obstructed point only the coordinates are given; the other fields are
+/// empty. The field strength belongs to the coherent power. Throws `OutputError`.
+void write_map_csv(AtomicFile& file, const RadioMap& map, double frequency_hz);
+
+/// The picture of a map: the incoherent power in dBm at each point. It is the mean over a few wavelengths, which is all
+/// that points further apart than half a wavelength can show. Obstructed points are hatched; walls are where the
+/// scene, as it stands now, meets the plane of the grid; every transmitter of the scene has its symbol, the map's own
+/// alone has a label. `time_s` goes into the title where it is given.
+HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame, double frequency_hz,
+                    std::optional<double> time_s = {});
+
+/// Where the triangles of the scene meet the horizontal plane at `height_m`: segments x0, y0, x1, y1 in metres. A
+/// corner that lies exactly on the plane counts as below it, so the cut is that of a plane a hair higher: each triangle
+/// gives one segment or none, the outlines of closed bodies stay closed, and a wall that ends at the plane is not
+/// drawn.
+std::vector<std::array<double, 4>> walls_at_height_m(const Scene& scene, double height_m);
+
+}  // namespace dcem::io

@@ -1,0 +1,57 @@
+#pragma once
+/// Materials and mended meshes as JSON, for the summary and the inspection. Private to dcem::io.
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+
+#include "dcem/em/material.hpp"
+#include "dcem/geometry/surface_mesh.hpp"
+
+namespace dcem::io {
+
+namespace detail {
+
+inline nlohmann::ordered_json model_json(const PerfectConductor&) {
+  return {{"model", "pec"}};
+}
+inline nlohmann::ordered_json model_json(const ConstantReflection& model) {
+  nlohmann::ordered_json json{{"model", "constant"}, {"reflection", model.reflection_amplitude}};
+  if (model.penetration_loss_db) json["penetration_loss_db"] = *model.penetration_loss_db;
+  return json;
+}
+inline nlohmann::ordered_json model_json(const Dielectric& model) {
+  nlohmann::ordered_json json{{"model", "dielectric"},
+                              {"relative_permittivity", model.relative_permittivity},
+                              {"conductivity_s_per_m", model.conductivity_s_per_m}};
+  if (model.thickness_m) json["thickness_m"] = *model.thickness_m;
+  return json;
+}
+inline nlohmann::ordered_json model_json(const ItuMaterial& model) {
+  nlohmann::ordered_json json{{"model", "itu"}, {"itu", model.name}};
+  if (model.thickness_m) json["thickness_m"] = *model.thickness_m;
+  return json;
+}
+
+}  // namespace detail
+
+/// The keys of the scenario file's `materials` entry, and whether paths may cross the surface.
+inline nlohmann::ordered_json material_json(const Material& material) {
+  nlohmann::ordered_json json = std::visit([](const auto& model) { return detail::model_json(model); }, material.model);
+  json["opaque"] = !transmits(material);
+  return json;
+}
+
+inline nlohmann::ordered_json surface_report_json(const SurfaceReport& report) {
+  return {{"vertices_read", report.vertices_read},           {"vertices_welded", report.vertices_welded},
+          {"triangles_read", report.triangles_read},         {"triangles_without_area", report.triangles_without_area},
+          {"triangles_repeated", report.triangles_repeated}, {"open_edges", report.open_edges},
+          {"crowded_edges", report.crowded_edges},           {"uneven_sets", report.uneven_sets},
+          {"closed_shells", report.closed_shells},           {"standing_shells", report.standing_shells}};
+}
+
+/// The document as text that ends with a line feed. Bytes of names that are not UTF-8 become replacement characters.
+inline std::string json_text(const nlohmann::ordered_json& document) {
+  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace dcem::io

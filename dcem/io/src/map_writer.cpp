@@ -1,0 +1,135 @@
+#include "dcem/io/map_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "dcem/io/src/number_text.hpp"
+#include "dcem/io/text_table.hpp"
+
+namespace dcem::io {
+namespace {
+
+constexpr std::size_t sheet_bytes = std::size_t{1} << 20;
+
+bool fits_file_name(unsigned char character) {
+  constexpr std::string_view separators = "/\\:*?\"<>|%";
+  return character >= 32 && character != 127 && separators.find(static_cast<char>(character)) == std::string_view::npos;
+}
+
+std::string file_name_part(const std::string& id) {
+  constexpr std::string_view hexadecimal = "0123456789ABCDEF";
+  std::string part;
+  for (const char character : id) {
+    const auto byte = static_cast<unsigned char>(character);
+    if (fits_file_name(byte)) {
+      part.push_back(character);
+    } else {
+      part.append({'%', hexadecimal[byte / 16], hexadecimal[byte % 16]});
+    }
+  }
+  return part;
+}
+
+void append_point(std::string& text, const RadioMapPoint& point, double frequency_hz) {
+  CsvLine line(text);
+  line.number(point.position_m.x).number(point.position_m.y).number(point.position_m.z);
+  if (point.obstructed) {
+    line.empty(9).end();
+    return;
+  }
+  const LinkStatistics& values = point.statistics;
+  std::optional<double> field_dbuv_per_m;
+  if (values.power_dbm) field_dbuv_per_m = field_strength_dbuv_per_m(*values.power_dbm, frequency_hz);
+  line.number(values.power_dbm).number(values.power_incoherent_dbm).number(values.path_gain_db);
+  line.number(field_dbuv_per_m).number(values.mean_delay_s).number(values.rms_delay_spread_s);
+  line.flag(values.line_of_sight).count(values.path_count).prepared(point.strongest_kinds).end();
+}
+
+// The point of the edge from a lower to a higher corner at `height_m`. Always taken in this direction, so two triangles
+// that share the edge get the same point to the last bit.
+Vec2 edge_point_m(const Vec3& low_m, const Vec3& high_m, double height_m) {
+  const double share = (height_m - low_m.z) / (high_m.z - low_m.z);
+  return {low_m.x + share * (high_m.x - low_m.x), low_m.y + share * (high_m.y - low_m.y)};
+}
+
+// One corner is alone on its side of the plane, and the two edges that leave it are cut.
+std::optional<std::array<double, 4>> cut(const std::array<Vec3, 3>& corners_m, double height_m) {
+  std::array<bool, 3> above{};
+  for (std::size_t corner = 0; corner < 3; ++corner) above[corner] = corners_m[corner].z > height_m;
+  const auto count = std::count(above.begin(), above.end(), true);
+  if (count == 0 || count == 3) return std::nullopt;
+  const auto alone = static_cast<std::size_t>(std::find(above.begin(), above.end(), count == 1) - above.begin());
+  const auto crossing = [&](std::size_t other) {
+    return above[alone] ? edge_point_m(corners_m[other], corners_m[alone], height_m)
+                        : edge_point_m(corners_m[alone], corners_m[other], height_m);
+  };
+  const Vec2 from = crossing((alone + 1) % 3), to = crossing((alone + 2) % 3);
+  if (from == to) return std::nullopt;  // only the lone corner touches the plane
+  return std::array<double, 4>{from.x, from.y, to.x, to.y};
+}
+
+std::string picture_title(const RadioMap& map, double frequency_hz, std::optional<double> time_s) {
+  std::string title = map.grid.id + ", transmitter " + map.transmitter + ": incoherent power, ";
+  append_number(title, std::round(frequency_hz / 1e3) / 1e6);
+  title += " GHz, z = " + format_fixed(map.grid.origin_m.z, 2) + " m";
+  if (time_s) title += ", t = " + format_fixed(*time_s, 3) + " s";
+  return title;
+}
+
+}  // namespace
+
+std::string map_name(const std::string& grid, const std::string& transmitter, std::optional<std::size_t> frame) {
+  std::string name = "map_" + file_name_part(grid) + "_" + file_name_part(transmitter);
+  if (frame) name += "_" + std::to_string(*frame);
+  return name;
+}
+
+void write_map_csv(AtomicFile& file, const RadioMap& map, double frequency_hz) {
+  std::string text = std::string(map_csv_header) + '\n';
+  for (const RadioMapPoint& point : map.points) {
+    append_point(text, point, frequency_hz);
+    if (text.size() >= sheet_bytes) file.write(std::exchange(text, {}));
+  }
+  file.write(text);
+}
+
+HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame, double frequency_hz,
+                    std::optional<double> time_s) {
+  HeatMap picture;
+  picture.title = picture_title(map, frequency_hz, time_s);
+  picture.label = "incoherent received power";
+  picture.origin_x_m = map.grid.origin_m.x;
+  picture.origin_y_m = map.grid.origin_m.y;
+  picture.spacing_x_m = map.grid.spacing_m[0];
+  picture.spacing_y_m = map.grid.spacing_m[1];
+  picture.columns = map.grid.columns();
+  picture.rows = map.grid.rows();
+  for (const RadioMapPoint& point : map.points) {
+    picture.values.push_back(point.statistics.power_incoherent_dbm.value_or(std::numeric_limits<double>::quiet_NaN()));
+    picture.hatched.push_back(point.obstructed ? 1 : 0);
+  }
+  picture.walls_m = walls_at_height_m(scene, map.grid.origin_m.z);
+  for (const Device& device : scene.transmitters()) {
+    const DeviceState state = scene.device_state(device, frame);
+    if (!state.present) continue;
+    const std::string label = device.id == map.transmitter ? device.id : std::string();
+    picture.transmitters.push_back({state.position_m.x, state.position_m.y, label});
+  }
+  return picture;
+}
+
+std::vector<std::array<double, 4>> walls_at_height_m(const Scene& scene, double height_m) {
+  std::vector<std::array<double, 4>> segments_m;
+  const auto boxes = scene.triangle_boxes();
+  for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
+    const bool met = boxes[triangle].min.z <= height_m && height_m <= boxes[triangle].max.z;
+    if (!met) continue;
+    if (const auto segment = cut(scene.corners_m(triangle), height_m)) segments_m.push_back(*segment);
+  }
+  return segments_m;
+}
+
+}  // namespace dcem::io

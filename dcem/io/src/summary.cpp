@@ -1,0 +1,238 @@
+#include "dcem/io/summary.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "dcem/core/parallel_for.hpp"
+#include "dcem/core/statistics.hpp"
+#include "dcem/io/src/fact_json.hpp"
+#include "dcem/io/text_table.hpp"
+#include "dcem/sim/discovery.hpp"
+
+namespace dcem::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* name_of(Discovery discovery) {
+  switch (discovery) {
+    case Discovery::exact:
+      return "exact";
+    case Discovery::sampled:
+      return "sampled";
+    case Discovery::automatic:
+      break;
+  }
+  return "automatic";
+}
+
+template <typename Value>
+Json optional_json(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json point_json(const Vec3& point_m) {
+  return {point_m.x, point_m.y, point_m.z};
+}
+
+Json box_json(const Scene& scene) {
+  Aabb<double> box;
+  for (const Aabb<double>& triangle : scene.triangle_boxes()) box.extend(triangle);
+  if (box.empty()) return nullptr;
+  return {{"min_m", point_json(box.min)}, {"max_m", point_json(box.max)}};
+}
+
+SurfaceReport joint_report(const Scene& scene) {
+  SurfaceReport sum;
+  for (const Body& body : scene.bodies()) {
+    const SurfaceReport& part = body.mesh.report;
+    sum.vertices_read += part.vertices_read;
+    sum.vertices_welded += part.vertices_welded;
+    sum.triangles_read += part.triangles_read;
+    sum.triangles_without_area += part.triangles_without_area;
+    sum.triangles_repeated += part.triangles_repeated;
+    sum.open_edges += part.open_edges;
+    sum.crowded_edges += part.crowded_edges;
+    sum.uneven_sets += part.uneven_sets;
+    sum.closed_shells += part.closed_shells;
+    sum.standing_shells += part.standing_shells;
+  }
+  return sum;
+}
+
+Json scene_json(const Scene& scene, std::size_t receivers) {
+  Json materials = Json::object();
+  for (const Material& material : scene.materials()) materials[material.name] = material_json(material);
+  return {{"triangles", scene.triangles().size()},
+          {"facets", scene.facets().size()},
+          {"objects", scene.bodies().size() - 1},
+          {"transmitters", scene.transmitters().size()},
+          {"receivers", receivers},
+          {"bounding_box", box_json(scene)},
+          {"surfaces", surface_report_json(joint_report(scene))},
+          {"materials", materials}};
+}
+
+Json path_loss_json(const AnyPathLoss& path_loss) {
+  const auto* close_in = std::get_if<CloseIn>(&path_loss.model);
+  if (close_in == nullptr) return {{"model", "free_space"}};
+  return {{"model", "close_in"},
+          {"exponent", close_in->exponent},
+          {"attenuation_db_per_m", close_in->attenuation_db_per_m}};
+}
+
+Json propagation_json(const PropagationSettings& settings, Discovery discovery) {
+  return {{"line_of_sight", settings.line_of_sight},
+          {"max_reflections", settings.max_reflections},
+          {"max_transmissions", settings.max_transmissions},
+          {"max_diffractions", 0},
+          {"max_interactions", settings.max_interactions.value_or(settings.max_reflections)},
+          {"discovery", name_of(discovery)},
+          {"discovery_asked_for", name_of(settings.discovery)},
+          {"rays", discovery == Discovery::sampled ? Json(settings.rays) : Json(nullptr)},
+          {"seed", discovery == Discovery::sampled ? Json(settings.seed) : Json(nullptr)},
+          {"cache", "off"},
+          {"path_loss", path_loss_json(settings.path_loss)},
+          {"min_path_gain_db", optional_json(settings.min_path_gain_db)}};
+}
+
+Json settings_json(const RunFacts& facts) {
+  const SimulationSettings& settings = facts.settings;
+  const std::size_t exact_limit = automatic_exact_facet_limit(reflection_order(settings.propagation));
+  return {{"frequency_hz", settings.frequency_hz},
+          {"itu", {{"revision", settings.itu.revision}, {"allow_extrapolation", settings.itu.allow_extrapolation}}},
+          {"threads", resolve_thread_count(settings.threads)},
+          {"time", {{"start_s", facts.time.start_s}, {"step_s", facts.time.step_s}, {"frames", facts.time.frames}}},
+          {"propagation", propagation_json(settings.propagation, facts.discovery)},
+          {"defaults_of_this_version",
+           {{"cache", "off"},
+            {"max_diffractions", 0},
+            {"discovery", "exact up to " + std::to_string(exact_limit) + " facets, else sampled"}}}};
+}
+
+Json work_json(const WorkCounters& work) {
+  return {{"rays", work.rays},
+          {"legs", work.legs},
+          {"sequences_proposed", work.sequences_proposed},
+          {"sequences_solved", work.sequences_solved},
+          {"nodes_visited", work.nodes_visited},
+          {"primitives_tested", work.primitives_tested}};
+}
+
+double total_time_s(const FrameFigures& frame) {
+  return frame.update_time_s + frame.solve_time_s;
+}
+
+// How many times faster than the world the program is: the time that the frames cover over the time they took.
+std::optional<double> real_time_factor(double covered_s, double spent_s) {
+  return spent_s > 0.0 ? std::optional(covered_s / spent_s) : std::nullopt;
+}
+
+Json frame_json(const FrameFigures& frame, double step_s) {
+  return {{"frame", frame.index},
+          {"time_s", frame.time_s},
+          {"links", frame.links},
+          {"links_with_line_of_sight", frame.links_with_line_of_sight},
+          {"paths", frame.paths},
+          {"update_time_s", frame.update_time_s},
+          {"solve_time_s", frame.solve_time_s},
+          {"real_time_factor", optional_json(real_time_factor(step_s, total_time_s(frame)))},
+          {"tree",
+           {{"nodes_kept", frame.tree.nodes_kept},
+            {"nodes_refit", frame.tree.nodes_refit},
+            {"nodes_rebuilt", frame.tree.nodes_rebuilt},
+            {"sah_cost", frame.tree.sah_cost}}},
+          {"work", work_json(frame.work)}};
+}
+
+FrameFigures sum_of(const std::vector<FrameFigures>& frames) {
+  FrameFigures sum;
+  for (const FrameFigures& frame : frames) {
+    sum.links += frame.links;
+    sum.links_with_line_of_sight += frame.links_with_line_of_sight;
+    sum.paths += frame.paths;
+    sum.update_time_s += frame.update_time_s;
+    sum.solve_time_s += frame.solve_time_s;
+    sum.work += frame.work;
+  }
+  return sum;
+}
+
+std::string mean_text(std::size_t sum, std::size_t count) {
+  return count == 0 ? "-" : format_fixed(static_cast<double>(sum) / static_cast<double>(count), 1);
+}
+
+std::string milliseconds(double duration_s) {
+  return format_fixed(1e3 * duration_s, duration_s < 0.1 ? 2 : 0) + " ms";
+}
+
+}  // namespace
+
+FrameFigures figures_of(const FrameResult& frame) {
+  FrameFigures figures{frame.index,         frame.time_s,       frame.links.size(), 0,         0,
+                       frame.update_time_s, frame.solve_time_s, frame.tree,         frame.work};
+  for (const LinkResult& link : frame.links) {
+    figures.paths += link.paths.size();
+    figures.links_with_line_of_sight += link.statistics.line_of_sight ? 1U : 0U;
+  }
+  return figures;
+}
+
+RunSummary::RunSummary(RunFacts facts, const Scene& scene) : facts_(std::move(facts)), scene_(scene) {}
+
+std::vector<double> RunSummary::frame_times_s() const {
+  std::vector<double> times_s;
+  for (const FrameFigures& frame : frames_) times_s.push_back(total_time_s(frame));
+  return times_s;
+}
+
+std::string RunSummary::json() const {
+  const FrameFigures sum = sum_of(frames_);
+  const std::vector<double> times_s = frame_times_s();
+  const double covered_s = facts_.time.step_s * static_cast<double>(frames_.size());
+  Json frames = Json::array();
+  for (const FrameFigures& frame : frames_) frames.push_back(frame_json(frame, facts_.time.step_s));
+  return json_text({{"version", facts_.version},
+                    {"scenario", facts_.scenario},
+                    {"scene", scene_json(scene_, facts_.receivers)},
+                    {"settings", settings_json(facts_)},
+                    {"warnings", facts_.warnings},
+                    {"totals",
+                     {{"frames", frames_.size()},
+                      {"links", sum.links},
+                      {"links_with_line_of_sight", sum.links_with_line_of_sight},
+                      {"paths", sum.paths},
+                      {"update_time_s", sum.update_time_s},
+                      {"solve_time_s", sum.solve_time_s},
+                      {"frame_time_median_s", median(times_s)},
+                      {"frame_time_p95_s", quantile(times_s, 0.95)},
+                      {"frame_time_max_s", quantile(times_s, 1.0)},
+                      {"real_time_factor", optional_json(real_time_factor(covered_s, total_time_s(sum)))},
+                      {"work", work_json(sum.work)}}},
+                    {"frames", frames}});
+}
+
+std::string RunSummary::table(const std::filesystem::path& folder) const {
+  const FrameFigures sum = sum_of(frames_);
+  const std::vector<double> times_s = frame_times_s();
+  const double covered_s = facts_.time.step_s * static_cast<double>(frames_.size());
+  const auto factor = real_time_factor(covered_s, total_time_s(sum));
+  TextTable table({{"", TextTable::Align::left}, {"", TextTable::Align::left}});
+  table.add_row({"frames", std::to_string(frames_.size())});
+  table.add_row({"links", std::to_string(sum.links) + " (" + std::to_string(sum.links_with_line_of_sight) +
+                              " with line of sight)"});
+  table.add_row({"paths", std::to_string(sum.paths) + " (" + mean_text(sum.paths, frames_.size()) + " per frame, " +
+                              mean_text(sum.paths, sum.links) + " per link)"});
+  table.add_row({"time per frame", milliseconds(median(times_s)) + " median, " + milliseconds(quantile(times_s, 0.95)) +
+                                       " 95 %, " + milliseconds(quantile(times_s, 1.0)) + " max"});
+  table.add_row({"real-time factor", factor ? format_fixed(*factor, *factor < 10.0 ? 3 : 1) : "-"});
+  table.add_row({"discovery", name_of(facts_.discovery)});
+  table.add_row({"rays", std::to_string(sum.work.rays)});
+  table.add_row({"threads", std::to_string(resolve_thread_count(facts_.settings.threads))});
+  table.add_row({"results", folder.string()});
+  return table.str();
+}
+
+}  // namespace dcem::io

@@ -1,0 +1,63 @@
+#pragma once
+/// What a run did and what it took: `summary.json`, and the table on the console at its end.
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dcem/io/scenario.hpp"
+#include "dcem/scene/scene.hpp"
+#include "dcem/sim/frame_result.hpp"
+#include "dcem/sim/settings.hpp"
+
+namespace dcem::io {
+
+/// What is known before the first frame.
+struct RunFacts {
+  std::string version;   ///< of the program
+  std::string scenario;  ///< its name
+  SimulationSettings settings;
+  Discovery discovery = Discovery::sampled;  ///< how paths are found: exact or sampled
+  TimeSettings time;
+  std::size_t receivers = 0;          ///< points of grids included
+  std::vector<std::string> warnings;  ///< one line each
+};
+
+/// What is kept of a frame after its results are written.
+struct FrameFigures {
+  std::size_t index = 0;
+  double time_s = 0.0;
+  std::size_t links = 0;
+  std::size_t links_with_line_of_sight = 0;
+  std::size_t paths = 0;
+  double update_time_s = 0.0;  ///< wall-clock time to move scene and tree
+  double solve_time_s = 0.0;   ///< wall-clock time to find paths and compute fields
+  TreeReport tree;
+  WorkCounters work;
+};
+
+FrameFigures figures_of(const FrameResult& frame);
+
+/// Collects the figures of a run. The scene must outlive it.
+class RunSummary {
+ public:
+  RunSummary(RunFacts facts, const Scene& scene);
+
+  void add(const FrameFigures& frame) { frames_.push_back(frame); }
+
+  /// The text of `summary.json`: `version`, `scenario`, `scene`, `settings`, `warnings`, `totals`, `frames`. Times
+  /// differ from run to run; everything else is the same for the same input.
+  [[nodiscard]] std::string json() const;
+
+  /// The table for the console. `folder` is where the results are.
+  [[nodiscard]] std::string table(const std::filesystem::path& folder) const;
+
+ private:
+  [[nodiscard]] std::vector<double> frame_times_s() const;
+
+  RunFacts facts_;
+  const Scene& scene_;
+  std::vector<FrameFigures> frames_;
+};
+
+}  // namespace dcem::io

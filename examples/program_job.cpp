@@ -1,0 +1,67 @@
+#include "program_job.hpp"
+
+#include <charconv>
+#include <iostream>
+#include <string_view>
+
+#include "dcem/io/input_error.hpp"
+
+#ifndef DCEM_VERSION
+#define DCEM_VERSION "unknown"
+#endif
+
+namespace dcem::program {
+namespace {
+
+std::optional<std::size_t> parse_count(std::string_view text) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+FrameRange parse_frames(const std::string& text, std::size_t available) {
+  if (text.empty()) return {0, available};
+  const std::string expectation = "A:B with 0 <= A < B <= " + std::to_string(available);
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) throw UsageError("--frames " + text + ": no range of frames", expectation);
+  const auto first = parse_count(std::string_view(text).substr(0, colon));
+  const auto last = parse_count(std::string_view(text).substr(colon + 1));
+  if (!first || !last) throw UsageError("--frames " + text + ": no range of frames", expectation);
+  if (*first >= *last || *last > available) throw UsageError("--frames " + text + ": frame out of range", expectation);
+  return {*first, *last};
+}
+
+}  // namespace
+
+Job prepare_job(const ScenarioOptions& options) {
+  Job job{io::load_scenario(options.scenario, options.overrides), {}, options.folder};
+  job.frames = parse_frames(options.frames, job.scenario.time.frames);
+  if (options.threads) job.scenario.settings.threads = *options.threads;
+  if (job.folder.empty()) job.folder = std::filesystem::path("out") / job.scenario.name;
+  return job;
+}
+
+Simulator<> make_simulator(Job& job, const ScenarioOptions& options) {
+  try {
+    return {std::move(job.scenario.scene), job.scenario.settings};
+  } catch (const std::invalid_argument& error) {
+    throw io::InputError(options.scenario, error.what());
+  }
+}
+
+io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t receivers) {
+  return {DCEM_VERSION,      job.scenario.name, simulator.settings(), simulator.discovery(),
+          job.scenario.time, receivers,         job.scenario.warnings};
+}
+
+void print_warnings(const Job& job, const ScenarioOptions& options) {
+  if (options.quiet) return;
+  for (const std::string& warning : job.scenario.warnings) std::cerr << "warning: " << warning << '\n';
+}
+
+io::ProgressMode progress_mode(const ScenarioOptions& options) {
+  return options.quiet ? io::ProgressMode::never : options.progress;
+}
+
+}  // namespace dcem::program

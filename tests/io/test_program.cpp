@@ -1,0 +1,227 @@
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/io/temporary_folder.hpp"
+
+using dcem::test::file_bytes;
+using dcem::test::TemporaryFolder;
+
+namespace {
+
+/// What a call of the program gave.
+struct Outcome {
+  int exit_code = -1;
+  std::string output, error;
+};
+
+std::string quoted(const std::filesystem::path& path) {
+  return "'" + path.string() + "'";
+}
+
+Outcome dcem_program(const TemporaryFolder& folder, const std::string& arguments) {
+  const auto output = folder / ".stdout", error = folder / ".stderr";
+  const std::string command = "cd " + quoted(folder.path()) + " && " + quoted(DCEM_PROGRAM) + " " + arguments + " > " +
+                              quoted(output) + " 2> " + quoted(error);
+  const int status = std::system(command.c_str());
+  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_bytes(output), file_bytes(error)};
+  std::filesystem::remove(output);
+  std::filesystem::remove(error);
+  return outcome;
+}
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+// Two walls of a street, with the ground.
+void write_scene(const TemporaryFolder& folder) {
+  write(folder / "street.mtl", "newmtl wall\nem_model constant\nem_reflection 0.8\n");
+  write(folder / "street.obj",
+        "mtllib street.mtl\nusemtl wall\n"
+        "v -40 -10 0\nv 40 -10 0\nv 40 -10 12\nv -40 -10 12\nv -40 10 0\nv 40 10 0\nv 40 10 12\nv -40 10 12\n"
+        "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\n");
+}
+
+std::string scenario(const std::string& receivers, const std::string& more = "") {
+  return R"({"format":"dcem-scenario/1","scene":{"obj":"street.obj"},"frequency_hz":28e9,)"
+         R"("time":{"start_s":0,"step_s":0.5,"frames":4},)"
+         R"("transmitters":[{"id":"bs","position_m":[-20,1.25,5],"power_dbm":30}],)"
+         R"("receivers":[)" +
+         receivers +
+         R"(],"propagation":{"max_reflections":2,"max_transmissions":0,"max_diffractions":0,)"
+         R"("discovery":"exact"},"output":{"paths":true,"links":true,"pdp":{"bin_s":1e-9}})" +
+         more + "}";
+}
+
+const std::string moving_receiver = R"({"id":"ue","position_m":[15,2,1.5],"velocity_mps":[3,0,0]})";
+const std::string grid_receiver = R"({"id":"area","grid":{"origin_m":[-5,-12,1.5],"spacing_m":[2,2],"count":[3,13]}})";
+
+void write_scenario(const TemporaryFolder& folder, const std::string& receivers, const std::string& more = "") {
+  write_scene(folder);
+  write(folder / "street.json", scenario(receivers, more));
+}
+
+// One line on the error stream, and not a file that was not there before.
+void check_refused(const TemporaryFolder& folder, const std::string& arguments, const std::string& said) {
+  CAPTURE(arguments);
+  const auto before = folder.names();
+  const Outcome outcome = dcem_program(folder, arguments);
+  CAPTURE(outcome.error);
+  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.output.empty());
+  CHECK(std::count(outcome.error.begin(), outcome.error.end(), '\n') == 1);
+  CHECK(outcome.error.find(said) != std::string::npos);
+  CHECK(outcome.error.find("; expected ") != std::string::npos);
+  CHECK(folder.names() == before);
+}
+
+std::size_t line_count(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace
+
+#define DCEM_NEEDS_PROGRAM()                                  \
+  if (!std::filesystem::exists(DCEM_PROGRAM)) {               \
+    MESSAGE("skipped: there is no program at " DCEM_PROGRAM); \
+    return;                                                   \
+  }                                                           \
+  static_assert(true, "asks for a semicolon")
+
+TEST_CASE("a run writes a line per frame and link, and all files at once") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver);
+  const Outcome outcome = dcem_program(folder, "run street.json -o result");
+  CAPTURE(outcome.error);
+  REQUIRE(outcome.exit_code == 0);
+  const auto result = folder / "result";
+  CHECK(line_count(file_bytes(result / "paths.jsonl")) == 4);
+  CHECK(line_count(file_bytes(result / "links.csv")) == 1 + 4);
+  CHECK(line_count(file_bytes(result / "pdp.csv")) > 4);
+  CHECK(file_bytes(result / "summary.json").find("\"discovery\": \"exact\"") != std::string::npos);
+  CHECK(outcome.output.find("real-time factor") != std::string::npos);
+  CHECK(std::distance(std::filesystem::directory_iterator(result), {}) == 4);
+}
+
+TEST_CASE("--frames picks frames and keeps their numbers; --quiet says nothing; --output picks files") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver);
+  const Outcome outcome = dcem_program(folder, "run street.json --frames 1:3 --quiet --output links");
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.output.empty());
+  CHECK(outcome.error.empty());
+  const auto result = folder.path() / "out" / "street";  // the default folder
+  CHECK_FALSE(std::filesystem::exists(result / "paths.jsonl"));
+  const std::string links = file_bytes(result / "links.csv");
+  CHECK(line_count(links) == 1 + 2);
+  CHECK(links.find("\n1,0.5,bs,ue,") != std::string::npos);
+  CHECK(links.find("\n2,1,bs,ue,") != std::string::npos);
+}
+
+TEST_CASE("the number of threads changes no byte") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver + "," + grid_receiver);
+  for (const std::string threads : {"1", "2", "5"}) {
+    const Outcome outcome =
+        dcem_program(folder, "run street.json --quiet --discovery sampled --threads " + threads + " -o t" + threads);
+    CAPTURE(outcome.error);
+    REQUIRE(outcome.exit_code == 0);
+    for (const char* file : {"paths.jsonl", "links.csv", "pdp.csv"}) {
+      CHECK(file_bytes(folder.path() / ("t" + threads) / file) == file_bytes(folder.path() / "t1" / file));
+    }
+  }
+}
+
+TEST_CASE("a map has a CSV and a picture, and its values are those of a run at its points") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, grid_receiver);
+  REQUIRE(dcem_program(folder, "map street.json --frames 0:1 --quiet -o m").exit_code == 0);
+  REQUIRE(dcem_program(folder, "run street.json --frames 0:1 --quiet -o r").exit_code == 0);
+  const std::string map = file_bytes(folder.path() / "m" / "map_area_bs.csv");
+  const std::string links = file_bytes(folder.path() / "r" / "links.csv");
+  CHECK(file_bytes(folder.path() / "m" / "map_area_bs.png").starts_with("\x89PNG"));
+  CHECK(line_count(map) == 1 + 3 * 13);
+  CHECK(line_count(links) == 1 + 3 * 13);
+  // Row 4, column 1: x = -5 + 2, y = -12 + 8. The powers stand in columns 4 and 5 there, 9 and 10 here.
+  const std::size_t point = map.find("\n-3,-4,1.5,"), link = links.find(",\"area[4,1]\",");
+  REQUIRE(point != std::string::npos);
+  REQUIRE(link != std::string::npos);
+  const std::string powers = map.substr(point + 11, map.find(',', map.find(',', point + 11) + 1) - point - 11);
+  CHECK(powers.size() > 20);
+  CHECK(links.find("," + powers + ",", link) < links.find('\n', link));
+  // y = -10 and y = 10 are walls; beyond them nothing arrives, for lack of diffraction.
+  CHECK(map.find("\n-3,-10,1.5,,,,,,,,,\n") != std::string::npos);
+  CHECK(map.find("\n-3,-12,1.5,,,,,,,0,0,\n") != std::string::npos);
+}
+
+TEST_CASE("a map of several frames has the frame in its file names") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, grid_receiver);
+  REQUIRE(dcem_program(folder, "map street.json --frames 1:3 --quiet -o m").exit_code == 0);
+  for (const char* name : {"map_area_bs_1.csv", "map_area_bs_2.png"}) {
+    CHECK(std::filesystem::exists(folder.path() / "m" / name));
+  }
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "m" / "map_area_bs.csv"));
+}
+
+TEST_CASE("inspect shows a scene whose materials are not defined") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scene(folder);
+  write(folder / "street.mtl", "newmtl wall\nKd 1 1 1\n");
+  const Outcome table = dcem_program(folder, "inspect street.obj --frequency-hz 30e9");
+  CHECK(table.exit_code == 0);
+  CHECK(table.output.find("undefined") != std::string::npos);
+  const Outcome json = dcem_program(folder, "inspect street.obj --json --up y --unit-m 2");
+  CHECK(json.exit_code == 0);
+  CHECK(json.output.find("\"facets\": 3") != std::string::npos);
+  CHECK(json.output.find("\"defined\": false") != std::string::npos);
+  CHECK(json.output.find("\"wedges\"") == std::string::npos);
+}
+
+TEST_CASE("bad usage and bad input end with one line, exit code 2 and no output") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver);
+  write(folder / "full", "a file where a folder should be");
+  check_refused(folder, "", "command line: ");
+  check_refused(folder, "fly street.json", "command line: 'fly'");
+  check_refused(folder, "run", "command line: ");
+  check_refused(folder, "run absent.json", "absent.json");
+  check_refused(folder, "run street.json --frames 3:3", "frame out of range");
+  check_refused(folder, "run street.json --frames 0:5", "frame out of range");
+  check_refused(folder, "run street.json --frames 1", "--frames 1");
+  check_refused(folder, "run street.json --frames 1:2x", "--frames 1:2x");
+  check_refused(folder, "run street.json --threads none", "--threads");
+  check_refused(folder, "run street.json --cache exact", "not in this version");
+  check_refused(folder, "run street.json --discovery guess", "--discovery");
+  check_refused(folder, "run street.json --output html", "not in this version");
+  check_refused(folder, "run street.json --rays 0", "rays");
+  check_refused(folder, "run street.json -o full/result", "full");
+  check_refused(folder, "map street.json", "grid");
+  check_refused(folder, "inspect absent.obj", "absent.obj");
+  check_refused(folder, "verify street.json", "not in this version");
+  check_refused(folder, "import sumo town.sumocfg -o town", "not in this version");
+}
+
+TEST_CASE("version and help are no errors") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  const Outcome version = dcem_program(folder, "--version");
+  CHECK(version.exit_code == 0);
+  CHECK(version.output.starts_with("dcem "));
+  CHECK(dcem_program(folder, "map --help").exit_code == 0);
+}
