@@ -298,7 +298,7 @@ inline std::vector<double> all_numbers(const PathContribution& path) {
   return numbers;
 }
 
-/// Every number of the statistics; an absent one is a NaN of a kind that no result has.
+/// Every number of the statistics, each with a 1 before it; an absent one is two zeros.
 inline std::vector<double> all_numbers(const LinkStatistics& s) {
   std::vector<double> numbers{double(s.line_of_sight), double(s.path_count)};
   for (const auto& value :
