@@ -124,7 +124,7 @@ TEST_CASE("a path's line holds what the contract names, in its order") {
       R"("found_by":"exact","transfer":[[[0.25,0],[0,0]],[[0,0],[-0.25,0]]],"amplitude":[0.25,0],)"
       R"("path_gain_db":-20,"received_power_dbm":0,"departure":{"azimuth_rad":0,"zenith_rad":1.5},)"
       R"("arrival":{"azimuth_rad":3,"zenith_rad":1.5},"doppler_hz":0},)"
-      R"({"id":"R0-T0@car, red","kinds":"RT","points_m":[[0.1,-0.2,0],[1,2,1e-30]],"objects":["","car, red"],)"
+      R"({"id":"R0/T0@car, red","kinds":"RT","points_m":[[0.1,-0.2,0],[1,2,1e-30]],"objects":["","car, red"],)"
       R"("materials":["floor","sheet \"thin\""],"length_m":4.5,"delay_s":1.5e-08,)"
       R"("found_by":"exact","transfer":[[[0,0],[0,0]],[[0,0],[0,0]]],"amplitude":null,)"
       R"("path_gain_db":-30,"received_power_dbm":-10,"departure":{"azimuth_rad":0,"zenith_rad":0},)"

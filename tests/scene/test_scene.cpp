@@ -265,7 +265,9 @@ TEST_CASE("tolerances that are no lengths are refused") {
     CHECK_THROWS_AS(Scene{weld}, std::invalid_argument);
     CHECK_THROWS_AS(Scene{planarity}, std::invalid_argument);
   }
-  CHECK_NOTHROW(Scene{SurfaceSettings{0.0, 0.0}});
+  CHECK_THROWS_AS((Scene{SurfaceSettings{0.0, 1e-3}}), std::invalid_argument);
+  CHECK_NOTHROW(Scene{SurfaceSettings{1e-9, 1e-9}});
+  CHECK_NOTHROW(Scene{SurfaceSettings{1.0, 1.0}});
 }
 
 TEST_CASE("a free device moves by its own motion") {

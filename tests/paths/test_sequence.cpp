@@ -1,0 +1,74 @@
+/// Two sequences are one only if all their members are.
+#include "dcem/paths/sequence.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+#include <unordered_map>
+#include <vector>
+
+using namespace dcem;
+
+namespace {
+
+Sequence sequence(std::initializer_list<std::uint32_t> facets) {
+  Sequence result;
+  for (const std::uint32_t facet : facets) result.push_back(FacetId(facet));
+  return result;
+}
+
+/// Two different pairs of facets with one hash. The hash of (a, b) is a bijection of H(a) xor b, H the hash so far; so
+/// any two a whose H agree in their upper 32 bits collide for suitable b. By the birthday paradox 2^18 values of a hold
+/// some 8 such pairs.
+std::pair<Sequence, Sequence> colliding_pairs() {
+  std::unordered_map<std::uint64_t, std::pair<std::uint32_t, std::uint64_t>> seen;
+  for (std::uint32_t a = 0; a < (1U << 20); ++a) {
+    const std::uint64_t after_first = hash_values(std::uint64_t{2}, a);  // hash of a sequence of two, after its first
+    const std::uint64_t stirred = RandomStream(after_first).next();      // what the second member is mixed into
+    const auto [at, is_new] = seen.try_emplace(stirred >> 32, a, stirred);
+    if (is_new) continue;
+    const auto difference = static_cast<std::uint32_t>(stirred ^ at->second.second);
+    return {sequence({at->second.first, 7}), sequence({a, 7 ^ difference})};
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("two sequences with one hash are still two") {
+  const auto [one, other] = colliding_pairs();
+  REQUIRE(one.size() == 2);
+  REQUIRE(one != other);
+  REQUIRE(SequenceHash{}(one) == SequenceHash{}(other));
+  SequenceTable table;
+  CHECK(table.insert(one));
+  CHECK(table.insert(other));
+  CHECK_FALSE(table.insert(one));
+  CHECK_FALSE(table.insert(other));
+  CHECK(table.size() == 2);
+}
+
+TEST_CASE("order and length matter") {
+  SequenceTable table;
+  const std::vector<Sequence> all{sequence({}),     sequence({0}),       sequence({0, 0}), sequence({1, 2}),
+                                  sequence({2, 1}), sequence({1, 2, 1}), sequence({1}),    sequence({1, 2, 2})};
+  for (const Sequence& one : all) CHECK(table.insert(one));
+  for (const Sequence& one : all) CHECK_FALSE(table.insert(one));
+  CHECK(table.size() == all.size());
+}
+
+TEST_CASE("sequences of a scene spread over all hash values") {
+  // 32 896 values drawn from 2^64 collide with a chance of 3e-11; drawn from 2^16 buckets of their low bits they fill
+  // 1 - exp(-32896/65536) = 39.5 % of them, give or take 0.2 %.
+  std::set<std::size_t> hashes;
+  std::set<std::size_t> buckets;
+  for (std::uint32_t a = 0; a < 256; ++a) {
+    for (std::uint32_t b = 0; b <= a; ++b) {
+      hashes.insert(SequenceHash{}(sequence({a, b})));
+      buckets.insert(SequenceHash{}(sequence({a, b})) % 65536);
+    }
+  }
+  CHECK(hashes.size() == 32896);
+  CHECK(static_cast<double>(buckets.size()) / 65536.0 == doctest::Approx(0.3947).epsilon(0.02));
+}
