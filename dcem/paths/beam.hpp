@@ -40,14 +40,14 @@ class Beam {
   /// Slack of every test: beams are a little wider than they are, so rounding discards nothing. 1e-6 m and 1e-6 rad are
   /// a million times the rounding error of points a kilometre away.
   static constexpr double slack = 1e-6;
-  /// A window edge shorter than this gives no reliable side plane; leaving it out only widens the beam.
-  static constexpr double shortest_edge_m = 1e-3;
+  /// A window edge that looks shorter than this from the apex gives no reliable side plane; leaving it out only widens
+  /// the beam.
+  static constexpr double shortest_seen_edge_m = 1e-3;
 
   void add_side(const Vec3& from_m, const Vec3& to_m, const Vec3& centre_m) {
-    if (glm::distance(from_m, to_m) < shortest_edge_m) return;
-    const Vec3 scaled = glm::cross(from_m - apex_m_, to_m - apex_m_);
+    const Vec3 scaled = glm::cross(from_m - apex_m_, to_m - from_m);
     const double length = glm::length(scaled);
-    if (!(length > 1e-9 * glm::distance(from_m, apex_m_) * glm::distance(from_m, to_m))) return;  // seen edge-on
+    if (!(length > shortest_seen_edge_m * glm::distance(from_m, apex_m_))) return;
     const Vec3 normal = scaled / length;
     side_normals_.push_back(glm::dot(normal, centre_m - apex_m_) < 0.0 ? -normal : normal);
   }

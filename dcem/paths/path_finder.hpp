@@ -26,7 +26,7 @@ struct PathSearchSettings {
 /// The paths between one transmitter and one receiver, in the order of `reported_before`.
 struct LinkPaths {
   std::vector<Path> paths;
-  bool line_of_sight = false;  ///< the direct segment crosses nothing; then the first path is the direct one
+  bool line_of_sight = false;  ///< the direct segment crosses nothing: the direct path is among the paths
 };
 
 struct SearchCounters {
@@ -84,7 +84,8 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Tree>& tracer, const PathSea
   counters.solver += solver.counters();
   for (LinkPaths& link : links) {
     detail::sort_and_drop_repeated(link.paths);
-    link.line_of_sight = !link.paths.empty() && link.paths.front().interactions.empty();
+    link.line_of_sight =
+        std::any_of(link.paths.begin(), link.paths.end(), [](const Path& path) { return path.interactions.empty(); });
   }
   return links;
 }

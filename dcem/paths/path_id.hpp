@@ -7,7 +7,7 @@
 
 namespace dcem {
 
-/// Kind, object and facet of each interaction from transmitter to receiver, as in `R12-T3@car1`: reflected at facet 12
+/// Kind, object and facet of each interaction from transmitter to receiver, as in `R12/T3@car1`: reflected at facet 12
 /// of the scenery, then through facet 3 of the object `car1`. The line of sight is `LOS`. Facets are numbered within
 /// their body in an order that depends on its geometry alone, so objects that come, go or move do not rename a path.
 inline std::string path_id(const Scene& scene, const Path& path) {
@@ -15,7 +15,7 @@ inline std::string path_id(const Scene& scene, const Path& path) {
   std::string id;
   for (const Interaction& interaction : path.interactions) {
     const Body& body = scene.body(scene.facet(interaction.facet).body);
-    if (!id.empty()) id += '-';
+    if (!id.empty()) id += '/';
     id += static_cast<char>(interaction.kind);
     id += std::to_string(scene.facet_number(interaction.facet));
     if (!body.id.empty()) id += '@' + body.id;

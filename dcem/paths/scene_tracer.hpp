@@ -105,7 +105,13 @@ class SceneTracer {
     return std::clamp(t, 0.0, 1.0);
   }
 
-  void sort_and_merge(std::vector<Crossing>& crossings, double length_m) const;
+  void sort_and_merge(std::vector<Crossing>& crossings, const Vec3& leg_m) const;
+
+  /// Whether two crossings of a leg are of parallel sheets within the weld tolerance of each other, across the sheets.
+  bool one_sheet(const Crossing& one, const Crossing& next, const Vec3& leg_m) const {
+    const double apart_m = (next.t - one.t) * std::abs(glm::dot(leg_m, scene_.facet(one.facet).plane.normal));
+    return apart_m <= scene_.settings().weld_tolerance_m && parallel(one.facet, next.facet);
+  }
 
   /// The angle that coplanar facets cover around a point, radians: 2π inside, more where they overlap.
   double covered_rad(FacetId facet, const Vec3& point_m, const IgnoredBodies& ignored,
@@ -165,28 +171,32 @@ bool SceneTracer<Tree>::follow_leg(const Vec3& from_m, const Vec3& to_m, const L
     return false;
   };
   if (tree_.any(leg, blocks, &counters)) return false;
-  if (crossings.size() > 1) sort_and_merge(crossings, glm::distance(from_m, to_m));
+  if (crossings.size() > 1) sort_and_merge(crossings, to_m - from_m);
   return crossings.size() <= crossing_limit;
 }
 
 template <typename Tree>
-void SceneTracer<Tree>::sort_and_merge(std::vector<Crossing>& crossings, double length_m) const {
+void SceneTracer<Tree>::sort_and_merge(std::vector<Crossing>& crossings, const Vec3& leg_m) const {
   std::sort(crossings.begin(), crossings.end(),
             [&](const Crossing& a, const Crossing& b) { return a.t != b.t ? a.t < b.t : precedes(a.facet, b.facet); });
-  std::vector<Crossing> merged;
+  // Sheets are chained to the latest one of their stack, so a leg and its reverse merge the same.
+  struct Stack {
+    Crossing first_by_name, latest;
+  };
+  std::vector<Stack> stacks;
   for (const Crossing& crossing : crossings) {
-    const auto twin = std::find_if(merged.begin(), merged.end(), [&](const Crossing& other) {
-      return other.facet == crossing.facet ||
-             ((crossing.t - other.t) * length_m <= scene_.settings().weld_tolerance_m &&
-              parallel(other.facet, crossing.facet));
+    const auto stack = std::find_if(stacks.begin(), stacks.end(), [&](const Stack& other) {
+      return other.latest.facet == crossing.facet || one_sheet(other.latest, crossing, leg_m);
     });
-    if (twin == merged.end()) {
-      merged.push_back(crossing);
-    } else if (precedes(crossing.facet, twin->facet)) {
-      *twin = crossing;
+    if (stack == stacks.end()) {
+      stacks.push_back({crossing, crossing});
+    } else {
+      stack->latest = crossing;
+      if (precedes(crossing.facet, stack->first_by_name.facet)) stack->first_by_name = crossing;
     }
   }
-  crossings.swap(merged);
+  crossings.clear();
+  for (const Stack& stack : stacks) crossings.push_back(stack.first_by_name);
 }
 
 template <typename Tree>

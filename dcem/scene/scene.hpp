@@ -167,8 +167,8 @@ inline void Scene::set_scenery(const TriangleMesh& mesh) {
 
 inline BodyId Scene::add_object(std::string id, const TriangleMesh& mesh, Motion motion) {
   const std::string name = "object '" + id + "'";
-  if (id.empty() || find_body(id)) {
-    throw std::invalid_argument(name + ": expected an id that is not empty and not there yet");
+  if (id.empty() || id.find('/') != std::string::npos || find_body(id)) {
+    throw std::invalid_argument(name + ": expected an id that is not empty, has no slash and is not there yet");
   }
   Body body{std::move(id), std::move(motion), {}};
   detail::naming(name, [&] {

@@ -1,10 +1,12 @@
 #pragma once
 /// Everything a simulation can be told, one sentence, unit and default per field.
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <variant>
 
 #include "dcem/em/itu_p2040.hpp"
 #include "dcem/em/path_loss.hpp"
@@ -57,6 +59,9 @@ inline void validate(const SimulationSettings& settings) {
   check(propagation.max_transmissions >= 0 && propagation.max_transmissions <= 10,
         "max_transmissions: expected 0 to 10");
   check(!propagation.max_interactions || *propagation.max_interactions >= 0, "max_interactions: expected 0 or more");
+  check(!propagation.min_path_gain_db || std::isfinite(*propagation.min_path_gain_db),
+        "min_path_gain_db: expected a finite number");
+  if (const auto* close_in = std::get_if<CloseIn>(&propagation.path_loss.model)) validate(*close_in);
   check(propagation.rays >= 1 && propagation.rays <= 100'000'000, "rays: expected 1 to 1e8");
 }
 

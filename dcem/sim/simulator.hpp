@@ -246,7 +246,7 @@ std::vector<RadioMap> Simulator<Surface, Tree>::radio_maps(const ReceiverGrid& g
   std::vector<Vec3> transmitters_m;
   std::vector<RadioMap> maps;
   for (std::size_t index = 0; index < transmitters.radio.size(); ++index) {
-    transmitters_m.push_back(transmitters.radio[index].position_m);
+    if (transmitters.link[index]) transmitters_m.push_back(transmitters.radio[index].position_m);
     maps.push_back({grid, scene_.transmitters()[index].id, std::vector<RadioMapPoint>(grid.size())});
   }
   const ObstructionTest<Tree> obstruction(tracer, tree_, transmitters_m);
