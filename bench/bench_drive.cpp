@@ -13,6 +13,7 @@
 
 #include "bench/result_hash.hpp"
 #include "dcem/dcem.hpp"
+#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/scenario.hpp"
 
 namespace {

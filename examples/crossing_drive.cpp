@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "dcem/dcem.hpp"
+#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/scenario.hpp"
 
 namespace {

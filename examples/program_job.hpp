@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/summary.hpp"
-#include "dcem/sim/simulator.hpp"
 #include "program_options.hpp"
 
 namespace dcem::program {

@@ -1,8 +1,7 @@
 #pragma once
-/// What every test program has compiled once: the engine, doctest, and the simulator that most tests use. Headers that stand
-/// alone are checked elsewhere (tests/packaging).
+/// What every test program parses once: the engine, doctest, and the simulator that most tests use, compiled in
+/// dcem::io. That headers stand alone is checked elsewhere (tests/packaging).
 #include <doctest/doctest.h>
 
 #include "dcem/dcem.hpp"
-
-extern template class dcem::Simulator<>;  // compiled in simulator_instance.cpp
+#include "dcem/io/compiled_simulator.hpp"

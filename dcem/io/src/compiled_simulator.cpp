@@ -1,0 +1,3 @@
+#include "dcem/io/compiled_simulator.hpp"
+
+template class dcem::Simulator<>;
