@@ -198,8 +198,8 @@ TEST_CASE("NIST lists: the same specular paths up to order 2, none missing and n
   for (const auto& [name, tolerance_m] : scenes) {
     CAPTURE(name);
     const Comparison result = compare_scene(name, tolerance_m);
-    MESSAGE(std::string(name) << ": " << result.listed << " paths listed, " << result.found << " found, largest difference "
-                 << result.largest_error_m << " m");
+    MESSAGE(std::string(name) << ": " << result.listed << " paths listed, " << result.found
+                              << " found, largest difference " << result.largest_error_m << " m");
     CHECK(result.listed > 0);
     CHECK(result.missing == 0);
     CHECK(result.found == result.listed);
