@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "tests/io/temporary_folder.hpp"
 
@@ -35,6 +36,14 @@ Outcome dcem_program(const TemporaryFolder& folder, const std::string& arguments
   std::filesystem::remove(output);
   std::filesystem::remove(error);
   return outcome;
+}
+
+std::vector<std::string> sorted_lines(const std::filesystem::path& path) {
+  std::vector<std::string> lines;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  std::sort(lines.begin(), lines.end());
+  return lines;
 }
 
 void write(const std::filesystem::path& path, const std::string& text) {
@@ -140,6 +149,23 @@ TEST_CASE("the number of threads changes no byte") {
     for (const char* file : {"paths.jsonl", "links.csv", "pdp.csv"}) {
       CHECK(file_bytes(folder.path() / ("t" + threads) / file) == file_bytes(folder.path() / "t1" / file));
     }
+  }
+}
+
+TEST_CASE("the order of the devices changes no line") {
+  DCEM_NEEDS_PROGRAM();
+  TemporaryFolder folder;
+  write_scene(folder);
+  const std::string one = R"({"id":"a","position_m":[10,2,1.5]})", other = R"({"id":"b","position_m":[3,-4,2]})";
+  write(folder / "forward.json", scenario(one + "," + other));
+  write(folder / "backward.json", scenario(other + "," + one));
+  for (const std::string name : {"forward", "backward"}) {
+    const Outcome run = dcem_program(folder, "run " + name + ".json --quiet --discovery sampled -o " + name);
+    REQUIRE(run.exit_code == 0);
+  }
+  for (const char* file : {"paths.jsonl", "links.csv", "pdp.csv"}) {
+    CAPTURE(file);
+    CHECK(sorted_lines(folder.path() / "forward" / file) == sorted_lines(folder.path() / "backward" / file));
   }
 }
 
