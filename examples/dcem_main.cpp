@@ -41,28 +41,36 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, const std::s
       ->check(CLI::IsMember(words));
 }
 
-void add_scenario_options(CLI::App& command, ScenarioOptions& options) {
+void add_common_options(CLI::App& command, ScenarioOptions& options) {
   command.add_option("scenario", options.scenario, "The scenario file (JSON)")->required()->type_name("SCENARIO.json");
-  command.add_option("-o", options.folder, "Folder for the results (default: out/<scenario name>)")->type_name("DIR");
   command.add_option("--threads", options.threads, "Number of threads (default: all cores); never changes a result")
       ->check(CLI::Range(1U, 4096U))
       ->type_name("N");
   command.add_option("--frames", options.frames, "Only the frames A to B - 1")->type_name("A:B");
-  command.add_option("--cache", options.overrides.cache, "off (seed and exact are not in this version)")
+  command
+      .add_option("--cache", options.overrides.cache,
+                  "What is remembered between frames: off or seed (exact is not in this version)")
       ->check(CLI::IsMember({"off", "seed", "exact"}))
       ->type_name("MODE");
   command.add_option("--discovery", options.overrides.discovery, "How paths are found: exact or sampled")
       ->check(CLI::IsMember({"exact", "sampled"}))
       ->type_name("MODE");
-  command.add_option("--rays", options.overrides.rays, "Rays per receiver and frame, with --discovery sampled")
+  command
+      .add_option("--rays", options.overrides.rays,
+                  "Rays per receiver, with --discovery sampled; with --cache seed in the first frame")
       ->type_name("N");
   command.add_option("--seed", options.overrides.seed, "Turns the sphere of rays")->type_name("S");
-  command.add_option("--output", options.overrides.output, "Result files: paths, links, pdp")
-      ->type_name("KEY[,KEY...]");
   add_choice(command, "--progress", "Progress bar: auto (on a terminal), always or never", progress_modes,
              options.progress)
       ->type_name("WHEN");
   command.add_flag("--quiet", options.quiet, "No table, no progress bar and no warnings");
+}
+
+void add_scenario_options(CLI::App& command, ScenarioOptions& options) {
+  add_common_options(command, options);
+  command.add_option("-o", options.folder, "Folder for the results (default: out/<scenario name>)")->type_name("DIR");
+  command.add_option("--output", options.overrides.output, "Result files: paths, links, pdp")
+      ->type_name("KEY[,KEY...]");
 }
 
 void add_inspect_options(CLI::App& command, InspectOptions& options) {
@@ -82,7 +90,8 @@ void add_inspect_options(CLI::App& command, InspectOptions& options) {
 void add_absent_command(CLI::App& app, const std::string& name, const std::string& does) {
   CLI::App* command = app.add_subcommand(name, does + " (not in this version)");
   command->allow_extras();
-  command->callback([name] { throw UsageError("'dcem " + name + "' is not in this version", "run, map or inspect"); });
+  command->callback(
+      [name] { throw UsageError("'dcem " + name + "' is not in this version", "run, map, verify or inspect"); });
 }
 
 void add_commands(CLI::App& app, Options& options) {
@@ -100,7 +109,10 @@ void add_commands(CLI::App& app, Options& options) {
       "not in this version)");
   add_inspect_options(*inspect, options.inspect);
   inspect->callback([&] { inspect_scene(options.inspect); });
-  add_absent_command(app, "verify", "Check a scenario's results against a solution from scratch");
+  CLI::App* verify = app.add_subcommand(
+      "verify", "Solve every reported path again on its own, and compare with exhaustive search where it is possible");
+  add_common_options(*verify, options.scenario);
+  verify->callback([&] { verify_scenario(options.scenario); });
   add_absent_command(app, "import", "Make scenarios from SUMO, OpenStreetMap or GEMV2 data");
 }
 
@@ -108,7 +120,8 @@ void add_commands(CLI::App& app, Options& options) {
 void check_command(const CLI::App& app, int argument_count, char** arguments) {
   if (argument_count < 2 || arguments[1][0] == '-') return;
   const auto commands = app.get_subcommands([&](const CLI::App* command) { return command->check_name(arguments[1]); });
-  if (commands.empty()) throw UsageError("'" + std::string(arguments[1]) + "' is no command", "run, map or inspect");
+  if (commands.empty())
+    throw UsageError("'" + std::string(arguments[1]) + "' is no command", "run, map, verify or inspect");
 }
 
 int fail(std::string message, int exit_code) {

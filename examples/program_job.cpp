@@ -4,6 +4,7 @@
 #include <iostream>
 #include <string_view>
 
+#include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
 
 #ifndef DCEM_VERSION
@@ -37,6 +38,7 @@ FrameRange parse_frames(const std::string& text, std::size_t available) {
 Job prepare_job(const ScenarioOptions& options) {
   Job job{io::load_scenario(options.scenario, options.overrides), {}, options.folder};
   job.frames = parse_frames(options.frames, job.scenario.time.frames);
+  io::require_attached_devices(job.scenario, job.frames.first, job.frames.last);
   if (options.threads) job.scenario.settings.threads = *options.threads;
   if (job.folder.empty()) job.folder = std::filesystem::path("out") / job.scenario.name;
   return job;
@@ -50,8 +52,22 @@ Simulator<> make_simulator(Job& job, const ScenarioOptions& options) {
   }
 }
 
+void expand_grids(io::Scenario& scenario, const std::string& file) {
+  for (const ReceiverGrid& grid : scenario.grids) {
+    for (std::size_t row = 0; row < grid.rows(); ++row) {
+      for (std::size_t column = 0; column < grid.columns(); ++column) {
+        try {
+          scenario.scene.add_receiver(grid_receiver(grid, row, column));
+        } catch (const std::invalid_argument& error) {
+          throw io::InputError(file, error.what());
+        }
+      }
+    }
+  }
+}
+
 io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t receivers) {
-  return {DCEM_VERSION,      job.scenario.name, simulator.settings(), simulator.discovery(),
+  return {DCEM_VERSION,      job.scenario.name, simulator.settings(), simulator.discovery(), simulator.cache(),
           job.scenario.time, receivers,         job.scenario.warnings};
 }
 

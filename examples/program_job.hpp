@@ -1,5 +1,5 @@
 #pragma once
-/// What `dcem run` and `dcem map` have in common.
+/// What `dcem run`, `dcem map` and `dcem verify` have in common.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +17,9 @@ struct Job {
   std::filesystem::path folder;
 };
 Job prepare_job(const ScenarioOptions& options);
+
+/// Every point of every grid becomes a receiver of the scene. Throws InputError with the name of the scenario file.
+void expand_grids(io::Scenario& scenario, const std::string& file);
 
 /// Takes the scene out of the job. What the simulator refuses is an InputError that names the scenario file.
 Simulator<> make_simulator(Job& job, const ScenarioOptions& options);

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <set>
 
+#include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/map_writer.hpp"
 #include "program_job.hpp"
@@ -58,9 +59,8 @@ void write_map(io::OutputFolder& folder, const RadioMap& map, const Job& job, co
   picture.close();
 }
 
-io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, Simulator<>& simulator, std::size_t index,
+io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, Simulator<>& simulator, const Frame& frame,
                            io::ProgressBar& bar) {
-  const Frame frame = simulator.scene().frame_at(job.scenario.time_s(index), index);
   io::FrameFigures figures = io::figures_of(simulator.advance(frame));
   for (const ReceiverGrid& grid : job.scenario.grids) {
     const auto start = std::chrono::steady_clock::now();
@@ -83,6 +83,7 @@ void map_scenario(const ScenarioOptions& options) {
     throw io::InputError(options.scenario, "no receiver is a grid; expected one with the key 'grid' to draw a map of");
   }
   check_names(job, options.scenario);
+  io::FrameSource frames(job.scenario);
   Simulator<> simulator = make_simulator(job, options);
   io::OutputFolder folder(job.folder);
   const std::size_t points = point_count(job.scenario);
@@ -91,7 +92,7 @@ void map_scenario(const ScenarioOptions& options) {
   {
     io::ProgressBar bar("points", points * job.frames.count(), progress_mode(options));
     for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
-      summary.add(map_frame(folder, job, simulator, frame, bar));
+      summary.add(map_frame(folder, job, simulator, frames.frame(simulator.scene(), frame), bar));
     }
   }
   folder.open("map_summary.json").write(summary.json());

@@ -19,6 +19,12 @@ class UsageError : public std::runtime_error {
       : std::runtime_error("command line: " + problem + "; expected " + expectation) {}
 };
 
+/// A check was made and did not pass.
+class CheckFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Frames first, first + 1, …, last − 1.
 struct FrameRange {
   std::size_t first = 0;
@@ -46,6 +52,7 @@ struct InspectOptions {
 
 void run_scenario(const ScenarioOptions& options);
 void map_scenario(const ScenarioOptions& options);
+void verify_scenario(const ScenarioOptions& options);
 void inspect_scene(const InspectOptions& options);
 
 }  // namespace dcem::program

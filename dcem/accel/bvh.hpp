@@ -23,6 +23,7 @@
 #include "dcem/accel/refit.hpp"
 #include "dcem/accel/sah_builder.hpp"
 #include "dcem/accel/sah_settings.hpp"
+#include "dcem/accel/subtree_wear.hpp"
 #include "dcem/accel/traversal.hpp"
 #include "dcem/accel/validate.hpp"
 #include "dcem/geometry/aabb.hpp"
@@ -52,6 +53,14 @@ class Bvh {
   /// their slots and contents, except that ancestors are refitted if the node's box has become another. Above group
   /// roots, groups stay groups.
   void rebuild_subtree(std::uint32_t node, Boxes boxes);
+
+  /// Builds the nodes below one node anew, but only those of its own layer: above group roots the tree over the groups,
+  /// each group's own tree staying as it is and only hanging elsewhere; inside a group the same as rebuild_subtree.
+  void rebuild_layer(std::uint32_t node, Boxes boxes) {
+    require_boxes(boxes);
+    require_node(node);
+    lies_in_group(node) ? rebuild_subtree(node, boxes) : rebuild_above_groups(node);
+  }
 
   // Following motion.
 
@@ -115,6 +124,23 @@ class Bvh {
   std::uint32_t group_root(std::size_t group) const { return group_root_.at(group); }
   std::size_t group_count() const { return group_root_.size(); }
 
+  /// Whether a node belongs to the tree of one group; otherwise it lies above group roots.
+  bool lies_in_group(std::uint32_t node) const;
+
+  /// Calls `visit(slot)` for a node and for every node below it of the same layer, parents before children.
+  template <class Visit>
+  void for_each_in_layer(std::uint32_t node, Visit&& visit) const {
+    std::vector<std::uint32_t> layer{node};
+    for (std::size_t index = 0; index < layer.size(); ++index) {
+      const BvhNode<Scalar> held = arrays_.nodes[layer[index]];
+      visit(layer[index]);
+      if (held.is_leaf()) continue;
+      for (const std::uint32_t child : {held.left(), held.right()}) {
+        if (!wear_[child].is_group_root) layer.push_back(child);
+      }
+    }
+  }
+
   /// All slots, also unused ones; the root is slot 0.
   std::span<const BvhNode<Scalar>> nodes() const { return arrays_.nodes; }
   const BvhArrays<Scalar>& arrays() const { return arrays_; }
@@ -123,9 +149,15 @@ class Bvh {
   /// Levels from the root to the deepest leaf: 0 without primitives, 1 for a single leaf. Walks the whole tree.
   std::uint32_t depth() const;
 
-  /// SAH cost, no unit, from a sum that every edit keeps up to date.
-  double sah_cost() const { return sah_from_area(weighted_area_m2_, static_cast<double>(bounds().half_area())); }
+  /// Expected cost of a long random ray by the surface-area heuristic, no unit; from a sum that every edit keeps.
+  double sah_cost() const {
+    return arrays_.empty() ? 0.0 : sah_from_area(wear_[0].weighted_area_m2, static_cast<double>(bounds().half_area()));
+  }
   BvhQuality quality() const { return {sah_cost(), sah_at_build_}; }
+  /// What is known of the subtree below a node: kept by every edit.
+  const SubtreeWear& wear(std::uint32_t node) const { return wear_.at(node); }
+  /// The nodes above the primitives of the last refit, children before parents.
+  std::span<const std::uint32_t> last_refit() const { return last_refit_; }
 
   /// A sentence about the first broken invariant, empty when all hold. `boxes` are the primitives' boxes as they are
   /// now: a tree that was not told of a motion is defective.
@@ -140,6 +172,10 @@ class Bvh {
     return stopped;
   }
 
+  void require_node(std::uint32_t node) const {
+    if (node < arrays_.nodes.size() && arrays_.parent[node] != free_slot) return;
+    throw std::invalid_argument("node " + std::to_string(node) + " is not in the tree");
+  }
   void require_boxes(Boxes boxes) const {
     if (boxes.size() != primitive_count()) throw std::invalid_argument("one box per primitive of the tree is needed");
   }
@@ -148,21 +184,29 @@ class Bvh {
   void grow_groups(std::uint32_t slot, std::span<const std::uint32_t> groups, Boxes boxes, std::uint32_t levels);
   void grow_range(std::uint32_t slot, std::size_t begin, std::size_t end, Boxes boxes, std::uint32_t levels);
   void regrow(std::uint32_t node, Boxes boxes);
+  void rebuild_above_groups(std::uint32_t node);
+  std::uint32_t first_position(std::uint32_t node) const;
+  void hang_group(std::uint32_t slot, std::uint32_t group, const BvhNode<Scalar>& root, const SubtreeWear& wear);
+  void begin_wear_below(std::uint32_t node);
+  void begin_wear_above_groups(std::uint32_t node);
+  void refresh_wear_above(std::uint32_t node);
   RefitReport sweep_dirty();
-  bool recompute(std::uint32_t slot);
+  bool tighten(std::uint32_t slot);
   bool take_over(std::uint32_t primitive, const Box& box);
   std::string check_groups() const;
+  std::string check_wear() const;
 
   BvhArrays<Scalar> arrays_;
   SahSettings settings_;
   std::vector<std::uint32_t> group_first_;  ///< positions; one more entry than groups
   std::vector<std::uint32_t> group_root_;
-  double weighted_area_m2_ = 0.0;
-  double peak_area_m2_ = 0.0;  ///< largest weighted_area_m2_ since the build: the scale of its rounding errors
+  std::vector<SubtreeWear> wear_;  ///< per slot
   double sah_at_build_ = 0.0;
   DirtyPaths dirty_;
+  std::vector<std::uint32_t> last_refit_;
 };
 
 }  // namespace dcem
 
 #include "dcem/accel/bvh_edit.hpp"
+#include "dcem/accel/bvh_layers.hpp"

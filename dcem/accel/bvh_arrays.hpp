@@ -38,6 +38,9 @@ struct BvhArrays {
   /// Frees every slot below `root`, which itself stays and must be planted anew.
   void free_below(std::uint32_t root);
 
+  /// Frees pairs of slots by their first slots; nothing that stays may lead there.
+  void release(std::span<const std::uint32_t> pairs);
+
   /// Copies a tree in the layout of SahBuilder::build into `slot` and newly taken pairs, and calls
   /// `finish_leaf(slot)` for each leaf.
   template <class FinishLeaf>
@@ -73,16 +76,22 @@ std::uint32_t BvhArrays<Scalar>::take_pair() {
 
 template <std::floating_point Scalar>
 void BvhArrays<Scalar>::free_below(std::uint32_t root) {
-  const std::size_t kept = free_pairs.size();
+  std::vector<std::uint32_t> pairs;
   for_each_node<Scalar>(nodes, root, [&](std::uint32_t slot, std::uint32_t) {
-    if (!nodes[slot].is_leaf()) free_pairs.push_back(nodes[slot].left());
+    if (!nodes[slot].is_leaf()) pairs.push_back(nodes[slot].left());
   });
-  for (std::size_t index = kept; index < free_pairs.size(); ++index) {
-    for (const std::uint32_t slot : {free_pairs[index], free_pairs[index] + 1}) {
+  release(pairs);
+}
+
+template <std::floating_point Scalar>
+void BvhArrays<Scalar>::release(std::span<const std::uint32_t> pairs) {
+  for (const std::uint32_t pair : pairs) {
+    for (const std::uint32_t slot : {pair, pair + 1}) {
       nodes[slot] = {};
       parent[slot] = free_slot;
     }
   }
+  free_pairs.insert(free_pairs.end(), pairs.begin(), pairs.end());
   std::ranges::sort(free_pairs, std::greater{});
 }
 

@@ -25,10 +25,10 @@ void Bvh<Scalar>::build_grouped(Boxes boxes, std::span<const std::uint32_t> grou
     if (group_first_[group] < group_first_[group + 1]) groups.push_back(group);
   }
   if (!groups.empty()) grow_groups(0, groups, boxes, maximum_build_levels);
-  weighted_area_m2_ = arrays_.empty() ? 0.0 : weighted_area(nodes(), 0, settings_);
-  peak_area_m2_ = weighted_area_m2_;
+  wear_.clear();
+  last_refit_.clear();
+  if (!arrays_.empty()) begin_wear_below(0);
   sah_at_build_ = sah_cost();
-  dirty_.reserve(arrays_.nodes.size());
 }
 
 /// Plants a tree over the groups at `slot` and each group's own tree at a leaf of it.
@@ -78,9 +78,7 @@ void Bvh<Scalar>::grow_range(std::uint32_t slot, std::size_t begin, std::size_t 
 template <std::floating_point Scalar>
 void Bvh<Scalar>::rebuild_subtree(std::uint32_t node, Boxes boxes) {
   require_boxes(boxes);
-  if (node >= arrays_.nodes.size() || arrays_.parent[node] == free_slot) {
-    throw std::invalid_argument("node " + std::to_string(node) + " is not in the tree");
-  }
+  require_node(node);
   for_each_node(nodes(), node, [&](std::uint32_t slot, std::uint32_t) {
     const BvhNode<Scalar>& held = arrays_.nodes[slot];
     for (std::size_t index = 0; index < held.count; ++index) {
@@ -89,13 +87,14 @@ void Bvh<Scalar>::rebuild_subtree(std::uint32_t node, Boxes boxes) {
     }
   });
   const Box old_box = arrays_.nodes[node].box;
-  weighted_area_m2_ -= weighted_area(nodes(), node, settings_);
   regrow(node, boxes);
-  weighted_area_m2_ += weighted_area(nodes(), node, settings_);
-  peak_area_m2_ = std::max(peak_area_m2_, weighted_area_m2_);
-  dirty_.reserve(arrays_.nodes.size());
-  if (arrays_.nodes[node].box == old_box) return;
-  for (std::uint32_t above = arrays_.parent[node]; above != no_node && recompute(above);) above = arrays_.parent[above];
+  last_refit_.clear();
+  begin_wear_below(node);
+  if (arrays_.nodes[node].box != old_box) {
+    for (std::uint32_t above = arrays_.parent[node]; above != no_node && tighten(above);) above = arrays_.parent[above];
+  }
+  refresh_wear_above(node);
+  if (node == 0) sah_at_build_ = sah_cost();
 }
 
 /// Frees and plants below `node`: one range of positions inside a group, whole groups above the group roots.
@@ -161,9 +160,13 @@ RefitReport Bvh<Scalar>::refit_all(Boxes boxes) {
 
 template <std::floating_point Scalar>
 RefitReport Bvh<Scalar>::sweep_dirty() {
-  const RefitReport report = dirty_.sweep(arrays_.parent, [this](std::uint32_t slot) { return recompute(slot); });
-  peak_area_m2_ = std::max(peak_area_m2_, weighted_area_m2_);
-  return report;
+  last_refit_.clear();
+  return dirty_.sweep(arrays_.parent, [this](std::uint32_t slot, bool stale) {
+    const bool changed = stale && tighten(slot);
+    refresh_wear<Scalar>(wear_, nodes(), slot, settings_);
+    last_refit_.push_back(slot);
+    return changed;
+  });
 }
 
 /// Stores the box of a primitive; false when it is the one already stored.
@@ -177,9 +180,9 @@ bool Bvh<Scalar>::take_over(std::uint32_t primitive, const Box& box) {
   return true;
 }
 
-/// Makes one box tight again and keeps the SAH sum; false when the box stays as it was.
+/// Makes one box tight again; false when the box stays as it was.
 template <std::floating_point Scalar>
-bool Bvh<Scalar>::recompute(std::uint32_t slot) {
+bool Bvh<Scalar>::tighten(std::uint32_t slot) {
   BvhNode<Scalar>& node = arrays_.nodes[slot];
   Box tight;
   if (node.is_leaf()) {
@@ -189,8 +192,6 @@ bool Bvh<Scalar>::recompute(std::uint32_t slot) {
     tight.extend(arrays_.nodes[node.right()].box);
   }
   if (tight == node.box) return false;
-  const double growth_m2 = static_cast<double>(tight.half_area()) - static_cast<double>(node.box.half_area());
-  weighted_area_m2_ += node_cost(node, settings_) * growth_m2;
   node.box = tight;
   return true;
 }
@@ -207,30 +208,7 @@ template <std::floating_point Scalar>
 std::string Bvh<Scalar>::validate(Boxes boxes) const {
   if (std::string defect = find_defect(arrays_, boxes); !defect.empty()) return defect;
   if (std::string defect = check_groups(); !defect.empty()) return defect;
-  const double recomputed_m2 = arrays_.empty() ? 0.0 : weighted_area(nodes(), 0, settings_);
-  // Sums in another order differ by rounding, some 1e-16 of the largest sum there has been for each edit.
-  if (std::abs(recomputed_m2 - weighted_area_m2_) > 1e-9 * peak_area_m2_) return "the tracked SAH sum is not the sum";
-  return {};
-}
-
-/// Each group's root holds exactly the group's positions.
-template <std::floating_point Scalar>
-std::string Bvh<Scalar>::check_groups() const {
-  for (std::size_t group = 0; group < group_root_.size(); ++group) {
-    const std::uint32_t begin = group_first_[group];
-    const std::uint32_t end = group_first_[group + 1];
-    std::size_t held = 0;
-    bool inside = (group_root_[group] == no_node) == (begin == end);
-    if (inside && begin != end) {
-      for_each_node(nodes(), group_root_[group], [&](std::uint32_t slot, std::uint32_t) {
-        const BvhNode<Scalar>& node = arrays_.nodes[slot];
-        if (node.is_leaf()) inside = inside && node.first >= begin && node.first + node.count <= end;
-        held += node.count;
-      });
-    }
-    if (!inside || held != end - begin) return "group " + std::to_string(group) + " does not own its subtree";
-  }
-  return {};
+  return check_wear();
 }
 
 }  // namespace dcem

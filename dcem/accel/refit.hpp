@@ -11,7 +11,8 @@ namespace dcem {
 
 /// What a refit did.
 struct RefitReport {
-  std::size_t touched_nodes = 0;  ///< nodes whose box was computed anew
+  std::size_t visited_nodes = 0;  ///< nodes above moved primitives: their sums were brought up to date
+  std::size_t touched_nodes = 0;  ///< of these, nodes whose box was computed anew
   std::size_t changed_nodes = 0;  ///< of these, nodes whose box became another
 
   friend bool operator==(const RefitReport&, const RefitReport&) = default;
@@ -21,7 +22,7 @@ struct RefitReport {
 ///
 /// Marking a leaf walks up and counts, per inner node, the marked children that are still to come; the walk ends where
 /// another leaf has passed. Sweeping climbs from each leaf and goes on at a parent only when its last marked child is
-/// done. A node is recomputed only when a child's box became another: that is the early out.
+/// done. A box is recomputed only when a child's box became another: that is the early out.
 class DirtyPaths {
  public:
   /// Room for a tree with this many slots. Marking and sweeping allocate nothing.
@@ -41,11 +42,12 @@ class DirtyPaths {
     }
   }
 
-  /// Calls `recompute(slot) -> bool` (did the box change?) from the marked leaves upward and forgets the marks.
-  template <class Recompute>
-  RefitReport sweep(std::span<const std::uint32_t> parents, Recompute&& recompute) {
+  /// Calls `visit(slot, stale) -> bool` from the marked leaves upward, children before parents, and forgets the marks.
+  /// `stale`: what is below has changed, the box must be computed anew; returned: it became another.
+  template <class Visit>
+  RefitReport sweep(std::span<const std::uint32_t> parents, Visit&& visit) {
     RefitReport report;
-    for (const std::uint32_t leaf : leaves_) climb(leaf, parents, recompute, report);
+    for (const std::uint32_t leaf : leaves_) climb(leaf, parents, visit, report);
     leaves_.clear();
     return report;
   }
@@ -56,16 +58,15 @@ class DirtyPaths {
     bool changed = false;
   };
 
-  template <class Recompute>
-  void climb(std::uint32_t leaf, std::span<const std::uint32_t> parents, Recompute& recompute, RefitReport& report) {
+  template <class Visit>
+  void climb(std::uint32_t leaf, std::span<const std::uint32_t> parents, Visit& visit, RefitReport& report) {
     for (std::uint32_t node = leaf; node != no_node;) {
-      bool changed = states_[node].changed;
+      const bool stale = states_[node].changed;
       states_[node].changed = false;
-      if (changed) {
-        changed = recompute(node);
-        ++report.touched_nodes;
-        if (changed) ++report.changed_nodes;
-      }
+      const bool changed = visit(node, stale);
+      ++report.visited_nodes;
+      if (stale) ++report.touched_nodes;
+      if (changed) ++report.changed_nodes;
       node = parents[node];
       if (node == no_node) return;
       states_[node].changed = states_[node].changed || changed;

@@ -1,11 +1,12 @@
 #pragma once
-/// Paths and boxes as plain Wavefront OBJ, to be looked at in any viewer.
+/// Paths, edges and boxes as plain Wavefront OBJ, to be looked at in any viewer.
 #include <limits>
 #include <ostream>
 #include <span>
 
 #include "dcem/channel/path_contribution.hpp"
 #include "dcem/geometry/aabb.hpp"
+#include "dcem/geometry/wedge.hpp"
 #include "dcem/paths/path.hpp"
 
 namespace dcem::debug {
@@ -27,6 +28,14 @@ inline void write_path(std::ostream& out, const Path& path, const Vec3& transmit
   out << 'l';
   for (int index = -count; index < 0; ++index) out << ' ' << index;
   out << '\n';
+}
+
+/// A diffracting edge as one line from start to end: `wedge` between two facets, `free_edge` at a rim.
+inline void write_wedge(std::ostream& out, const Wedge& wedge) {
+  out << "o " << (is_free(wedge) ? "free_edge" : "wedge") << '\n';
+  write_vertex(out, wedge.start_m);
+  write_vertex(out, wedge.end_m);
+  out << "l -2 -1\n";
 }
 
 /// The twelve edges of a box.

@@ -4,7 +4,8 @@
 /// 1. Weld vertices. 2. Drop triangles without area, then repeated ones. 3. Find triangles that share an edge. 4. Join
 /// those of one material that are coplanar. 5. Fit each set's plane; a set that bends too far falls back to its
 /// triangles.
-/// 6. Lay everything out facet by facet. Cost: O(n log n) in the number of triangles.
+/// 6. Lay everything out facet by facet. 7. Collect the diffracting edges (`wedge_builder.hpp`). Cost: O(n log n) in
+/// the number of triangles.
 ///
 /// Source of the rules: `CONVENTIONS.md`, section "Facets".
 #include <algorithm>
@@ -19,6 +20,7 @@
 #include "dcem/geometry/mesh_cleaning.hpp"
 #include "dcem/geometry/mesh_edges.hpp"
 #include "dcem/geometry/surface_mesh.hpp"
+#include "dcem/geometry/wedge_builder.hpp"
 
 namespace dcem {
 
@@ -156,7 +158,12 @@ class FacetBuilder {
 }  // namespace detail
 
 inline SurfaceMesh build_surface_mesh(const TriangleMesh& mesh, const SurfaceSettings& settings) {
-  return detail::FacetBuilder(clean_mesh(mesh, settings), settings).build();
+  SurfaceMesh surface = detail::FacetBuilder(clean_mesh(mesh, settings), settings).build();
+  surface.wedges = build_wedges(surface, settings);
+  const auto free = std::count_if(surface.wedges.begin(), surface.wedges.end(), is_free);
+  surface.report.free_edges = static_cast<std::size_t>(free);
+  surface.report.wedges = surface.wedges.size() - surface.report.free_edges;
+  return surface;
 }
 
 }  // namespace dcem

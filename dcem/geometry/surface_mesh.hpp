@@ -13,6 +13,7 @@
 #include "dcem/geometry/plane.hpp"
 #include "dcem/geometry/surface_settings.hpp"
 #include "dcem/geometry/triangle_mesh.hpp"
+#include "dcem/geometry/wedge.hpp"
 
 namespace dcem {
 
@@ -36,6 +37,8 @@ struct SurfaceReport {
   std::size_t uneven_sets = 0;             ///< coplanar sets that bend too far and fell back to their triangles
   std::size_t closed_shells = 0;           ///< connected sets of triangles without an open or crowded edge
   std::size_t standing_shells = 0;         ///< the same but for open edges at their foot: houses without a floor
+  std::size_t wedges = 0;                  ///< straight edges between two facets, of any angle
+  std::size_t free_edges = 0;              ///< straight pieces of rims
 };
 
 struct SurfaceMesh {
@@ -49,6 +52,7 @@ struct SurfaceMesh {
   std::vector<double> shell_foot_m;  ///< lowest z of each enclosing shell; entry 0 is shell 1
   std::vector<Facet> facets;
   std::vector<Vec3> hull_points_m;  ///< corners of each facet's convex hull, on its plane, in order around it
+  std::vector<Wedge> wedges;        ///< where two facets meet, then the free edges
   SurfaceReport report;
 };
 

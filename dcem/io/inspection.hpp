@@ -19,6 +19,8 @@ struct InspectionSettings {
   SurfaceSettings surfaces;
   /// Materials are evaluated here, Hz; absent: not at all.
   std::optional<double> frequency_hz;
+  /// Edges between two facets count from this exterior angle on.
+  double min_exterior_angle_deg = 190.0;
 };
 
 /// A material that triangles use.
@@ -47,10 +49,20 @@ struct InspectedFacet {
   Plane plane;
 };
 
+/// Edges that can diffract: straight, each as long as its facets go on.
+struct InspectedWedges {
+  double min_exterior_angle_deg = 0.0;  ///< of the settings
+  std::size_t wedges = 0;               ///< between two facets, from that angle on
+  double wedge_length_m = 0.0;
+  std::size_t free_edges = 0;  ///< rims of open sheets
+  double free_edge_length_m = 0.0;
+};
+
 struct Inspection {
   std::string file;
   std::size_t triangles = 0;  ///< that are left after mending
   std::size_t facets = 0;
+  InspectedWedges wedges;
   Aabb<double> box;
   SurfaceReport report;
   /// Pairs of facets that lie on top of each other over more than a sliver.
@@ -69,8 +81,7 @@ Inspection inspect_obj(const std::filesystem::path& file, const InspectionSettin
 /// overlap over a width of more than about ten weld tolerances.
 std::size_t overlapping_facet_pairs(const SurfaceMesh& mesh, const SurfaceSettings& settings);
 
-/// As JSON (an object, indented) and as a table for the console. Edges that could diffract are not part of this version
-/// and are in neither.
+/// As JSON (an object, indented) and as a table for the console.
 std::string inspection_json(const Inspection& inspection);
 std::string inspection_table(const Inspection& inspection);
 

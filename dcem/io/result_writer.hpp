@@ -49,6 +49,7 @@ class ResultWriter {
   void append_path(const LinkResult& link, const PathContribution& path);
   void append_link(const FrameResult& frame, const LinkResult& link);
   void append_profile(const FrameResult& frame, const LinkResult& link);
+  std::string object_json(BodyId id) const;
 
   const Scene& scene_;
   OutputSettings output_;

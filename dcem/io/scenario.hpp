@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dcem/channel/power_delay_profile.hpp"
+#include "dcem/io/traffic.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/settings.hpp"
 
@@ -17,6 +18,12 @@ struct TimeSettings {
   double start_s = 0.0;
   double step_s = 0.1;
   std::size_t frames = 1;
+  std::vector<double> instants_s{};  ///< of each frame, where they are a trace's own steps; otherwise empty
+
+  /// Instant of a frame.
+  double time_s(std::size_t frame) const {
+    return instants_s.empty() ? start_s + static_cast<double>(frame) * step_s : instants_s[frame];
+  }
 };
 
 /// Which result files are written.
@@ -44,10 +51,11 @@ struct Scenario {
   TimeSettings time;
   OutputSettings output;
   std::vector<ReceiverGrid> grids;  ///< not yet among the scene's receivers
+  std::optional<Traffic> traffic;   ///< vehicles of a trace; their frames come from a `FrameSource`
   std::vector<std::string> warnings;
 
   /// Instant of a frame.
-  double time_s(std::size_t frame) const { return time.start_s + static_cast<double>(frame) * time.step_s; }
+  double time_s(std::size_t frame) const { return time.time_s(frame); }
 };
 
 /// Reads a scenario and everything it names. Throws InputError.

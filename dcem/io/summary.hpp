@@ -18,6 +18,7 @@ struct RunFacts {
   std::string scenario;  ///< its name
   SimulationSettings settings;
   Discovery discovery = Discovery::sampled;  ///< how paths are found: exact or sampled
+  CacheMode cache = CacheMode::off;          ///< what is remembered from frame to frame: off or seed
   TimeSettings time;
   std::size_t receivers = 0;          ///< points of grids included
   std::vector<std::string> warnings;  ///< one line each
@@ -32,7 +33,8 @@ struct FrameFigures {
   std::size_t paths = 0;
   double update_time_s = 0.0;  ///< wall-clock time to move scene and tree
   double solve_time_s = 0.0;   ///< wall-clock time to find paths and compute fields
-  TreeReport tree;
+  UpkeepReport tree;
+  CacheCounters cache;
   WorkCounters work;
 };
 
@@ -54,6 +56,7 @@ class RunSummary {
 
  private:
   [[nodiscard]] std::vector<double> frame_times_s() const;
+  [[nodiscard]] std::string cache_text(const CacheCounters& cache) const;
 
   RunFacts facts_;
   const Scene& scene_;

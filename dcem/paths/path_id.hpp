@@ -14,11 +14,11 @@ inline std::string path_id(const Scene& scene, const Path& path) {
   if (path.interactions.empty()) return "LOS";
   std::string id;
   for (const Interaction& interaction : path.interactions) {
-    const Body& body = scene.body(scene.facet(interaction.facet).body);
+    const std::string& object = scene.body_name(scene.facet(interaction.facet).body);
     if (!id.empty()) id += '/';
     id += static_cast<char>(interaction.kind);
     id += std::to_string(scene.facet_number(interaction.facet));
-    if (!body.id.empty()) id += '@' + body.id;
+    if (!object.empty()) id += '@' + object;
   }
   return id;
 }

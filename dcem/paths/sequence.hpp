@@ -28,6 +28,7 @@ class SequenceTable {
  public:
   /// True when the sequence was not there before.
   bool insert(const Sequence& sequence) { return sequences_.insert(sequence).second; }
+  bool contains(const Sequence& sequence) const { return sequences_.contains(sequence); }
   std::size_t size() const { return sequences_.size(); }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 /// The state of the world at an instant, and what differs from the state before.
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "dcem/core/ids.hpp"
@@ -12,6 +13,7 @@ namespace dcem {
 struct BodyState {
   bool present = true;
   Placement placement;
+  std::string occupant = {};  ///< of a place: the object that stands there in this frame; otherwise empty
 
   friend bool operator==(const BodyState&, const BodyState&) = default;
 };
@@ -25,7 +27,8 @@ struct Frame {
 
 /// What `Scene::apply` changed. Updaters read this and look at nothing else.
 struct ChangeSet {
-  std::vector<BodyId> moved;  ///< bodies whose pose or presence changed, ascending
+  std::vector<BodyId> moved;     ///< bodies whose pose or presence changed, ascending
+  std::vector<BodyId> replaced;  ///< places where another object stands than before, ascending
 };
 
 }  // namespace dcem

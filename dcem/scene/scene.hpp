@@ -24,11 +24,12 @@
 
 namespace dcem {
 
-/// The standing scenery or an object.
+/// The standing scenery, an object, or a place that objects of one shape take in turn.
 struct Body {
-  std::string id;  ///< empty for the scenery
-  Motion motion;
+  std::string id;    ///< empty for the scenery and for places
+  Motion motion;     ///< of an object
   SurfaceMesh mesh;  ///< in local coordinates
+  bool is_place = false;
 };
 
 /// A device at an instant.
@@ -55,14 +56,18 @@ class Scene {
   void set_scenery(const TriangleMesh& mesh);
   /// A rigid object in its own coordinates; its id must be new. Its materials must have been added.
   BodyId add_object(std::string id, const TriangleMesh& mesh, Motion motion);
+  /// Places for objects that come and go and all look like this mesh: each frame says which object stands where, by
+  /// `BodyState::occupant`. So a day of traffic needs as many bodies as are on the road at a time. Empty until then.
+  void add_places(std::size_t count, const TriangleMesh& mesh);
   void add_transmitter(Device device);
   void add_receiver(Device device);
 
   // Time.
 
-  /// Poses and velocities of all bodies at `time_s`, from their motions.
+  /// Poses and velocities of all bodies at `time_s`, from their motions. Places are empty.
   Frame frame_at(double time_s, std::size_t index = 0) const;
-  /// Moves the bodies to where the frame says.
+  /// Moves the bodies to where the frame says. Throws std::invalid_argument, having changed nothing, where a pose is
+  /// not finite or the name of an object at a place is no good.
   ChangeSet apply(const Frame& frame);
   /// Where a device is in a frame.
   DeviceState device_state(const Device& device, const Frame& frame) const;
@@ -75,7 +80,11 @@ class Scene {
   std::optional<MaterialId> find_material(const std::string& name) const;
   std::span<const Body> bodies() const { return bodies_; }
   const Body& body(BodyId id) const { return bodies_[id.value]; }
+  /// An object by its id; an object at a place while it stands there in the current frame.
   std::optional<BodyId> find_body(const std::string& id) const;
+  /// The id of an object, or of the object that stands at a place in the current frame; empty for the scenery.
+  const std::string& body_name(BodyId id) const { return body(id).is_place ? body_state(id).occupant : body(id).id; }
+  std::size_t place_count() const { return place_count_; }
   const BodyState& body_state(BodyId id) const { return states_[id.value]; }
   std::span<const Device> transmitters() const { return transmitters_; }
   std::span<const Device> receivers() const { return receivers_; }
@@ -103,6 +112,10 @@ class Scene {
 
  private:
   void append(Body body);
+  void check_frame(const Frame& frame) const;
+  void check_occupants(const Frame& frame) const;
+  void take_over(BodyId id, const BodyState& state, ChangeSet& changes);
+  std::optional<BodyId> find_in(const Frame& frame, const std::string& id) const;
   std::vector<SurfaceMaterial> resolve_materials(const SurfaceMesh& mesh) const;
   void check_device(const Device& device, const std::unordered_set<std::string>& ids) const;
 
@@ -113,6 +126,7 @@ class Scene {
   std::vector<Device> transmitters_, receivers_;
   std::unordered_set<std::string> transmitter_ids_, receiver_ids_;
   std::unordered_map<std::string, BodyId> body_by_id_;
+  std::size_t place_count_ = 0;
   WorldGeometry world_;
 };
 
@@ -181,6 +195,13 @@ inline BodyId Scene::add_object(std::string id, const TriangleMesh& mesh, Motion
   return BodyId(bodies_.size() - 1);
 }
 
+inline void Scene::add_places(std::size_t count, const TriangleMesh& mesh) {
+  Body body{"", LinearMotion{}, build_surface_mesh(mesh, settings_), true};
+  resolve_materials(body.mesh);
+  for (std::size_t index = 0; index < count; ++index) append(body);
+  place_count_ += count;
+}
+
 inline std::vector<SurfaceMaterial> Scene::resolve_materials(const SurfaceMesh& mesh) const {
   std::vector<SurfaceMaterial> resolved(mesh.material_names.size());
   for (const Facet& facet : mesh.facets) {
@@ -193,50 +214,10 @@ inline std::vector<SurfaceMaterial> Scene::resolve_materials(const SurfaceMesh& 
 }
 
 inline void Scene::append(Body body) {
-  const BodyState state{true, placement_at(body.motion, 0.0)};
+  const BodyState state{!body.is_place, placement_at(body.motion, 0.0)};
   world_.append(body.mesh, resolve_materials(body.mesh), state);
   states_.push_back(state);
   bodies_.push_back(std::move(body));
-}
-
-inline Frame Scene::frame_at(double time_s, std::size_t index) const {
-  if (!std::isfinite(time_s)) throw std::invalid_argument("frame: its time is not finite");
-  Frame frame{index, time_s, {}};
-  for (const Body& body : bodies_) frame.bodies.push_back({true, placement_at(body.motion, time_s)});
-  return frame;
-}
-
-inline ChangeSet Scene::apply(const Frame& frame) {
-  if (frame.bodies.size() != bodies_.size()) {
-    throw std::invalid_argument("frame: expected one state per body of the scene");
-  }
-  for (std::size_t index = 1; index < bodies_.size(); ++index) {
-    if (frame.bodies[index] == states_[index]) continue;
-    detail::naming("object '" + bodies_[index].id + "'", [&] { validate(frame.bodies[index].placement); });
-  }
-  ChangeSet changes;
-  for (std::size_t index = 1; index < bodies_.size(); ++index) {  // the scenery stands
-    const BodyState before = std::exchange(states_[index], frame.bodies[index]);
-    const BodyState& now = states_[index];
-    if (before.present == now.present && before.placement.pose == now.placement.pose) continue;
-    world_.place(BodyId(index), bodies_[index].mesh, now);
-    changes.moved.push_back(BodyId(index));
-  }
-  return changes;
-}
-
-inline DeviceState Scene::device_state(const Device& device, const Frame& frame) const {
-  if (!device.attachment) {
-    const Placement placement = placement_at(device.motion, frame.time_s);
-    return {placement.pose.position_m, placement.velocity.linear_mps, std::nullopt, true};
-  }
-  const std::optional<BodyId> body = find_body(device.attachment->object);
-  DCEM_ASSERT(body.has_value() && frame.bodies.size() == bodies_.size());
-  const BodyState& state = frame.bodies[body->value];
-  const Pose& pose = state.placement.pose;
-  const Vec3 position_m = pose.position_m + rotation_matrix(pose) * device.attachment->offset_m;
-  return {position_m, velocity_at(state.placement.velocity, pose.position_m, position_m),
-          device.attachment->sees_own_body ? std::nullopt : body, state.present};
 }
 
 inline void Scene::check_device(const Device& device, const std::unordered_set<std::string>& ids) const {
@@ -247,7 +228,7 @@ inline void Scene::check_device(const Device& device, const std::unordered_set<s
   if (!std::isfinite(device.power_dbm)) throw std::invalid_argument(name + "power_dbm is not finite");
   if (!device.attachment) {
     detail::naming("device '" + device.id + "'", [&] { validate(device.motion); });
-  } else if (!find_body(device.attachment->object)) {
+  } else if (!find_body(device.attachment->object) && place_count_ == 0) {
     throw std::invalid_argument(name + "rides on '" + device.attachment->object + "', which is no object of the scene");
   } else if (!is_finite(device.attachment->offset_m)) {
     throw std::invalid_argument(name + "offset_m is not finite");
@@ -278,3 +259,5 @@ inline std::pair<std::uint32_t, std::uint32_t> Scene::triangle_range(BodyId id) 
 }
 
 }  // namespace dcem
+
+#include "dcem/scene/scene_time.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// Which discovery a scene gets.
+/// Which discovery and which cache a scene gets.
 #include <stdexcept>
 #include <string>
 
@@ -26,6 +26,17 @@ inline Discovery resolve_discovery(const PropagationSettings& propagation, const
   }
   if (propagation.discovery != Discovery::automatic) return propagation.discovery;
   return facets <= automatic_exact_facet_limit(reflection_order(propagation)) ? Discovery::exact : Discovery::sampled;
+}
+
+/// Off or seed: what a simulation that discovers in this way really remembers. Throws std::invalid_argument where
+/// `seed` is asked for by name and discovery is exact: there is nothing that few rays could add to.
+inline CacheMode resolve_cache(const PropagationSettings& propagation, Discovery discovery) {
+  const bool sampled = discovery == Discovery::sampled;
+  if (propagation.cache == CacheMode::seed && !sampled) {
+    throw std::invalid_argument("cache seed: goes with sampled discovery, and discovery is exact; expected cache off");
+  }
+  if (propagation.cache != CacheMode::automatic) return propagation.cache;
+  return sampled ? CacheMode::seed : CacheMode::off;
 }
 
 }  // namespace dcem

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "dcem/accel/maintainer.hpp"
 #include "dcem/channel/link_statistics.hpp"
 #include "dcem/channel/path_contribution.hpp"
+#include "dcem/paths/path_cache.hpp"
 
 namespace dcem {
 
@@ -40,20 +42,13 @@ struct WorkCounters {
   }
 };
 
-/// How the tree followed the frame.
-struct TreeReport {
-  std::uint64_t nodes_kept = 0;
-  std::uint64_t nodes_refit = 0;
-  std::uint64_t nodes_rebuilt = 0;
-  double sah_cost = 0.0;
-};
-
 struct FrameResult {
   std::size_t index = 0;
   double time_s = 0.0;
   std::vector<LinkResult> links;  ///< by transmitter, then receiver; links of absent devices are left out
   WorkCounters work;
-  TreeReport tree;
+  UpkeepReport tree;           ///< how the tree followed the frame
+  CacheCounters cache;         ///< what became of the remembered sequences; zero where the cache is off
   double update_time_s = 0.0;  ///< wall-clock time to move the scene and the tree
   double solve_time_s = 0.0;   ///< wall-clock time to find paths and compute fields
 };

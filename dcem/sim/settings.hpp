@@ -1,5 +1,6 @@
 #pragma once
 /// Everything a simulation can be told, one sentence, unit and default per field.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "dcem/accel/maintainer.hpp"
 #include "dcem/em/itu_p2040.hpp"
 #include "dcem/em/path_loss.hpp"
 
@@ -20,6 +22,13 @@ enum class Discovery {
   sampled     ///< rays shot from the receiver propose sequences; completeness is not promised
 };
 
+/// What is remembered from frame to frame.
+enum class CacheMode {
+  automatic,  ///< seed where discovery is sampled, else off
+  off,        ///< each frame is solved from scratch
+  seed        ///< goes with sampled: found sequences are solved again in each frame, few rays look for new ones
+};
+
 /// Exact discovery tries sequences of facets; this version offers it up to this many facets.
 inline constexpr std::size_t exact_discovery_facet_limit = 1000;
 
@@ -29,18 +38,26 @@ struct PropagationSettings {
   int max_transmissions = 2;            ///< sheets a path may cross, 0…10
   std::optional<int> max_interactions;  ///< reflections (and, later, diffractions) together; default: no further bound
   Discovery discovery = Discovery::automatic;  ///< how paths are found
-  std::uint32_t rays = 2000;                   ///< rays per receiver and frame in sampled discovery
-  std::uint64_t seed = 1;                      ///< turns the sphere of rays, with receiver id and frame number
-  std::optional<double> min_path_gain_db;      ///< paths weaker than this are dropped after their field is known, dB
-  AnyPathLoss path_loss{};                     ///< a real factor beside free-space spreading
+  std::uint32_t rays = 2000;                   ///< rays per receiver in sampled discovery, in a frame without history
+  std::optional<std::uint32_t> rays_steady;  ///< the same in a later frame of a cached run; default: a tenth of `rays`
+  CacheMode cache = CacheMode::automatic;    ///< what is remembered from frame to frame
+  std::uint64_t seed = 1;                    ///< turns the sphere of rays, with receiver id and frame number
+  std::optional<double> min_path_gain_db;    ///< paths weaker than this are dropped after their field is known, dB
+  AnyPathLoss path_loss{};                   ///< a real factor beside free-space spreading
 };
 
 struct SimulationSettings {
   double frequency_hz = 30e9;
   ItuSettings itu{};  ///< revision of the material tables, and whether they may be extrapolated
   PropagationSettings propagation{};
-  unsigned threads = 0;  ///< 0: all cores. Never changes a result
+  UpkeepSettings upkeep{};  ///< how the tree is kept while the scene moves. Never changes a result
+  unsigned threads = 0;     ///< 0: all cores. Never changes a result
 };
+
+/// Rays per receiver in a frame with history.
+inline std::uint32_t steady_rays(const PropagationSettings& propagation) {
+  return propagation.rays_steady.value_or(std::max<std::uint32_t>(1, propagation.rays / 10));
+}
 
 /// The number of reflections that is really in force.
 inline int reflection_order(const PropagationSettings& propagation) {
@@ -63,6 +80,8 @@ inline void validate(const SimulationSettings& settings) {
         "min_path_gain_db: expected a finite number");
   if (const auto* close_in = std::get_if<CloseIn>(&propagation.path_loss.model)) validate(*close_in);
   check(propagation.rays >= 1 && propagation.rays <= 100'000'000, "rays: expected 1 to 1e8");
+  check(steady_rays(propagation) >= 1 && steady_rays(propagation) <= 100'000'000, "rays_steady: expected 1 to 1e8");
+  validate(settings.upkeep);
 }
 
 }  // namespace dcem

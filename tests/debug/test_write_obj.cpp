@@ -74,6 +74,20 @@ TEST_CASE("pieces may stand one after the other in one file") {
   CHECK(drawing.lines_m.back() == std::vector<Vec3>{Vec3(1, 1, 1), Vec3(2, 2, 2)});
 }
 
+TEST_CASE("an edge is one line from start to end, named by its kind") {
+  Wedge wedge;
+  wedge.start_m = Vec3(1, 2, 3);
+  wedge.end_m = Vec3(1, 2, 10.5);
+  std::ostringstream out;
+  debug::write_wedge(out, wedge);
+  wedge.facets = {3, 7};
+  debug::write_wedge(out, wedge);
+  const Drawing drawing = read(out.str());
+  CHECK(drawing.objects == std::vector<std::string>{"free_edge", "wedge"});
+  REQUIRE(drawing.lines_m.size() == 2);
+  for (const auto& line : drawing.lines_m) CHECK(line == std::vector<Vec3>{Vec3(1, 2, 3), Vec3(1, 2, 10.5)});
+}
+
 TEST_CASE("a box has eight corners and twelve edges, four along each axis, none twice") {
   std::ostringstream out;
   debug::write_box(out, {Vec3(-1, 0, 2), Vec3(1, 5, 10)});

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/scenario.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -72,20 +73,21 @@ struct Outcomes {
   std::size_t read = 0, refused = 0;
 };
 
-/// Damages one file of the good scenario again and again; the other files stay whole.
-Outcomes damage_file(const std::string& name, std::uint32_t rounds) {
-  const auto good = std::filesystem::path(DCEM_SOURCE_DIR) / "tests/invalid_input/good";
-  const test::TemporaryFolder folder;
-  for (const char* file : {"scenario.json", "room.obj", "room.mtl"})
-    std::filesystem::copy_file(good / file, folder / file);
-  const std::string text = test::file_bytes(good / name);
+/// Damages one file of a good scenario again and again; the other files stay whole.
+Outcomes damage_file(const std::string& scenario, const std::string& name, std::uint32_t rounds) {
+  const auto root = std::filesystem::path(DCEM_SOURCE_DIR) / "tests/invalid_input";
+  const test::TemporaryFolder both;
+  for (const char* part : {"good", "good_traffic"}) std::filesystem::copy(root / part, both / part);
+  const std::filesystem::path folder = both / scenario;
+  const std::string text = test::file_bytes(folder / name);
   Outcomes outcomes;
   for (std::uint32_t round = 0; round < rounds; ++round) {
     CAPTURE(round);
     std::filesystem::remove(folder / name);  // some file systems wait for the disk when a file is overwritten
     std::ofstream(folder / name, std::ios::binary) << Damage(round).apply(text);
     try {
-      io::load_scenario(folder / "scenario.json");
+      const io::Scenario loaded = io::load_scenario(folder / "scenario.json");
+      io::FrameSource(loaded).frame(loaded.scene, 0);
       ++outcomes.read;
     } catch (const io::InputError& error) {
       const std::string message = error.what();
@@ -101,8 +103,17 @@ Outcomes damage_file(const std::string& name, std::uint32_t rounds) {
 TEST_CASE("damaged files never do worse than an InputError") {
   for (const std::string file : {"scenario.json", "room.obj", "room.mtl"}) {
     CAPTURE(file);
-    const Outcomes outcomes = damage_file(file, 1000);
+    const Outcomes outcomes = damage_file("good", file, 1000);
     // Both must happen, or the damage is too rough or too slight to try anything.
+    CHECK(outcomes.read > 50);
+    CHECK(outcomes.refused > 300);
+  }
+}
+
+TEST_CASE("damaged files of traffic never do worse than an InputError") {
+  for (const std::string file : {"scenario.json", "trace.fcd.xml", "vtypes.add.xml", "poses.csv"}) {
+    CAPTURE(file);
+    const Outcomes outcomes = damage_file("good_traffic", file, 1000);
     CHECK(outcomes.read > 50);
     CHECK(outcomes.refused > 300);
   }

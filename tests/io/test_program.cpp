@@ -215,7 +215,13 @@ TEST_CASE("inspect shows a scene whose materials are not defined") {
   CHECK(json.exit_code == 0);
   CHECK(json.output.find("\"facets\": 3") != std::string::npos);
   CHECK(json.output.find("\"defined\": false") != std::string::npos);
-  CHECK(json.output.find("\"wedges\"") == std::string::npos);
+  // In the file's units: two walls 80 long and 12 high meet a ground 20 wide; one unit is two metres.
+  for (const char* fact :
+       {"\"count\": 2", "\"length_m\": 320.0", "\"free_edges\": 8", "\"free_edge_length_m\": 496.0"}) {
+    INFO(fact);
+    CHECK(json.output.find(fact) != std::string::npos);
+  }
+  CHECK(table.output.find("from 190 degrees outside, 160.0 m in all") != std::string::npos);
 }
 
 TEST_CASE("bad usage and bad input end with one line, exit code 2 and no output") {
@@ -239,7 +245,6 @@ TEST_CASE("bad usage and bad input end with one line, exit code 2 and no output"
   check_refused(folder, "run street.json -o full/result", "full");
   check_refused(folder, "map street.json", "grid");
   check_refused(folder, "inspect absent.obj", "absent.obj");
-  check_refused(folder, "verify street.json", "not in this version");
   check_refused(folder, "import sumo town.sumocfg -o town", "not in this version");
 }
 

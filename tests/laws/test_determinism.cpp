@@ -65,10 +65,26 @@ void add_bytes(Bytes& bytes, const Scene& scene, const FrameResult& frame) {
   }
 }
 
+/// How paths are found, and what is remembered from frame to frame.
+struct Way {
+  Discovery discovery;
+  CacheMode cache;
+};
+
+constexpr Way without_memory[]{{Discovery::exact, CacheMode::off}, {Discovery::sampled, CacheMode::off}};
+constexpr Way seeded{Discovery::sampled, CacheMode::seed};
+constexpr Way all_ways[]{without_memory[0], without_memory[1], seeded};
+
+SimulationSettings settings_of(const Way& way) {
+  SimulationSettings settings = law_settings(3, 2, way.discovery);
+  settings.propagation.cache = way.cache;
+  return settings;
+}
+
 template <typename Tree>
-Bytes run(Scene scene, Discovery discovery, unsigned threads, std::vector<std::size_t> frames,
+Bytes run(Scene scene, const Way& way, unsigned threads, std::vector<std::size_t> frames,
           std::vector<std::uint64_t>* work = nullptr) {
-  SimulationSettings settings = law_settings(3, 2, discovery);
+  SimulationSettings settings = settings_of(way);
   settings.propagation.rays = 500;
   settings.threads = threads;
   Simulator<MaterialTable, Tree> simulator(std::move(scene), settings);
@@ -94,13 +110,13 @@ const std::vector<std::size_t> all_frames{0, 1, 2, 3};
 }  // namespace
 
 TEST_CASE("determinism: 1, 2 and 5 threads, and twice in a row, give the same bits and the same counts of work") {
-  for (const Discovery discovery : {Discovery::exact, Discovery::sampled}) {
+  for (const Way& way : all_ways) {
     std::vector<std::uint64_t> work;
-    const Bytes expected = run<Bvh<double>>(ordered_scene(), discovery, 1, all_frames, &work);
+    const Bytes expected = run<Bvh<double>>(ordered_scene(), way, 1, all_frames, &work);
     CHECK(expected.size() == all_frames.size() * transmitters * receivers);
     for (const unsigned threads : {1U, 2U, 5U}) {
       std::vector<std::uint64_t> other_work;
-      CHECK(run<Bvh<double>>(ordered_scene(), discovery, threads, all_frames, &other_work) == expected);
+      CHECK(run<Bvh<double>>(ordered_scene(), way, threads, all_frames, &other_work) == expected);
       CHECK(other_work == work);
     }
   }
@@ -108,31 +124,33 @@ TEST_CASE("determinism: 1, 2 and 5 threads, and twice in a row, give the same bi
 
 TEST_CASE("determinism: the order of transmitters and receivers changes no bit of any link") {
   Dice dice(93);
-  for (const Discovery discovery : {Discovery::exact, Discovery::sampled}) {
-    const Bytes expected = run<Bvh<double>>(ordered_scene(), discovery, 1, all_frames);
+  for (const Way& way : all_ways) {
+    const Bytes expected = run<Bvh<double>>(ordered_scene(), way, 1, all_frames);
     for (int trial = 0; trial < 3; ++trial) {
       std::vector<std::size_t> sending = counted(transmitters), receiving = counted(receivers);
       dice.shuffle(sending);
       dice.shuffle(receiving);
-      CHECK(run<Bvh<double>>(moving_scene(sending, receiving), discovery, 2, all_frames) == expected);
+      CHECK(run<Bvh<double>>(moving_scene(sending, receiving), way, 2, all_frames) == expected);
     }
   }
 }
 
 TEST_CASE("determinism: a subset of the devices gives the same links") {
-  const Bytes expected = run<Bvh<double>>(ordered_scene(), Discovery::sampled, 1, all_frames);
-  const Bytes some = run<Bvh<double>>(moving_scene({2}, {5, 1}), Discovery::sampled, 1, all_frames);
-  CHECK(some.size() == 2 * all_frames.size());
-  for (const auto& [key, bytes] : some) CHECK(expected.at(key) == bytes);
+  for (const Way& way : {without_memory[1], seeded}) {
+    const Bytes expected = run<Bvh<double>>(ordered_scene(), way, 1, all_frames);
+    const Bytes some = run<Bvh<double>>(moving_scene({2}, {5, 1}), way, 1, all_frames);
+    CHECK(some.size() == 2 * all_frames.size());
+    for (const auto& [key, bytes] : some) CHECK(expected.at(key) == bytes);
+  }
 }
 
-TEST_CASE("determinism: a frame does not depend on the frames before it") {
-  for (const Discovery discovery : {Discovery::exact, Discovery::sampled}) {
-    const Bytes expected = run<Bvh<double>>(ordered_scene(), discovery, 1, all_frames);
-    Bytes backwards = run<Bvh<double>>(ordered_scene(), discovery, 1, {3, 1, 2, 0});
+TEST_CASE("determinism: without a memory a frame does not depend on the frames before it") {
+  for (const Way& way : without_memory) {
+    const Bytes expected = run<Bvh<double>>(ordered_scene(), way, 1, all_frames);
+    Bytes backwards = run<Bvh<double>>(ordered_scene(), way, 1, {3, 1, 2, 0});
     CHECK(backwards == expected);
     Bytes single;
-    for (const std::size_t frame : all_frames) single.merge(run<Bvh<double>>(ordered_scene(), discovery, 1, {frame}));
+    for (const std::size_t frame : all_frames) single.merge(run<Bvh<double>>(ordered_scene(), way, 1, {frame}));
     CHECK(single == expected);
   }
 }
@@ -150,12 +168,11 @@ TEST_CASE("determinism: an object that came to a place is as one that always sto
     }
     return bytes;
   };
-  for (const Discovery discovery : {Discovery::exact, Discovery::sampled}) {
-    Simulator<> moving(ordered_scene(), law_settings(3, 2, discovery));
+  for (const Way& way : without_memory) {
+    Simulator<> moving(ordered_scene(), settings_of(way));
     for (const std::size_t frame : all_frames) {
       const double time_s = 0.23 * static_cast<double>(frame);
-      Simulator<> standing(moving_scene(counted(transmitters), counted(receivers), time_s),
-                           law_settings(3, 2, discovery));
+      Simulator<> standing(moving_scene(counted(transmitters), counted(receivers), time_s), settings_of(way));
       CHECK(without_doppler(moving.advance_to(time_s, frame), moving.scene()) ==
             without_doppler(standing.advance_to(time_s, frame), standing.scene()));
     }
@@ -163,8 +180,8 @@ TEST_CASE("determinism: an object that came to a place is as one that always sto
 }
 
 TEST_CASE("determinism: the tree changes the work and nothing else") {
-  for (const Discovery discovery : {Discovery::exact, Discovery::sampled}) {
-    CHECK(run<Bvh<double>>(ordered_scene(), discovery, 1, all_frames) ==
-          run<BruteForce<double>>(ordered_scene(), discovery, 1, all_frames));
+  for (const Way& way : all_ways) {
+    CHECK(run<Bvh<double>>(ordered_scene(), way, 1, all_frames) ==
+          run<BruteForce<double>>(ordered_scene(), way, 1, all_frames));
   }
 }

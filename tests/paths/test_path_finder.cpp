@@ -54,7 +54,7 @@ TEST_CASE("transmitters do not disturb each other, and an absent one has no path
   const LinkEnd receiver = traced.end(Vec3(7.3, 4.9, 1.2));
   const LinkEnd one = traced.end(Vec3(1.7, 2.3, 2.1)), two = traced.end(Vec3(8, 1, 1));
   for (const bool exhaustive : {true, false}) {
-    const PathSearchSettings settings{exhaustive, 2, 2, 500, 1};
+    const PathSearchSettings settings{exhaustive, 2, 2, 500};
     const auto find = [&](const Ends& ends) {
       return find_paths(traced.tracer, settings, receiver, {"ue", 0}, ends, counters);
     };
@@ -74,8 +74,8 @@ TEST_CASE("sampled paths are exhaustive paths with the same bits; rays do not gr
   const LinkEnd receiver = traced.end(Vec3(7.3, 4.9, 1.2)), one = traced.end(Vec3(1.7, 2.3, 2.1));
   SearchCounters exact_counters, few, many;
   const auto exact = find_paths(traced.tracer, {true, 2, 2}, receiver, {"ue", 0}, Ends{one}, exact_counters);
-  const auto sampled = find_paths(traced.tracer, {false, 2, 2, 3000, 1}, receiver, {"ue", 0}, Ends{one}, few);
-  find_paths(traced.tracer, {false, 2, 2, 3000, 1}, receiver, {"ue", 0}, Ends(20, one), many);
+  const auto sampled = find_paths(traced.tracer, {false, 2, 2, 3000}, receiver, {"ue", 0}, Ends{one}, few);
+  find_paths(traced.tracer, {false, 2, 2, 3000}, receiver, {"ue", 0}, Ends(20, one), many);
   CHECK(exact_counters.rays == 0);
   CHECK(few.rays > 3000);
   CHECK(few.rays == many.rays);

@@ -74,6 +74,21 @@ std::vector<InspectedFacet> largest_facets(const SurfaceMesh& mesh) {
   return facets;
 }
 
+InspectedWedges inspect_wedges(const SurfaceMesh& mesh, double min_exterior_angle_deg) {
+  InspectedWedges result;
+  result.min_exterior_angle_deg = min_exterior_angle_deg;
+  for (const Wedge& wedge : mesh.wedges) {
+    if (is_free(wedge)) {
+      ++result.free_edges;
+      result.free_edge_length_m += edge_length_m(wedge);
+    } else if (wedge.exterior_angle_rad >= degrees_to_radians(min_exterior_angle_deg)) {
+      ++result.wedges;
+      result.wedge_length_m += edge_length_m(wedge);
+    }
+  }
+  return result;
+}
+
 SurfaceMesh mended(const TriangleMesh& mesh, const std::string& file, const SurfaceSettings& settings) {
   try {
     return build_surface_mesh(mesh, settings);
@@ -91,6 +106,7 @@ Inspection inspect_obj(const std::filesystem::path& file, const InspectionSettin
   inspection.file = file.string();
   inspection.triangles = mesh.triangles.size();
   inspection.facets = mesh.facets.size();
+  inspection.wedges = inspect_wedges(mesh, settings.min_exterior_angle_deg);
   for (const Vec3& vertex : mesh.vertices_m) inspection.box.extend(vertex);
   inspection.report = mesh.report;
   inspection.overlapping_facet_pairs = overlapping_facet_pairs(mesh, settings.surfaces);

@@ -24,6 +24,14 @@ Json response_json(const InspectedMaterial::Response& response) {
           {"extrapolated", response.extrapolated}};
 }
 
+Json wedges_json(const InspectedWedges& wedges) {
+  return {{"min_exterior_angle_deg", wedges.min_exterior_angle_deg},
+          {"count", wedges.wedges},
+          {"length_m", wedges.wedge_length_m},
+          {"free_edges", wedges.free_edges},
+          {"free_edge_length_m", wedges.free_edge_length_m}};
+}
+
 Json inspected_material_json(const InspectedMaterial& entry) {
   Json json{{"name", entry.name}, {"defined", entry.material.has_value()}};
   if (entry.material) json.update(material_json(*entry.material));
@@ -64,14 +72,22 @@ std::string response_text(const InspectedMaterial& entry) {
   return response.extrapolated ? text + " (outside the table)" : text;
 }
 
+std::string wedge_remark(const InspectedWedges& wedges) {
+  return "edges of two facets from " + format_fixed(wedges.min_exterior_angle_deg, 0) + " degrees outside, " +
+         format_fixed(wedges.wedge_length_m, 1) + " m in all";
+}
+
 std::string facts_table(const Inspection& inspection) {
   const SurfaceReport& report = inspection.report;
   TextTable table({{"", TextTable::Align::left}, {""}, {"", TextTable::Align::left}});
-  const auto row = [&](const char* name, std::size_t count, const char* remark) {
+  const auto row = [&](const char* name, std::size_t count, const std::string& remark) {
     table.add_row({name, std::to_string(count), remark});
   };
   row("triangles", inspection.triangles, "after mending");
   row("facets", inspection.facets, "connected coplanar triangles of one material");
+  row("wedges", inspection.wedges.wedges, wedge_remark(inspection.wedges));
+  row("free edges", inspection.wedges.free_edges,
+      "rims of open sheets, " + format_fixed(inspection.wedges.free_edge_length_m, 1) + " m in all");
   row("triangles read", report.triangles_read, "");
   row("triangles without area", report.triangles_without_area, "dropped");
   row("triangles repeated", report.triangles_repeated, "dropped");
@@ -131,6 +147,7 @@ std::string inspection_json(const Inspection& inspection) {
   return json_text({{"file", inspection.file},
                     {"triangles", inspection.triangles},
                     {"facets", inspection.facets},
+                    {"wedges", wedges_json(inspection.wedges)},
                     {"bounding_box", box},
                     {"surfaces", surface_report_json(inspection.report)},
                     {"overlapping_facet_pairs", inspection.overlapping_facet_pairs},

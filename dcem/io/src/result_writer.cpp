@@ -139,7 +139,7 @@ void ResultWriter::append_path(const LinkResult& link, const PathContribution& p
   line.open('{').key("id").prepared(json_string(path_id(scene_, path.path)));
   line.key("kinds").prepared('"' + kinds(path.path) + '"');
   list("points_m", [&](const Interaction& at) { line.point(at.point_m); });
-  list("objects", [&](const Interaction& at) { line.prepared(json_bodies_[scene_.facet(at.facet).body.value]); });
+  list("objects", [&](const Interaction& at) { line.prepared(object_json(scene_.facet(at.facet).body)); });
   list("materials",
        [&](const Interaction& at) { line.prepared(json_materials_[scene_.facet(at.facet).material.value]); });
   line.key("length_m").number(path.path.length_m).key("delay_s").number(path.delay_s);
@@ -152,6 +152,10 @@ void ResultWriter::append_path(const LinkResult& link, const PathContribution& p
   append_direction(line, "departure", path.departure);
   append_direction(line, "arrival", path.arrival);
   line.key("doppler_hz").number(path.doppler_hz).close('}');
+}
+
+std::string ResultWriter::object_json(BodyId id) const {
+  return scene_.body(id).is_place ? json_string(scene_.body_name(id)) : json_bodies_[id.value];
 }
 
 void ResultWriter::append_link(const FrameResult& frame, const LinkResult& link) {

@@ -57,8 +57,11 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   result.settings.propagation = read_propagation(root, command_line);
   result.time = read_time(root);
   result.output = read_output(root, command_line);
-  BodyLoader(root, file.parent_path(), result).load();
-  read_devices(root, result);
+  read_mobility(root, file.parent_path(), result);
+  MotionReader motions(file.parent_path(), result.time.start_s);
+  BodyLoader(root, file.parent_path(), motions, result).load();
+  read_devices(root, motions, result);
+  motions.check_all_taken();
   reported_at(root.value(), [&] { validate(result.settings); });
   check_exact_discovery(result, root, command_line);
   return result;

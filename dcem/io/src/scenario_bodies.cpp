@@ -34,21 +34,41 @@ void BodyLoader::load() {
   read_scenario_materials();
   const ObjFile& scenery = read_mesh(scene);
   read_objects();
+  if (result_.traffic) {
+    const JsonValue material = scenario_.at("mobility").member("material");
+    used_materials_.try_emplace(material.line(), material.place());
+  }
   add_materials();
   reported_at(scene.at("obj"), [&] { result_.scene.set_scenery(scenery.mesh); });
   if (result_.scene.facets().empty()) scene.at("obj").fail("no face has an area; expected at least one");
   for (Object& object : objects_) {
     reported_at(object.value, [&] { result_.scene.add_object(object.id, object.mesh, std::move(object.motion)); });
   }
+  if (result_.traffic) add_traffic();
+}
+
+void BodyLoader::add_traffic() {
+  const JsonValue mobility = scenario_.at("mobility");
+  const std::string material = mobility.member("material").line();
+  for (Traffic::Type& type : result_.traffic->types) {
+    type.first_body = result_.scene.bodies().size();
+    reported_at(mobility, [&] { result_.scene.add_places(type.places, make_box(type.size_m, material)); });
+  }
+}
+
+void BodyLoader::check_object_id(const JsonValue& id) const {
+  const std::string name = id.identifier();
+  const bool known =
+      std::any_of(objects_.begin(), objects_.end(), [&](const Object& other) { return other.id == name; });
+  if (known) id.fail(in_quotes(name) + " is there twice; expected a new id");
+  if (result_.traffic && result_.traffic->presence.contains(name)) {
+    id.fail(in_quotes(name) + " is also a vehicle of the trace; expected a new id");
+  }
 }
 
 const ObjFile& BodyLoader::read_mesh(const JsonObject& owner) {
   const JsonValue name = owner.at("obj");
-  const std::filesystem::path file = folder_ / name.text();
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    name.fail(in_quotes(name.text()) + " is not there; expected an OBJ file, relative to the scenario");
-  }
+  const std::filesystem::path file = existing_file(name, folder_, "expected an OBJ file");
   const ObjSettings settings = read_obj_settings(owner);
   const FileKey key{file.string(), settings.up, settings.unit_m};
   const auto known = files_.find(key);
@@ -84,13 +104,11 @@ void BodyLoader::read_objects() {
   for (const JsonValue& element : list->elements()) {
     const JsonObject object = element.object({"id", "obj", "up", "unit_m", "box_m", "material", "motion", "foliage"});
     if (object.boolean("foliage", false)) object.at("foliage").not_in_this_version("false");
-    const std::string id = object.at("id").identifier();
-    const bool known =
-        std::any_of(objects_.begin(), objects_.end(), [&](const Object& other) { return other.id == id; });
-    if (known) object.at("id").fail(in_quotes(id) + " is there twice; expected a new id");
+    check_object_id(object.at("id"));
+    const std::string id = object.at("id").text();
     const auto motion = object.find("motion");
-    objects_.push_back({element, id, read_object_mesh(object),
-                        motion ? read_motion(*motion, result_.time.start_s) : Motion(LinearMotion{})});
+    objects_.push_back(
+        {element, id, read_object_mesh(object), motion ? motions_.read(*motion, id) : Motion(LinearMotion{})});
   }
 }
 

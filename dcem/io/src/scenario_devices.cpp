@@ -95,10 +95,11 @@ ReceiverGrid read_grid(const JsonValue& value) {
 /// Reads one entry of `transmitters` or `receivers`.
 class DeviceReader {
  public:
-  DeviceReader(const JsonValue& value, bool transmits, Scenario& result)
+  DeviceReader(const JsonValue& value, bool transmits, MotionReader& motions, Scenario& result)
       : object_(value.object({"id", "position_m", "positions_m", "grid", "attach_to", "offset_m", "sees_own_body",
                               "velocity_mps", "motion", "power_dbm", "power_w", "antenna"})),
         transmits_(transmits),
+        motions_(motions),
         result_(result) {}
 
   void read() {
@@ -112,7 +113,7 @@ class DeviceReader {
     if (form == "positions_m") add_list();
     if (form == "grid") add_grid();
     if (form == "attach_to") add_attached();
-    if (form == "motion") add_moving(device_.id, read_motion(object_.at("motion"), result_.time.start_s));
+    if (form == "motion") add_moving(device_.id, motions_.read(object_.at("motion"), device_.id));
   }
 
  private:
@@ -157,16 +158,27 @@ class DeviceReader {
     Device device = device_;
     device.attachment = Attachment{target.text(), object_.at("offset_m").vector3(farthest_coordinate_m),
                                    object_.boolean("sees_own_body", false)};
-    if (!result_.scene.find_body(device.attachment->object)) fail_unknown_object(target);
+    if (!result_.scene.find_body(target.text())) check_vehicle(target);
     add(std::move(device));
+  }
+
+  /// The object that a device rides on must be a vehicle of the trace.
+  void check_vehicle(const JsonValue& target) {
+    if (!result_.traffic || !result_.traffic->presence.contains(target.text())) fail_unknown_object(target);
+    result_.traffic->riders.push_back({target.text(), target.place(), target.path()});
   }
 
   void fail_unknown_object(const JsonValue& target) const {
     std::vector<std::string> ids;
-    for (const Body& body : result_.scene.bodies().subspan(1)) ids.push_back(body.id);
+    for (const Body& body : result_.scene.bodies().subspan(1)) {
+      if (!body.is_place) ids.push_back(body.id);
+    }
+    const bool traffic = result_.traffic.has_value();
+    const std::string none = traffic ? "a vehicle of the trace" : "an entry in objects";
     const std::string nearest =
-        ids.empty() ? "an entry in objects" : "the nearest known one, " + in_quotes(nearest_name(target.text(), ids));
-    target.fail("no object " + in_quotes(target.text()) + "; expected " + nearest);
+        ids.empty() ? none : "the nearest known one, " + in_quotes(nearest_name(target.text(), ids));
+    target.fail("no object " + std::string(traffic ? "or vehicle " : "") + in_quotes(target.text()) + "; expected " +
+                nearest);
   }
 
   void add_grid() {
@@ -185,15 +197,16 @@ class DeviceReader {
 
   JsonObject object_;
   bool transmits_;
+  MotionReader& motions_;
   Scenario& result_;
   Device device_;
 };
 
 /// One id per entry; those of a list or a grid get their numbers only after that.
-void read_list(const JsonValue& list, bool transmits, Scenario& result) {
+void read_list(const JsonValue& list, bool transmits, MotionReader& motions, Scenario& result) {
   std::set<std::string> ids;
   for (const JsonValue& element : list.elements()) {
-    DeviceReader(element, transmits, result).read();
+    DeviceReader(element, transmits, motions, result).read();
     const JsonValue id = element.member("id");
     if (!ids.insert(id.text()).second) id.fail(in_quotes(id.text()) + " is there twice; expected a new id");
   }
@@ -202,9 +215,9 @@ void read_list(const JsonValue& list, bool transmits, Scenario& result) {
 
 }  // namespace
 
-void read_devices(const JsonObject& scenario, Scenario& result) {
-  read_list(scenario.at("transmitters"), true, result);
-  read_list(scenario.at("receivers"), false, result);
+void read_devices(const JsonObject& scenario, MotionReader& motions, Scenario& result) {
+  read_list(scenario.at("transmitters"), true, motions, result);
+  read_list(scenario.at("receivers"), false, motions, result);
 }
 
 }  // namespace dcem::io

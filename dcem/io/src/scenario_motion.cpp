@@ -1,3 +1,5 @@
+#include <system_error>
+
 #include "dcem/core/units.hpp"
 #include "dcem/io/src/scenario_parts.hpp"
 
@@ -5,7 +7,6 @@ namespace dcem::io {
 
 namespace {
 
-constexpr NumberRange any_angle_deg{-1e6, 1e6};
 constexpr double fastest_mps = 299'792'458.0;
 
 Pose read_pose(const JsonObject& object) {
@@ -38,17 +39,40 @@ Vec3 read_velocity_mps(const JsonObject& object) {
   return velocity_mps;
 }
 
-Motion read_motion(const JsonValue& value, double reference_time_s) {
+Motion MotionReader::read(const JsonValue& value, const std::string& id) {
   const JsonObject object =
       value.object({"position_m", "yaw_deg", "pitch_deg", "roll_deg", "velocity_mps", "waypoints", "poses_csv"});
-  if (object.has("poses_csv")) object.at("poses_csv").not_in_this_version("position_m or waypoints");
-  if (object.exactly_one_of({"position_m", "waypoints"}) == "position_m") {
-    return LinearMotion{read_pose(object), read_velocity_mps(object), reference_time_s};
-  }
+  const std::string form = object.exactly_one_of({"position_m", "waypoints", "poses_csv"});
+  if (form == "position_m") return LinearMotion{read_pose(object), read_velocity_mps(object), reference_time_s_};
   for (const char* key : {"yaw_deg", "pitch_deg", "roll_deg", "velocity_mps"}) {
-    if (object.has(key)) object.at(key).fail("does not go with waypoints; expected it in no place or in each waypoint");
+    if (!object.has(key)) continue;
+    object.at(key).fail(form == "waypoints" ? "does not go with waypoints; expected it in no place or in each waypoint"
+                                            : "does not go with poses_csv; expected no such key");
   }
-  return read_waypoints(object.at("waypoints"));
+  return form == "waypoints" ? read_waypoints(object.at("waypoints")) : read_poses(object.at("poses_csv"), id);
+}
+
+WaypointMotion MotionReader::read_poses(const JsonValue& name, const std::string& id) {
+  const std::filesystem::path file = existing_file(name, folder_, "expected a table of poses");
+  const auto known = files_.find(file.string());
+  PosesCsv& poses = known != files_.end() ? known->second : files_.emplace(file.string(), file).first->second;
+  if (const WaypointMotion* const motion = poses.take(id)) return *motion;
+  const std::string nearest = poses.empty() ? "" : "; the nearest known one is " + in_quotes(poses.nearest_id(id));
+  name.fail("no row of " + in_quotes(id) + " in " + in_quotes(name.text()) + "; expected at least one" + nearest);
+}
+
+void MotionReader::check_all_taken() const {
+  for (const auto& [name, poses] : files_) poses.check_all_taken();
+}
+
+std::filesystem::path existing_file(const JsonValue& name, const std::filesystem::path& folder,
+                                    const std::string& expectation) {
+  const std::filesystem::path file = folder / name.text();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    name.fail(in_quotes(name.text()) + " is not there; " + expectation + ", relative to the scenario");
+  }
+  return file;
 }
 
 }  // namespace dcem::io

@@ -12,11 +12,13 @@
 #include "dcem/io/scenario.hpp"
 #include "dcem/io/src/json_reader.hpp"
 #include "dcem/io/src/material_keys.hpp"
+#include "dcem/io/src/poses_csv.hpp"
 
 namespace dcem::io {
 
 inline constexpr double farthest_coordinate_m = 1e9;
 inline constexpr NumberRange any_instant_s{-1e9, 1e9};
+inline constexpr NumberRange any_angle_deg{-1e6, 1e6};
 
 /// Runs `action`; what the engine finds wrong with the values is reported at `place`.
 template <typename Action>
@@ -41,24 +43,52 @@ void refuse_later_blocks(const JsonObject& scenario);
 
 // scenario_motion.cpp
 
-/// `position_m` with angles and velocity, or `waypoints`. A pose with a velocity holds at `reference_time_s`.
-Motion read_motion(const JsonValue& value, double reference_time_s);
+/// Reads the motions of a scenario; a file of poses is read once, however many objects and devices it moves.
+class MotionReader {
+ public:
+  /// Files are relative to `folder`. A pose with a velocity holds at `reference_time_s`.
+  MotionReader(std::filesystem::path folder, double reference_time_s)
+      : folder_(std::move(folder)), reference_time_s_(reference_time_s) {}
+
+  /// `position_m` with angles and velocity, or `waypoints`, or `poses_csv` with rows of this id.
+  Motion read(const JsonValue& value, const std::string& id);
+  /// When all has been read: every row of every file must have moved something.
+  void check_all_taken() const;
+
+ private:
+  WaypointMotion read_poses(const JsonValue& name, const std::string& id);
+
+  std::filesystem::path folder_;
+  double reference_time_s_;
+  std::map<std::string, PosesCsv> files_;
+};
 
 /// `velocity_mps`; zero where it is missing.
 Vec3 read_velocity_mps(const JsonObject& object);
 
+/// The file that a value names, relative to `folder`. `expectation` as in "expected an OBJ file".
+std::filesystem::path existing_file(const JsonValue& name, const std::filesystem::path& folder,
+                                    const std::string& expectation);
+
+// scenario_mobility.cpp
+
+/// Reads the block `mobility`, if there is one, and the whole trace once: who drives when, and how many at a time. The
+/// instants that `time` leaves open are those of the trace.
+void read_mobility(const JsonObject& scenario, const std::filesystem::path& folder, Scenario& result);
+
 // scenario_devices.cpp
 
 /// Adds the transmitters and receivers to the scene, and the receiver grids beside it.
-void read_devices(const JsonObject& scenario, Scenario& result);
+void read_devices(const JsonObject& scenario, MotionReader& motions, Scenario& result);
 
 // scenario_bodies.cpp
 
-/// Meshes and materials: reads the scenery and the objects and adds them to the scene with the materials they use.
+/// Meshes and materials: reads the scenery and the objects and adds them to the scene with the materials they use, and
+/// the places for the traffic that `read_mobility` found.
 class BodyLoader {
  public:
-  BodyLoader(const JsonObject& scenario, std::filesystem::path folder, Scenario& result)
-      : scenario_(scenario), folder_(std::move(folder)), result_(result) {}
+  BodyLoader(const JsonObject& scenario, std::filesystem::path folder, MotionReader& motions, Scenario& result)
+      : scenario_(scenario), folder_(std::move(folder)), motions_(motions), result_(result) {}
 
   void load();
 
@@ -75,6 +105,8 @@ class BodyLoader {
   const ObjFile& read_mesh(const JsonObject& owner);
   TriangleMesh read_object_mesh(const JsonObject& object);
   void read_objects();
+  void check_object_id(const JsonValue& id) const;
+  void add_traffic();
   void collect_used_materials(const ObjFile& file, const std::string& name);
   void collect_mtl_materials(const ObjFile& file);
   void read_scenario_materials();
@@ -84,6 +116,7 @@ class BodyLoader {
 
   const JsonObject& scenario_;
   std::filesystem::path folder_;
+  MotionReader& motions_;
   Scenario& result_;
   std::map<FileKey, ObjFile> files_;
   std::vector<Object> objects_;

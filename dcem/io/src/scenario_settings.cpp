@@ -31,8 +31,10 @@ Discovery read_discovery(const JsonValue& value) {
   return value.one_of({"exact", "sampled"}) == "exact" ? Discovery::exact : Discovery::sampled;
 }
 
-void refuse_cache(const JsonValue& value) {
-  if (value.one_of({"off", "seed", "exact"}) != "off") value.not_in_this_version("off");
+CacheMode read_cache(const JsonValue& value) {
+  const std::string mode = value.one_of({"off", "seed", "exact"});
+  if (mode == "exact") value.not_in_this_version("off or seed");
+  return mode == "seed" ? CacheMode::seed : CacheMode::off;
 }
 
 AnyPathLoss read_path_loss(const JsonValue& value) {
@@ -52,9 +54,7 @@ void refuse_later_propagation(const JsonObject& propagation) {
   if (const auto value = propagation.find("max_diffractions"); value && value->integer(0, 3) != 0) {
     value->not_in_this_version("0");
   }
-  for (const char* key : {"diffraction", "rays_steady"}) {
-    if (propagation.has(key)) propagation.at(key).not_in_this_version("no such key");
-  }
+  if (propagation.has("diffraction")) propagation.at("diffraction").not_in_this_version("no such key");
   for (const char* key : {"atmosphere", "antenna_array"}) {
     if (const auto value = propagation.find(key); value && !value->is_null()) value->not_in_this_version("null");
   }
@@ -138,12 +138,17 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
     if (const auto value = file->find("max_interactions")) {
       settings.max_interactions = static_cast<int>(value->integer(0, highest_order + 3));
     }
+    if (const auto value = file->find("rays_steady")) {
+      settings.rays_steady = static_cast<std::uint32_t>(value->integer(1, 100'000'000));
+    }
     if (const auto value = file->find("path_loss")) settings.path_loss = read_path_loss(*value);
     if (const auto value = file->find("min_path_gain_db"); value && !value->is_null()) {
       settings.min_path_gain_db = value->number({-10'000.0, 1000.0});
     }
   }
-  if (const auto value = chosen(command_line, "--cache", file, "cache")) refuse_cache(*value);
+  if (const auto value = chosen(command_line, "--cache", file, "cache")) {
+    settings.cache = read_cache(*value);
+  }
   if (const auto value = chosen(command_line, "--discovery", file, "discovery")) {
     settings.discovery = read_discovery(*value);
   }
@@ -163,7 +168,7 @@ OutputSettings read_output(const JsonObject& scenario, const JsonObject& command
 }
 
 void refuse_later_blocks(const JsonObject& scenario) {
-  for (const char* key : {"mobility", "geo", "noise"}) {
+  for (const char* key : {"geo", "noise"}) {
     if (scenario.has(key)) scenario.at(key).not_in_this_version("no such key");
   }
   const auto links = scenario.find("links");

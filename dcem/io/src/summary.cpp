@@ -28,6 +28,30 @@ const char* name_of(Discovery discovery) {
   return "automatic";
 }
 
+const char* name_of(CacheMode cache) {
+  switch (cache) {
+    case CacheMode::off:
+      return "off";
+    case CacheMode::seed:
+      return "seed";
+    case CacheMode::automatic:
+      break;
+  }
+  return "automatic";
+}
+
+const char* name_of(TreePolicy policy) {
+  switch (policy) {
+    case TreePolicy::rebuild_always:
+      return "rebuild_always";
+    case TreePolicy::refit_only:
+      return "refit_only";
+    case TreePolicy::adaptive:
+      break;
+  }
+  return "adaptive";
+}
+
 template <typename Value>
 Json optional_json(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
@@ -47,6 +71,7 @@ Json box_json(const Scene& scene) {
 SurfaceReport joint_report(const Scene& scene) {
   SurfaceReport sum;
   for (const Body& body : scene.bodies()) {
+    if (body.is_place) continue;  // made by the program, with nothing to mend
     const SurfaceReport& part = body.mesh.report;
     sum.vertices_read += part.vertices_read;
     sum.vertices_welded += part.vertices_welded;
@@ -67,7 +92,8 @@ Json scene_json(const Scene& scene, std::size_t receivers) {
   for (const Material& material : scene.materials()) materials[material.name] = material_json(material);
   return {{"triangles", scene.triangles().size()},
           {"facets", scene.facets().size()},
-          {"objects", scene.bodies().size() - 1},
+          {"objects", scene.bodies().size() - 1 - scene.place_count()},
+          {"vehicle_places", scene.place_count()},
           {"transmitters", scene.transmitters().size()},
           {"receivers", receivers},
           {"bounding_box", box_json(scene)},
@@ -83,17 +109,21 @@ Json path_loss_json(const AnyPathLoss& path_loss) {
           {"attenuation_db_per_m", close_in->attenuation_db_per_m}};
 }
 
-Json propagation_json(const PropagationSettings& settings, Discovery discovery) {
+Json propagation_json(const RunFacts& facts) {
+  const PropagationSettings& settings = facts.settings.propagation;
+  const bool sampled = facts.discovery == Discovery::sampled;
+  const bool cached = facts.cache == CacheMode::seed;
   return {{"line_of_sight", settings.line_of_sight},
           {"max_reflections", settings.max_reflections},
           {"max_transmissions", settings.max_transmissions},
           {"max_diffractions", 0},
           {"max_interactions", settings.max_interactions.value_or(settings.max_reflections)},
-          {"discovery", name_of(discovery)},
+          {"discovery", name_of(facts.discovery)},
           {"discovery_asked_for", name_of(settings.discovery)},
-          {"rays", discovery == Discovery::sampled ? Json(settings.rays) : Json(nullptr)},
-          {"seed", discovery == Discovery::sampled ? Json(settings.seed) : Json(nullptr)},
-          {"cache", "off"},
+          {"rays", sampled ? Json(settings.rays) : Json(nullptr)},
+          {"rays_steady", cached ? Json(steady_rays(settings)) : Json(nullptr)},
+          {"seed", sampled ? Json(settings.seed) : Json(nullptr)},
+          {"cache", name_of(facts.cache)},
           {"path_loss", path_loss_json(settings.path_loss)},
           {"min_path_gain_db", optional_json(settings.min_path_gain_db)}};
 }
@@ -104,10 +134,11 @@ Json settings_json(const RunFacts& facts) {
   return {{"frequency_hz", settings.frequency_hz},
           {"itu", {{"revision", settings.itu.revision}, {"allow_extrapolation", settings.itu.allow_extrapolation}}},
           {"threads", resolve_thread_count(settings.threads)},
+          {"tree_policy", name_of(settings.upkeep.policy)},
           {"time", {{"start_s", facts.time.start_s}, {"step_s", facts.time.step_s}, {"frames", facts.time.frames}}},
-          {"propagation", propagation_json(settings.propagation, facts.discovery)},
+          {"propagation", propagation_json(facts)},
           {"defaults_of_this_version",
-           {{"cache", "off"},
+           {{"cache", "seed with sampled discovery, else off"},
             {"max_diffractions", 0},
             {"discovery", "exact up to " + std::to_string(exact_limit) + " facets, else sampled"}}}};
 }
@@ -119,6 +150,24 @@ Json work_json(const WorkCounters& work) {
           {"sequences_solved", work.sequences_solved},
           {"nodes_visited", work.nodes_visited},
           {"primitives_tested", work.primitives_tested}};
+}
+
+Json tree_json(const UpkeepReport& tree) {
+  return {{"nodes_kept", tree.nodes_kept},
+          {"nodes_refit", tree.nodes_refit},
+          {"nodes_rebuilt", tree.nodes_rebuilt},
+          {"subtrees_rebuilt", tree.subtrees_rebuilt},
+          {"root_rebuilt", tree.root_rebuilt},
+          {"sah_cost", tree.sah_cost},
+          {"sah_cost_at_build", tree.sah_cost_at_build}};
+}
+
+Json cache_json(const CacheCounters& cache) {
+  return {{"revalidated", cache.revalidated},
+          {"reused", cache.reused},
+          {"expired", cache.expired},
+          {"born", cache.born},
+          {"died", cache.died}};
 }
 
 double total_time_s(const FrameFigures& frame) {
@@ -139,11 +188,8 @@ Json frame_json(const FrameFigures& frame, double step_s) {
           {"update_time_s", frame.update_time_s},
           {"solve_time_s", frame.solve_time_s},
           {"real_time_factor", optional_json(real_time_factor(step_s, total_time_s(frame)))},
-          {"tree",
-           {{"nodes_kept", frame.tree.nodes_kept},
-            {"nodes_refit", frame.tree.nodes_refit},
-            {"nodes_rebuilt", frame.tree.nodes_rebuilt},
-            {"sah_cost", frame.tree.sah_cost}}},
+          {"tree", tree_json(frame.tree)},
+          {"cache", cache_json(frame.cache)},
           {"work", work_json(frame.work)}};
 }
 
@@ -156,6 +202,11 @@ FrameFigures sum_of(const std::vector<FrameFigures>& frames) {
     sum.update_time_s += frame.update_time_s;
     sum.solve_time_s += frame.solve_time_s;
     sum.work += frame.work;
+    sum.cache += frame.cache;
+    sum.tree.nodes_kept += frame.tree.nodes_kept;
+    sum.tree.nodes_refit += frame.tree.nodes_refit;
+    sum.tree.nodes_rebuilt += frame.tree.nodes_rebuilt;
+    sum.tree.subtrees_rebuilt += frame.tree.subtrees_rebuilt;
   }
   return sum;
 }
@@ -171,8 +222,8 @@ std::string milliseconds(double duration_s) {
 }  // namespace
 
 FrameFigures figures_of(const FrameResult& frame) {
-  FrameFigures figures{frame.index,         frame.time_s,       frame.links.size(), 0,         0,
-                       frame.update_time_s, frame.solve_time_s, frame.tree,         frame.work};
+  FrameFigures figures{frame.index,         frame.time_s,       frame.links.size(), 0,           0,
+                       frame.update_time_s, frame.solve_time_s, frame.tree,         frame.cache, frame.work};
   for (const LinkResult& link : frame.links) {
     figures.paths += link.paths.size();
     figures.links_with_line_of_sight += link.statistics.line_of_sight ? 1U : 0U;
@@ -188,30 +239,48 @@ std::vector<double> RunSummary::frame_times_s() const {
   return times_s;
 }
 
+std::string RunSummary::cache_text(const CacheCounters& cache) const {
+  if (facts_.cache == CacheMode::off) return "off";
+  return std::string(name_of(facts_.cache)) + ": " + std::to_string(cache.reused) + " paths reused, " +
+         std::to_string(cache.born) + " born, " + std::to_string(cache.died) + " died";
+}
+
 std::string RunSummary::json() const {
   const FrameFigures sum = sum_of(frames_);
   const std::vector<double> times_s = frame_times_s();
   const double covered_s = facts_.time.step_s * static_cast<double>(frames_.size());
-  Json frames = Json::array();
-  for (const FrameFigures& frame : frames_) frames.push_back(frame_json(frame, facts_.time.step_s));
-  return json_text({{"version", facts_.version},
-                    {"scenario", facts_.scenario},
-                    {"scene", scene_json(scene_, facts_.receivers)},
-                    {"settings", settings_json(facts_)},
-                    {"warnings", facts_.warnings},
-                    {"totals",
-                     {{"frames", frames_.size()},
-                      {"links", sum.links},
-                      {"links_with_line_of_sight", sum.links_with_line_of_sight},
-                      {"paths", sum.paths},
-                      {"update_time_s", sum.update_time_s},
-                      {"solve_time_s", sum.solve_time_s},
-                      {"frame_time_median_s", median(times_s)},
-                      {"frame_time_p95_s", quantile(times_s, 0.95)},
-                      {"frame_time_max_s", quantile(times_s, 1.0)},
-                      {"real_time_factor", optional_json(real_time_factor(covered_s, total_time_s(sum)))},
-                      {"work", work_json(sum.work)}}},
-                    {"frames", frames}});
+  std::string text = json_text({{"version", facts_.version},
+                                {"scenario", facts_.scenario},
+                                {"scene", scene_json(scene_, facts_.receivers)},
+                                {"settings", settings_json(facts_)},
+                                {"warnings", facts_.warnings},
+                                {"totals",
+                                 {{"frames", frames_.size()},
+                                  {"links", sum.links},
+                                  {"links_with_line_of_sight", sum.links_with_line_of_sight},
+                                  {"paths", sum.paths},
+                                  {"update_time_s", sum.update_time_s},
+                                  {"solve_time_s", sum.solve_time_s},
+                                  {"frame_time_median_s", median(times_s)},
+                                  {"frame_time_p95_s", quantile(times_s, 0.95)},
+                                  {"frame_time_max_s", quantile(times_s, 1.0)},
+                                  {"real_time_factor", optional_json(real_time_factor(covered_s, total_time_s(sum)))},
+                                  {"tree",
+                                   {{"nodes_kept", sum.tree.nodes_kept},
+                                    {"nodes_refit", sum.tree.nodes_refit},
+                                    {"nodes_rebuilt", sum.tree.nodes_rebuilt},
+                                    {"subtrees_rebuilt", sum.tree.subtrees_rebuilt}}},
+                                  {"cache", cache_json(sum.cache)},
+                                  {"work", work_json(sum.work)}}}});
+  text.resize(text.rfind('}'));
+  while (text.back() == '\n') text.pop_back();
+  text += ",\n  \"frames\": [";
+  // One by one: a day of frames as one document would need gigabytes.
+  for (const FrameFigures& frame : frames_) {
+    text += &frame == frames_.data() ? "\n    " : ",\n    ";
+    text += frame_json(frame, facts_.time.step_s).dump();
+  }
+  return text + "\n  ]\n}\n";
 }
 
 std::string RunSummary::table(const std::filesystem::path& folder) const {
@@ -229,6 +298,10 @@ std::string RunSummary::table(const std::filesystem::path& folder) const {
                                        " 95 %, " + milliseconds(quantile(times_s, 1.0)) + " max"});
   table.add_row({"real-time factor", factor ? format_fixed(*factor, *factor < 10.0 ? 3 : 1) : "-"});
   table.add_row({"discovery", name_of(facts_.discovery)});
+  table.add_row({"cache", cache_text(sum.cache)});
+  table.add_row({"tree", std::to_string(sum.tree.nodes_refit) + " nodes refit, " +
+                             std::to_string(sum.tree.nodes_rebuilt) + " rebuilt in " +
+                             std::to_string(sum.tree.subtrees_rebuilt) + " subtrees"});
   table.add_row({"rays", std::to_string(sum.work.rays)});
   table.add_row({"threads", std::to_string(resolve_thread_count(facts_.settings.threads))});
   table.add_row({"results", folder.string()});

@@ -40,12 +40,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// The fewest digits that say the same: "0.5", "100", "1e+300".
-std::string number_text(double value) {
-  std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
-
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& file, const std::string& expectation) {
@@ -87,6 +81,11 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   return *std::min_element(candidates.begin(), candidates.end(), [&](const std::string& a, const std::string& b) {
     return edit_distance(start, a) < edit_distance(start, b);
   });
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
 std::string NumberRange::text() const {

@@ -31,6 +31,9 @@ std::optional<double> parse_number(std::string_view text);
 /// The whole text as an integer; nothing where it is anything else or too large.
 std::optional<long long> parse_integer(std::string_view text);
 
+/// The fewest digits that say the same: "0.5", "100", "1e+300".
+std::string number_text(double value);
+
 /// Numbers that are allowed, and how a message calls them.
 struct NumberRange {
   double minimum, maximum;

@@ -1,0 +1,191 @@
+#pragma once
+/// Keeps a tree fit while the scene moves: looks at what moved, and decides per subtree to keep, refit or rebuild.
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "dcem/accel/brute_force.hpp"
+#include "dcem/accel/bvh.hpp"
+
+namespace dcem {
+
+/// What is done in a frame in which something moved. Where nothing moved, nothing is done.
+enum class TreePolicy {
+  rebuild_always,  ///< a new tree over everything: the best tree and the highest price
+  refit_only,      ///< boxes above what moved are made tight again; the tree's shape stays as it was built
+  adaptive         ///< refit, and then rebuild the subtrees that are worn
+};
+
+/// How a tree is kept. The defaults need no knowledge of the scene: both limits compare a subtree with itself.
+struct UpkeepSettings {
+  TreePolicy policy = TreePolicy::adaptive;
+  /// A subtree is worn when its Σ cost · surface is this many times what it was when it was built (no unit, above 1;
+  /// infinity switches the measure off).
+  double sah_growth_limit = 1.2;
+  /// A subtree is worn when the mean growth of its nodes' surface over their children's exceeds this (no unit, above 0;
+  /// infinity switches the measure off). RT-DEFORM's 40 %.
+  double deformation_limit = 0.4;
+  /// Neither measure sees a tree that might be better than it ever was, as when objects gather. The layer above the
+  /// groups is therefore built anew whenever refits have visited this many times as many nodes as it has (no unit,
+  /// above 0; infinity switches it off). At 64 that adds about a quarter to the cost of the refits.
+  double renewal_ratio = 64.0;
+};
+
+/// Throws std::invalid_argument for limits outside the ranges written above.
+inline void validate(const UpkeepSettings& settings) {
+  if (!(settings.sah_growth_limit > 1.0)) throw std::invalid_argument("sah_growth_limit: expected a number above 1");
+  if (!(settings.deformation_limit > 0.0)) throw std::invalid_argument("deformation_limit: expected a number above 0");
+  if (!(settings.renewal_ratio > 0.0)) throw std::invalid_argument("renewal_ratio: expected a number above 0");
+}
+
+/// What keeping a tree took in one frame. Every node is kept, refit or rebuilt; one that was both counts as rebuilt.
+struct UpkeepReport {
+  std::uint64_t nodes_kept = 0;
+  std::uint64_t nodes_refit = 0;
+  std::uint64_t nodes_rebuilt = 0;
+  std::uint64_t subtrees_rebuilt = 0;  ///< the whole tree counts as one
+  bool root_rebuilt = false;
+  double sah_cost = 0.0;           ///< after the frame's upkeep, no unit
+  double sah_cost_at_build = 0.0;  ///< after the last build of the whole tree, no unit
+
+  friend bool operator==(const UpkeepReport&, const UpkeepReport&) = default;
+};
+
+/// Decides for one `Bvh`. The groups of the tree are the objects of a scene: primitives [group_first[i],
+/// group_first[i+1]) belong to object i.
+template <std::floating_point Scalar>
+class BvhMaintainer {
+ public:
+  using Tree = Bvh<Scalar>;
+  using Boxes = typename Tree::Boxes;
+
+  explicit BvhMaintainer(const UpkeepSettings& settings = {}) : settings_(settings) { validate(settings); }
+
+  const UpkeepSettings& settings() const { return settings_; }
+
+  /// Brings the tree up to date after the primitives in `moved` have got the boxes that stand in `boxes`.
+  UpkeepReport update(Tree& tree, std::span<const std::uint32_t> moved, Boxes boxes,
+                      std::span<const std::uint32_t> group_first);
+
+  /// Whether a rebuild of the subtree is due by either measure. Two leaves under a node can be joined in one way only:
+  /// such a node is never worn.
+  bool is_worn(const SubtreeWear& wear) const {
+    return wear.inner_nodes > 1 &&
+           (wear.sah_growth() > settings_.sah_growth_limit || wear.deformation() > settings_.deformation_limit);
+  }
+
+ private:
+  /// Whether so much has moved since the layer above the groups was built that building it again is small change. A
+  /// single group has no such layer, and what it wears by moving stiffly its own boxes show.
+  bool needs_renewal(const Tree& tree) const {
+    const double layer_nodes = 2.0 * static_cast<double>(tree.group_count());
+    return !tree.wear(0).is_group_root && visited_since_renewal_ > settings_.renewal_ratio * layer_nodes;
+  }
+
+  /// Asks what the last refit has visited, parents before children, so that the largest worn subtree is built anew.
+  void rebuild_worn(Tree& tree, Boxes boxes, UpkeepReport& report);
+  void rebuild(Tree& tree, std::uint32_t node, Boxes boxes, UpkeepReport& report);
+  static std::uint64_t nodes_in_use(const Tree& tree) {
+    return tree.primitive_count() == 0 ? 0 : tree.nodes().size() - 1 - 2 * tree.arrays().free_pairs.size();
+  }
+
+  UpkeepSettings settings_;
+  std::vector<std::uint32_t> visited_;
+  std::vector<bool> is_visited_;        ///< per slot
+  double visited_since_renewal_ = 0.0;  ///< nodes that refits have visited since the root was built
+};
+
+/// The oracle has no shape that could wear.
+template <std::floating_point Scalar>
+class BruteForceMaintainer {
+ public:
+  explicit BruteForceMaintainer(const UpkeepSettings& settings = {}) { validate(settings); }
+
+  UpkeepReport update(BruteForce<Scalar>& tree, std::span<const std::uint32_t> moved,
+                      typename BruteForce<Scalar>::Boxes boxes, std::span<const std::uint32_t>) const {
+    tree.refit(moved, boxes);
+    UpkeepReport report;
+    report.sah_cost = report.sah_cost_at_build = tree.sah_cost();
+    return report;
+  }
+};
+
+namespace detail {
+
+template <typename Tree>
+struct MaintainerOf;
+template <std::floating_point Scalar>
+struct MaintainerOf<Bvh<Scalar>> {
+  using type = BvhMaintainer<Scalar>;
+};
+template <std::floating_point Scalar>
+struct MaintainerOf<BruteForce<Scalar>> {
+  using type = BruteForceMaintainer<Scalar>;
+};
+
+}  // namespace detail
+
+/// The class that keeps a tree of a given type.
+template <typename Tree>
+using MaintainerOf = typename detail::MaintainerOf<Tree>::type;
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+template <std::floating_point Scalar>
+UpkeepReport BvhMaintainer<Scalar>::update(Tree& tree, std::span<const std::uint32_t> moved, Boxes boxes,
+                                           std::span<const std::uint32_t> group_first) {
+  UpkeepReport report;
+  if (settings_.policy == TreePolicy::rebuild_always && !moved.empty()) {
+    tree.build_grouped(boxes, group_first, tree.settings());
+    report.nodes_rebuilt = nodes_in_use(tree);
+    report.subtrees_rebuilt = 1;
+    report.root_rebuilt = true;
+  } else {
+    report.nodes_refit = tree.refit(moved, boxes).visited_nodes;
+    if (settings_.policy == TreePolicy::adaptive) rebuild_worn(tree, boxes, report);
+  }
+  report.nodes_kept = nodes_in_use(tree) - report.nodes_refit - report.nodes_rebuilt;
+  report.sah_cost = tree.sah_cost();
+  report.sah_cost_at_build = tree.quality().sah_at_build;
+  return report;
+}
+
+template <std::floating_point Scalar>
+void BvhMaintainer<Scalar>::rebuild_worn(Tree& tree, Boxes boxes, UpkeepReport& report) {
+  visited_.assign(tree.last_refit().rbegin(), tree.last_refit().rend());  // parents before children
+  is_visited_.resize(tree.nodes().size());
+  for (const std::uint32_t slot : visited_) is_visited_[slot] = true;
+  visited_since_renewal_ += static_cast<double>(visited_.size());
+  const auto rebuild_where = [&](bool in_group) {
+    for (const std::uint32_t slot : visited_) {
+      // Slots that an earlier rebuild gave away again hold new nodes, which are not worn.
+      if (tree.arrays().parent[slot] == free_slot || tree.lies_in_group(slot) != in_group) continue;
+      if (is_worn(tree.wear(slot)) || (slot == 0 && needs_renewal(tree))) rebuild(tree, slot, boxes, report);
+    }
+  };
+  rebuild_where(true);  // before the layer above: there the groups get other slots
+  rebuild_where(false);
+  for (const std::uint32_t slot : visited_) is_visited_[slot] = false;
+}
+
+template <std::floating_point Scalar>
+void BvhMaintainer<Scalar>::rebuild(Tree& tree, std::uint32_t node, Boxes boxes, UpkeepReport& report) {
+  tree.for_each_in_layer(node, [&](std::uint32_t slot) {
+    if (is_visited_[slot]) --report.nodes_refit;
+    is_visited_[slot] = false;
+  });
+  tree.rebuild_layer(node, boxes);
+  is_visited_.resize(tree.nodes().size());
+  tree.for_each_in_layer(node, [&](std::uint32_t) { ++report.nodes_rebuilt; });
+  ++report.subtrees_rebuilt;
+  if (node != 0) return;
+  report.root_rebuilt = true;
+  visited_since_renewal_ = 0.0;
+}
+
+}  // namespace dcem

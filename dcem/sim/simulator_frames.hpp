@@ -1,0 +1,203 @@
+#pragma once
+/// How a `Simulator` moves to a frame and solves its links; included by simulator.hpp.
+#include <algorithm>
+#include <chrono>
+
+#include "dcem/sim/simulator.hpp"
+
+namespace dcem {
+
+namespace detail {
+
+inline void add_search_work(const SearchCounters& counters, WorkCounters& work) {
+  work.rays += counters.rays;
+  work.legs += counters.solver.legs;
+  work.sequences_proposed += counters.sequences_proposed;
+  work.sequences_solved += counters.solver.sequences_solved;
+  work.nodes_visited += counters.solver.traversal.nodes_visited;
+  work.primitives_tested += counters.solver.traversal.primitives_tested;
+}
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace detail
+
+template <SurfaceModel Surface, typename Tree>
+FrameResult Simulator<Surface, Tree>::advance(const Frame& frame) {
+  FrameResult result{frame.index, frame.time_s, {}, {}, {}, {}, 0.0, 0.0};
+  const detail::Stopwatch update_watch;
+  const ChangeSet changes = scene_.apply(frame);
+  result.tree = update_tree(changes);
+  forget_replaced(changes, result.cache);
+  frame_ = frame;
+  result.update_time_s = update_watch.seconds();
+  const detail::Stopwatch solve_watch;
+  Solved solved = solve_all(scene_.receivers(), caches_);
+  result.links = std::move(solved.links);
+  result.work = solved.work;
+  result.cache += solved.cache;
+  result.solve_time_s = solve_watch.seconds();
+  return result;
+}
+
+template <SurfaceModel Surface, typename Tree>
+UpkeepReport Simulator<Surface, Tree>::move_to(const Frame& frame) {
+  const ChangeSet changes = scene_.apply(frame);
+  CacheCounters not_reported;
+  forget_replaced(changes, not_reported);
+  frame_ = frame;
+  return update_tree(changes);
+}
+
+template <SurfaceModel Surface, typename Tree>
+std::optional<PathContribution> Simulator<Surface, Tree>::solve_path(std::size_t transmitter, std::size_t receiver,
+                                                                     const Sequence& mirrors) const {
+  const Device& from = scene_.transmitters()[transmitter];
+  const Device& to = scene_.receivers()[receiver];
+  const DeviceState from_state = scene_.device_state(from, frame_), to_state = scene_.device_state(to, frame_);
+  if (!from_state.present || !to_state.present) return std::nullopt;
+  const Tracer tracer(scene_, tree_);
+  PathSolver<Tree> solver(tracer, settings_.propagation.max_transmissions);
+  TraversalCounters counters;
+  std::vector<Vec3> images_m{to_state.position_m};
+  for (const FacetId mirror : mirrors) append_image(images_m, scene_.facet(mirror).plane);
+  std::optional<Path> path =
+      solver.solve(link_end(from_state, counters), link_end(to_state, counters), mirrors, images_m);
+  if (!path) return std::nullopt;
+  const Evaluator evaluator(scene_, surface_, settings_.propagation.path_loss, settings_.frequency_hz);
+  return evaluator.evaluate(std::move(*path), {from_state.position_m, from_state.velocity_mps, from.antenna},
+                            {to_state.position_m, to_state.velocity_mps, to.antenna});
+}
+
+template <SurfaceModel Surface, typename Tree>
+UpkeepReport Simulator<Surface, Tree>::update_tree(const ChangeSet& changes) {
+  for (const BodyId body : changes.moved) {
+    const auto [first, last] = scene_.triangle_range(body);
+    for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
+  }
+  // Kept where this throws (a box too far away): the tree must hear of them in a later frame.
+  const UpkeepReport report = maintainer_.update(tree_, moved_, scene_.triangle_boxes(), scene_.first_triangles());
+  moved_.clear();
+  return report;
+}
+
+/// A path over an object that has left its place is not the same path as one over the object that came.
+template <SurfaceModel Surface, typename Tree>
+void Simulator<Surface, Tree>::forget_replaced(const ChangeSet& changes, CacheCounters& counters) {
+  if (changes.replaced.empty()) return;
+  const auto gone = [&](FacetId facet) {
+    return std::binary_search(changes.replaced.begin(), changes.replaced.end(), scene_.facet(facet).body);
+  };
+  for (PathCache& cache : caches_) {
+    const std::size_t forgotten = cache.forget(gone);
+    counters.expired += forgotten;
+    counters.died += forgotten;
+  }
+}
+
+template <SurfaceModel Surface, typename Tree>
+typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::transmitter_ends() const {
+  TransmitterEnds ends;
+  for (const Device& device : scene_.transmitters()) {
+    const DeviceState state = scene_.device_state(device, frame_);
+    TraversalCounters counters;
+    ends.link.push_back(state.present ? std::optional(link_end(state, counters)) : std::nullopt);
+    ends.radio.push_back({state.position_m, state.velocity_mps, device.antenna});
+  }
+  return ends;
+}
+
+template <SurfaceModel Surface, typename Tree>
+PathSearchSettings Simulator<Surface, Tree>::search_settings() const {
+  const PropagationSettings& propagation = settings_.propagation;
+  return {discovery_ == Discovery::exact, reflection_order(propagation),
+          propagation.max_transmissions,  propagation.rays,
+          steady_rays(propagation),       propagation.seed};
+}
+
+template <SurfaceModel Surface, typename Tree>
+std::vector<LinkResult> Simulator<Surface, Tree>::solve(std::span<const Device> receivers, WorkCounters* work) const {
+  Solved solved = solve_all(receivers, {});
+  if (work != nullptr) *work += solved.work;
+  return std::move(solved.links);
+}
+
+template <SurfaceModel Surface, typename Tree>
+typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_all(std::span<const Device> receivers,
+                                                                              std::span<PathCache> caches) const {
+  const TransmitterEnds transmitters = transmitter_ends();
+  std::vector<Solved> by_receiver(receivers.size());
+  parallel_for(receivers.size(), settings_.threads, [&](std::size_t index, unsigned) {
+    PathCache* cache = caches.empty() ? nullptr : &caches[index];
+    by_receiver[index] = solve_receiver(receivers[index], index, transmitters, cache);
+  });
+  Solved sum;
+  for (Solved& one : by_receiver) {
+    for (LinkResult& link : one.links) sum.links.push_back(std::move(link));
+    sum.work += one.work;
+    sum.cache += one.cache;
+  }
+  std::stable_sort(sum.links.begin(), sum.links.end(),
+                   [](const LinkResult& a, const LinkResult& b) { return a.transmitter < b.transmitter; });
+  return sum;
+}
+
+template <SurfaceModel Surface, typename Tree>
+typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiver(const Device& receiver,
+                                                                                   std::size_t index,
+                                                                                   const TransmitterEnds& transmitters,
+                                                                                   PathCache* cache) const {
+  const Tracer tracer(scene_, tree_);
+  const DeviceState state = scene_.device_state(receiver, frame_);
+  Solved solved;
+  if (!state.present) {
+    if (cache != nullptr) solved.cache.died = cache->clear();
+    return solved;
+  }
+  SearchCounters counters;
+  const LinkEnd end = link_end(state, counters.solver.traversal);
+  const PathSearchSettings search = search_settings();
+  std::vector<std::optional<LinkEnd>> ends = transmitters.link;
+  for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
+    if (scene_.transmitters()[transmitter].id == receiver.id) ends[transmitter].reset();  // one device has no link
+  }
+  std::vector<LinkPaths> found = find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache);
+  const Evaluator evaluator(scene_, surface_, settings_.propagation.path_loss, settings_.frequency_hz);
+  const RadioEnd to{state.position_m, state.velocity_mps, receiver.antenna};
+  for (std::size_t transmitter = 0; transmitter < found.size(); ++transmitter) {
+    if (!ends[transmitter]) continue;
+    LinkResult& link = solved.links.emplace_back(
+        make_link(std::move(found[transmitter]), transmitter, transmitters.radio[transmitter], to, evaluator));
+    link.receiver = index;
+    link.complete = search.exhaustive || search.max_reflections == 0;
+    solved.work.paths += link.paths.size();
+  }
+  detail::add_search_work(counters, solved.work);
+  solved.cache = counters.cache;
+  return solved;
+}
+
+template <SurfaceModel Surface, typename Tree>
+LinkResult Simulator<Surface, Tree>::make_link(LinkPaths&& found, std::size_t transmitter, const RadioEnd& from,
+                                               const RadioEnd& to, const Evaluator& evaluator) const {
+  const PropagationSettings& propagation = settings_.propagation;
+  LinkResult link;
+  link.transmitter = transmitter;
+  for (Path& path : found.paths) {
+    if (path.interactions.empty() && !propagation.line_of_sight) continue;
+    PathContribution contribution = evaluator.evaluate(std::move(path), from, to);
+    const bool too_weak =
+        propagation.min_path_gain_db && !(power_ratio_to_db(contribution.power_ratio) >= *propagation.min_path_gain_db);
+    if (!too_weak) link.paths.push_back(std::move(contribution));
+  }
+  link.statistics = link_statistics(link.paths, scene_.transmitters()[transmitter].power_dbm, found.line_of_sight);
+  return link;
+}
+
+}  // namespace dcem
