@@ -1,0 +1,311 @@
+#!/usr/bin/env python3
+"""Reference values of edge diffraction and of layered walls, with mpmath (pip install mpmath), by routes other than the
+engine's. One table per call:
+
+    for table in transition half_plane wedge_plane wedge_line wedge_point double_screen multilayer; do
+      python3 utd_reference.py $table > utd_$table.inc
+    done
+
+exp(+j w t) throughout. Everything starts from the exact values of the doubles that are printed.
+
+transition     F(x) = sqrt(pi) z exp(z^2) erfc(z), z = exp(j pi/4) sqrt(x), by mpmath's erfc, above x = 300 by its
+               asymptotic series; F_s = 2jx (1 - F), F_c = jx (F - F_s). 40 digits.
+half_plane     Sommerfeld 1896: u = e^{jkr cos b} erfc(-e^{j pi/4} sqrt(2kr) cos(b/2))/2 for b = phi - phi', and the
+               same for phi + phi' with the sign of the boundary condition.
+wedge_*        The perfectly conducting wedge: geometrical optics (images) plus the exact diffraction integral
+                 u_d = -(1/2 pi n) int_0^inf sum_i s_i sin(t_i/n)/(cosh(x/n) - cos(t_i/n)) g(D(x)) dx,
+               t_i = pi + (+-phi +-phi'), D^2 = rho^2 + rho'^2 + 2 rho rho' cosh x + z^2; g = exp(-jkD)/D for a point
+               (Bowman, Senior & Uslenghi; Svensson et al., JASA 106, 1999), H0(kD) for a line, and exp(-jk rho cosh x)
+               for a plane wave; on the path of steepest descent. The plane wave is compared here with the series of
+               eigenfunctions, and the script stops where they differ.
+double_screen  Two absorbing screens, Kirchhoff's double integral in Fresnel's approximation (Vogler 1982), inner integral
+               by erfc, outer one along a rotated path.
+multilayer     The chain (ABCD) matrix of three lines in a row, in 50 digits.
+"""
+import sys
+
+import mpmath as mp
+
+mp.mp.dps = 40
+J = mp.mpc(0, 1)
+
+
+def part(x):
+    x = mp.mpf(x)
+    return "0.0" if abs(x) < mp.mpf("4e-324") else mp.nstr(x, 20, strip_zeros=False)
+
+
+def text(value):
+    value = mp.mpc(value)
+    return "{%s, %s}" % (part(value.real), part(value.imag))
+
+
+def row(numbers, values):
+    print("{%s,\n %s}," % (", ".join(repr(float(v)) for v in numbers), ", ".join(text(v) for v in values)))
+
+
+# --- transition ------------------------------------------------------------------------------------------------------
+def transition(x):
+    if x == 0:
+        return mp.mpc(0), mp.mpc(0), mp.mpc(0)
+    y = 2 * J * x
+    if x < 300:
+        with mp.workdps(200):  # exp(z^2) erfc(z) cancels nothing, but 1 - F does
+            z = mp.exp(J * mp.pi / 4) * mp.sqrt(x)
+            f = mp.sqrt(mp.pi) * z * mp.exp(J * x) * mp.erfc(z)
+            slope = 2 * J * x * (1 - f)
+            return f, slope, J * x * (f - slope)
+    # 1 - 1/y + 3/y^2 - 15/y^3 + ...; the smallest term is exp(-x).
+    terms = [mp.mpc(1)]
+    while abs(terms[-1]) > mp.mpf(10) ** -60 and len(terms) < 200:
+        terms.append(-terms[-1] * (2 * len(terms) - 1) / y)
+    f = mp.fsum(terms)
+    slope = -y * mp.fsum(terms[1:] + [-terms[-1] * (2 * len(terms) - 1) / y])
+    extended = terms[1:]
+    for _ in range(2):
+        extended.append(-extended[-1] * (2 * len(extended) + 1) / y)
+    # F - F_s = sum of (term_m + y term_{m+1}); the leading ones cancel exactly.
+    difference = mp.fsum(terms[m] + y * extended[m] for m in range(1, len(terms)))
+    return f, slope, y / 2 * difference
+
+
+def table_transition():
+    print("// Made by utd_reference.py transition; do not edit. x, F, F_s, F_c")
+    points = [0.0, 5e-324, 1e-310, 2.2250738585072014e-308]
+    points += [10.0 ** e for e in range(-300, -20, 20)]
+    points += [m * 10.0 ** e for e in range(-16, 4) for m in (1.0, 1.3, 2.1, 3.7, 4.0, 4.000001, 5.5, 8.2)]
+    points += [10.0 ** e for e in list(range(4, 20)) + list(range(20, 320, 20))]
+    points += [9.99e16, 1.01e17, 1.7e308]
+    for x in sorted(points):
+        row([x], transition(mp.mpf(x)))
+
+
+# --- half plane ------------------------------------------------------------------------------------------------------
+def radians(degrees):
+    return mp.mpf(degrees) * mp.pi / 180
+
+
+def table_half_plane():
+    print("// Made by utd_reference.py half_plane; do not edit. n, k r, phi' deg, phi deg; total soft, hard")
+    for kr in (0.1, 1.0, 10.0, 1000.0):
+        for source in (5.0, 40.0, 90.0, 133.0, 250.0):
+            for observer in (2.0, 47.0, 89.0, 137.5, 181.0, 222.0, 271.0, 314.0, 358.0):
+                def half(b):
+                    return mp.exp(J * kr * mp.cos(b)) / 2 * mp.erfc(
+                        -mp.exp(J * mp.pi / 4) * mp.sqrt(2 * mp.mpf(kr)) * mp.cos(b / 2))
+                direct = half(radians(observer - source))
+                mirror = half(radians(observer + source))
+                row([2.0, kr, source, observer], [direct - mirror, direct + mirror])
+
+
+# --- wedges ----------------------------------------------------------------------------------------------------------
+def diffraction_integral(n, source, observer, w_to_cosh, kernel):
+    """Both halves, difference and sum angles, of the integral over the steepest descent path; kernel(w) contains
+    exp(-w^2), w_to_cosh(w) = (cosh x - 1, d(cosh x)/dw)."""
+    angles = [(mp.pi + s1 * observer + s2 * source, 0 if s1 != s2 else 1) for s1 in (1, -1) for s2 in (1, -1)]
+
+    def integrand(w, which):
+        less_one, derivative = w_to_cosh(w)
+        sinh = mp.sqrt(less_one * (less_one + 2))
+        x = mp.asinh(sinh) if less_one.real > -1 else mp.log(1 + less_one + sinh)
+        total = mp.mpc(0)
+        for angle, group in angles:
+            if group == which:
+                total += mp.sin(angle / n) / (mp.cosh(x / n) - mp.cos(angle / n))
+        return total * kernel(w) * derivative / sinh
+
+    points = [mp.mpf(p) for p in ("0", "0.05", "0.25", "0.8", "1.8", "3.5", "6.5")]
+    return [-mp.quad(lambda w, g=g: integrand(w, g), points, method="gauss-legendre") / (2 * mp.pi * n)
+            for g in (0, 1)]
+
+
+def geometrical(n, source, observer, direct, mirror):
+    """Direct and reflected fields; mirror(image azimuth) and direct(azimuth) give the field of a source there."""
+    incident = direct(source) if abs(observer - source) < mp.pi else mp.mpc(0)
+    reflected = mp.mpc(0)
+    if observer + source < mp.pi:
+        reflected += mirror(-source)
+    if 2 * n * mp.pi - observer - source < mp.pi:
+        reflected += mirror(2 * n * mp.pi - source)
+    return incident, reflected
+
+
+def plane_total(n, kr, source, observer):
+    def w_to_cosh(w):
+        return mp.mpc(0, -w * w / kr), mp.mpc(0, -2 * w / kr)
+
+    difference, total = diffraction_integral(n, source, observer, w_to_cosh,
+                                             lambda w: mp.exp(-J * kr - w * w))
+    field = lambda azimuth: mp.exp(J * kr * mp.cos(observer - azimuth))
+    incident, reflected = geometrical(n, source, observer, field, field)
+    return incident + difference - reflected - total, incident + difference + reflected + total
+
+
+def plane_series(n, kr, source, observer):
+    soft = mp.mpc(0)
+    hard = mp.besselj(0, kr)
+    m = 1
+    while True:
+        order = mp.mpf(m) / n
+        wave = 2 * mp.exp(J * mp.pi * order / 2) * mp.besselj(order, kr)
+        soft += wave * mp.sin(order * source) * mp.sin(order * observer)
+        hard += wave * mp.cos(order * source) * mp.cos(order * observer)
+        if order > kr and abs(wave) < mp.mpf(10) ** -18:
+            return 2 / n * soft, 2 / n * hard
+        m += 1
+
+
+WEDGES = (1.25, 1.5, 1.75)
+SOURCES = {1.25: (20.0, 75.0, 170.0), 1.5: (12.0, 60.0, 215.0), 1.75: (33.0, 100.0, 290.0)}
+FRACTIONS = (0.03, 0.17, 0.31, 0.44, 0.58, 0.71, 0.83, 0.97)
+
+
+def table_wedge_plane():
+    mp.mp.dps = 20
+    print("// Made by utd_reference.py wedge_plane; do not edit. n, k r, phi' deg, phi deg; total soft, hard")
+    for n in WEDGES:
+        for kr in (10.0, 40.0, 200.0):
+            for source in SOURCES[n]:
+                for number, fraction in enumerate(FRACTIONS):
+                    observer = float(round(fraction * n * 180.0, 1))
+                    values = plane_total(mp.mpf(n), mp.mpf(kr), radians(source), radians(observer))
+                    if kr < 100.0 and number % 3 == 0:
+                        for a, b in zip(values, plane_series(mp.mpf(n), mp.mpf(kr), radians(source), radians(observer))):
+                            assert abs(a - b) < 1e-14, (n, kr, source, observer, a, b)
+                    row([n, kr, source, observer], values)
+
+
+def distance_path(k, rho_source, rho, z):
+    nearest = mp.sqrt((rho_source + rho) ** 2 + z * z)
+
+    def distance(w):
+        return nearest - J * w * w / k
+
+    def w_to_cosh(w):
+        step = -J * w * w / k
+        return step * (2 * nearest + step) / (2 * rho * rho_source), distance(w) * (-2 * J * w / k) / (rho * rho_source)
+
+    return distance, w_to_cosh
+
+
+def table_wedge_line():
+    mp.mp.dps = 20
+    print("// Made by utd_reference.py wedge_line; do not edit. n, k, rho', phi' deg, rho, phi deg; total soft, hard of H0(kR)")
+    for n in WEDGES:
+        for k, rho_source, rho in ((1.0, 20.0, 50.0), (2.0, 60.0, 15.0)):
+            for source in SOURCES[n][:2]:
+                for fraction in FRACTIONS[1::2]:
+                    observer = float(round(fraction * n * 180.0, 1))
+                    distance, w_to_cosh = distance_path(mp.mpf(k), mp.mpf(rho_source), mp.mpf(rho), mp.mpf(0))
+                    a, b = radians(source), radians(observer)
+                    difference, total = diffraction_integral(mp.mpf(n), a, b, w_to_cosh,
+                                                             lambda w: mp.hankel2(0, k * distance(w)))
+                    field = lambda azimuth: mp.hankel2(0, k * mp.sqrt(
+                        rho ** 2 + rho_source ** 2 - 2 * rho * rho_source * mp.cos(b - azimuth)))
+                    incident, reflected = geometrical(mp.mpf(n), a, b, field, field)
+                    row([n, k, rho_source, source, rho, observer],
+                        [incident + difference - reflected - total, incident + difference + reflected + total])
+
+
+def table_wedge_point():
+    mp.mp.dps = 20
+    print("// Made by utd_reference.py wedge_point; do not edit.")
+    print("// n, k, rho', phi' deg, rho, phi deg, z; total soft, hard of exp(-jkR)/R")
+    for n in WEDGES + (2.0,):
+        for k, rho_source, rho, z in ((3.0, 10.0, 15.0, 20.0), (10.0, 4.0, 30.0, -60.0)):
+            for source in SOURCES.get(n, (30.0, 110.0))[:2]:
+                for fraction in FRACTIONS[1::2]:
+                    observer = float(round(fraction * n * 180.0, 1))
+                    distance, w_to_cosh = distance_path(mp.mpf(k), mp.mpf(rho_source), mp.mpf(rho), mp.mpf(z))
+                    a, b = radians(source), radians(observer)
+                    difference, total = diffraction_integral(
+                        mp.mpf(n), a, b, w_to_cosh, lambda w: mp.exp(-J * k * distance(w)) / distance(w))
+
+                    def field(azimuth):
+                        reach = mp.sqrt(mp.mpf(rho) ** 2 + mp.mpf(rho_source) ** 2 + mp.mpf(z) ** 2
+                                        - 2 * mp.mpf(rho) * rho_source * mp.cos(b - azimuth))
+                        return mp.exp(-J * k * reach) / reach
+
+                    incident, reflected = geometrical(mp.mpf(n), a, b, field, field)
+                    row([n, k, rho_source, source, rho, observer, z],
+                        [incident + difference - reflected - total, incident + difference + reflected + total])
+
+
+# --- two screens -----------------------------------------------------------------------------------------------------
+def double_screen(k, a, b, c, height_1, height_2):
+    q = 1 / b + 1 / c
+
+    def integrand(w):
+        x = height_1 + mp.exp(-J * mp.pi / 4) * w
+        inner = mp.sqrt(mp.pi / (2 * J * k * q)) * mp.erfc(mp.sqrt(J * k * q / 2) * (height_2 - x / (b * q)))
+        return mp.exp(-J * k / 2 * (1 / a + 1 / b - 1 / (b * b * q)) * x * x) * inner
+
+    scale = mp.sqrt(2 / (k * (1 / a + 1 / b - 1 / (b * b * q))))
+    points = [scale * p for p in (0, 0.5, 1, 2, 4, 8)]
+    if height_1 < 0:
+        points = [scale * p for p in (0, 0.3, 0.6, 1, 1.5, 2, 3, 4, 6, 8, 10, 14, 20)]
+    integral = mp.exp(-J * mp.pi / 4) * mp.quad(integrand, points)
+    whole = 2 * mp.pi / (J * k) / mp.sqrt((1 / a + 1 / b) * (1 / b + 1 / c) - 1 / (b * b))
+    return integral / whole
+
+
+def table_double_screen():
+    mp.mp.dps = 20
+    print("// Made by utd_reference.py double_screen; do not edit. k, legs a, b, c, heights 1, 2; field over free space")
+    assert abs(double_screen(mp.mpf(600), *[mp.mpf(100)] * 3, mp.mpf(0), mp.mpf(0)) - mp.mpf(1) / 3) < 1e-15
+    for a, b, c in ((100.0, 100.0, 100.0), (300.0, 50.0, 120.0), (80.0, 400.0, 60.0)):
+        for first, second in ((0.0, 0.0), (1.0, 1.0), (0.5, 2.0), (2.0, 0.3), (3.0, 3.0), (0.2, 0.0)):
+            values = [mp.mpf(v) for v in (600.0, a, b, c, first, second)]
+            row([600.0, a, b, c, first, second], [double_screen(*values)])
+
+
+# --- layers ----------------------------------------------------------------------------------------------------------
+LAYERS = [
+    ((5.24, -0.39, 30.0), (1.0, 0.0, 55.0), (6.31, -0.2, 4.0)),      # concrete, air gap, glass
+    ((6.31, -0.02, 2.5), (1.0, 0.0, 10.0), (6.31, -0.02, 2.5)),      # double glazing
+    ((2.73, 0.0, 8.2), (1.5, 0.0, 33.0), (2.73, 0.0, 8.2)),          # without loss
+    ((1.000001, 0.0, 3.0), (1.00002, -1e-7, 2.0), (1.0, -1e-6, 1.0)),  # hardly there
+    ((4.0, -1e-3, 1e-6), (9.0, -3.0, 1e-5), (2.0, 0.0, 1e-7)),       # far thinner than a wavelength
+    ((2.0, -0.5, 900.0), (5.0, -2.0, 300.0), (3.0, -1.0, 40.0)),     # thick: e^-400
+]
+COSINES = [1.0, 0.93, 0.5, 0.2, 0.01, 1e-5, 0.0]
+
+
+def multilayer(layers, cosine):
+    air = cosine if cosine > 0 else mp.mpf(10) ** -400
+    result = []
+    for polarization in ("te", "tm"):
+        a, b, c, d = mp.mpc(1), mp.mpc(0), mp.mpc(0), mp.mpc(1)
+        phase = mp.mpf(0)
+        for real, imaginary, thickness in layers:
+            eta = mp.mpc(mp.mpf(real), mp.mpf(imaginary))
+            q = mp.sqrt(eta - 1 + cosine * cosine)
+            q = -q if q.imag > 0 else q
+            if q == 0:
+                q = mp.mpc(mp.mpf(10) ** -400)
+            impedance = 1 / q if polarization == "te" else q / eta
+            delta = mp.mpf(thickness) * q
+            ca, cb, cc = mp.cos(delta), J * impedance * mp.sin(delta), J * mp.sin(delta) / impedance
+            a, b, c, d = a * ca + b * cc, a * cb + b * ca, c * ca + d * cc, c * cb + d * ca
+            phase += mp.mpf(thickness) * cosine
+        outer = 1 / air if polarization == "te" else air
+        denominator = a + b / outer + c * outer + d
+        reflection = (a + b / outer - c * outer - d) / denominator
+        result.append((reflection if polarization == "te" else -reflection, 2 / denominator * mp.exp(J * phase)))
+    (rte, tte), (rtm, ttm) = result
+    return rte, rtm, tte, ttm
+
+
+def table_multilayer():
+    mp.mp.dps = 50
+    print("// Made by utd_reference.py multilayer; do not edit.")
+    print("// three times (permittivity, k d), cosine; R_te, R_tm, insertion T_te, T_tm")
+    for layers in LAYERS:
+        for cosine in COSINES:
+            # Room for the cancellation of the thick layers and of the limit at grazing.
+            with mp.workdps(1000):
+                values = multilayer(layers, mp.mpf(cosine))
+            row([v for layer in layers for v in layer] + [cosine], values)
+
+
+globals()["table_" + sys.argv[1]]()
