@@ -2,11 +2,13 @@
 /// From the geometry of a path to its field: transfer matrix, power, delay, angles, Doppler.
 ///
 /// Stateless: nothing is remembered from path to path or from frame to frame, so no gain can be stale.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "dcem/channel/diffraction_chain.hpp"
 #include "dcem/channel/path_contribution.hpp"
 #include "dcem/core/constants.hpp"
 #include "dcem/em/antenna.hpp"
@@ -35,8 +37,13 @@ inline Complex propagation_phasor(double length_m, double frequency_hz) {
 template <SurfaceModel Surface = MaterialTable, PathLossModel Loss = AnyPathLoss>
 class FieldEvaluator {
  public:
-  FieldEvaluator(const Scene& scene, const Surface& surface, Loss loss, double frequency_hz)
-      : scene_(scene), surface_(surface), loss_(std::move(loss)), frequency_hz_(frequency_hz) {}
+  FieldEvaluator(const Scene& scene, const Surface& surface, Loss loss, double frequency_hz,
+                 const DiffractionModel& diffraction = {})
+      : scene_(scene),
+        surface_(surface),
+        loss_(std::move(loss)),
+        frequency_hz_(frequency_hz),
+        diffraction_(diffraction) {}
 
   /// The field of a path between two ends.
   PathContribution evaluate(Path path, const RadioEnd& transmitter, const RadioEnd& receiver) const;
@@ -45,10 +52,12 @@ class FieldEvaluator {
   /// Unit propagation directions of the legs, from the transmitter on: one more than there are interactions.
   static std::vector<Vec3> directions(const Path& path, const Vec3& from_m, const Vec3& to_m);
 
-  /// What arrives of a unit field that leaves the transmitter: all coefficients, neither spreading nor phase.
-  ComplexVector3 propagate(const Path& path, const std::vector<Vec3>& directions, ComplexVector3 field) const;
+  /// What arrives along `received` of unit fields along `sent`: all coefficients and spreading, in 1/m, without phase.
+  ComplexMatrix2 spread(const Path& path, const std::vector<Vec3>& directions, const Vec3& from_m, const Vec3& to_m,
+                        const std::array<Vec3, 2>& sent, const std::array<Vec3, 2>& received) const;
 
-  ComplexMatrix2 transfer(const Path& path, const std::vector<Vec3>& directions) const;
+  ComplexMatrix2 transfer(const Path& path, const std::vector<Vec3>& directions, const Vec3& from_m,
+                          const Vec3& to_m) const;
 
   /// First-order Doppler shift: f = [v_tx·k_0 − v_rx·k_N + Σ v_i·(k_i − k_(i−1))]/λ, v_i the velocity of the touched
   /// body at the point of interaction. Motion within a mirror's plane drops out, as it must.
@@ -59,6 +68,7 @@ class FieldEvaluator {
   const Surface& surface_;
   Loss loss_;
   double frequency_hz_;
+  DiffractionModel diffraction_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -105,35 +115,38 @@ std::vector<Vec3> FieldEvaluator<Surface, Loss>::directions(const Path& path, co
 }
 
 template <SurfaceModel Surface, PathLossModel Loss>
-ComplexVector3 FieldEvaluator<Surface, Loss>::propagate(const Path& path, const std::vector<Vec3>& directions,
-                                                        ComplexVector3 field) const {
-  for (std::size_t index = 0; index < path.interactions.size(); ++index) {
-    const Interaction& interaction = path.interactions[index];
-    const WorldFacet& facet = scene_.facet(interaction.facet);
-    const Vec3& direction = directions[index];
-    const double cos_incidence = std::min(1.0, std::abs(glm::dot(direction, facet.plane.normal)));
-    const SurfaceResponse response = surface_.response(facet.material, cos_incidence);
-    field = interaction.kind == InteractionKind::reflection
-                ? reflect(field, direction, facet.plane.normal, response.reflection)
-                : transmit(field, direction, facet.plane.normal, response.transmission);
+ComplexMatrix2 FieldEvaluator<Surface, Loss>::spread(const Path& path, const std::vector<Vec3>& directions,
+                                                     const Vec3& from_m, const Vec3& to_m,
+                                                     const std::array<Vec3, 2>& sent,
+                                                     const std::array<Vec3, 2>& received) const {
+  const bool diffracted = std::any_of(path.interactions.begin(), path.interactions.end(),
+                                      [](const Interaction& one) { return one.kind == InteractionKind::diffraction; });
+  if (diffracted) {
+    const double wave_number_rad_per_m = 2.0 * pi * frequency_hz_ / speed_of_light_mps;
+    return DiffractionChain<Surface>(scene_, surface_, diffraction_, path, directions, from_m, to_m,
+                                     wave_number_rad_per_m)
+        .transfer(sent, received);
   }
-  return field;
+  const FieldCarrier<Surface> carrier(scene_, surface_, path, directions);
+  ComplexMatrix2 matrix;
+  for (std::size_t in = 0; in < 2; ++in) {
+    const ComplexVector3 field = carrier.carry(ComplexVector3(sent[in]), 0, path.interactions.size());
+    for (std::size_t out = 0; out < 2; ++out)
+      matrix(out, in) = Complex(1.0 / path.length_m) * dot(field, received[out]);
+  }
+  return matrix;
 }
 
 template <SurfaceModel Surface, PathLossModel Loss>
-ComplexMatrix2 FieldEvaluator<Surface, Loss>::transfer(const Path& path, const std::vector<Vec3>& directions) const {
+ComplexMatrix2 FieldEvaluator<Surface, Loss>::transfer(const Path& path, const std::vector<Vec3>& directions,
+                                                       const Vec3& from_m, const Vec3& to_m) const {
   const Vec3 departure = directions.front(), arrival = -directions.back();
   const double wavelength_m = speed_of_light_mps / frequency_hz_;
-  const double spreading = wavelength_m / (4.0 * pi * path.length_m) * loss_.excess_amplitude(path.length_m);
-  const Complex factor = spreading * propagation_phasor(path.length_m, frequency_hz_);
+  const double amplitude_m = wavelength_m / (4.0 * pi) * loss_.excess_amplitude(path.length_m);
   const std::array<Vec3, 2> sent{theta_hat(departure), phi_hat(departure)};
   const std::array<Vec3, 2> received{theta_hat(arrival), phi_hat(arrival)};
-  ComplexMatrix2 matrix;
-  for (std::size_t in = 0; in < 2; ++in) {
-    const ComplexVector3 field = propagate(path, directions, ComplexVector3(sent[in]));
-    for (std::size_t out = 0; out < 2; ++out) matrix(out, in) = factor * dot(field, received[out]);
-  }
-  return matrix;
+  return (amplitude_m * propagation_phasor(path.length_m, frequency_hz_)) *
+         spread(path, directions, from_m, to_m, sent, received);
 }
 
 template <SurfaceModel Surface, PathLossModel Loss>
@@ -155,7 +168,7 @@ PathContribution FieldEvaluator<Surface, Loss>::evaluate(Path path, const RadioE
                                                          const RadioEnd& receiver) const {
   const std::vector<Vec3> legs = directions(path, transmitter.position_m, receiver.position_m);
   PathContribution contribution;
-  contribution.transfer = transfer(path, legs);
+  contribution.transfer = transfer(path, legs, transmitter.position_m, receiver.position_m);
   detail::apply_antennas(contribution, transmitter.antenna, legs.front(), receiver.antenna, -legs.back());
   contribution.delay_s = path.length_m / speed_of_light_mps;
   contribution.doppler_hz = doppler_hz(path, legs, transmitter, receiver);

@@ -20,6 +20,7 @@ struct LinkStatistics {
   std::optional<double> power_los_dbm;          ///< incoherent, the direct path
   std::optional<double> power_reflected_dbm;    ///< incoherent, paths with a reflection
   std::optional<double> power_transmitted_dbm;  ///< incoherent, paths that only cross sheets
+  std::optional<double> power_diffracted_dbm;   ///< incoherent, paths with a diffraction
   std::optional<double> path_gain_db;           ///< coherent power over transmitted power
   std::optional<double> first_delay_s;
   std::optional<double> mean_delay_s;        ///< Σ P τ / Σ P
@@ -77,19 +78,25 @@ double circular_spread_rad(std::span<const PathContribution> paths, double total
 }
 
 inline void add_powers(LinkStatistics& statistics, std::span<const PathContribution> paths, double power_dbm) {
-  double los = 0.0, reflected = 0.0, transmitted = 0.0;
+  double los = 0.0, reflected = 0.0, transmitted = 0.0, diffracted = 0.0;
   for (const PathContribution& path : paths) {
-    const auto& interactions = path.path.interactions;
-    const bool reflects = std::any_of(interactions.begin(), interactions.end(),
-                                      [](const Interaction& i) { return i.kind == InteractionKind::reflection; });
-    (interactions.empty() ? los : reflects ? reflected : transmitted) += path.power_ratio;
+    const auto has = [&](InteractionKind kind) {
+      return std::any_of(path.path.interactions.begin(), path.path.interactions.end(),
+                         [&](const Interaction& interaction) { return interaction.kind == kind; });
+    };
+    (path.path.interactions.empty()      ? los
+     : has(InteractionKind::diffraction) ? diffracted
+     : has(InteractionKind::reflection)  ? reflected
+                                         : transmitted) += path.power_ratio;
   }
-  const double total = los + reflected + transmitted;
+  const double rest = reflected + transmitted + diffracted;
+  const double total = los + rest;
   statistics.power_incoherent_dbm = ratio_to_dbm(total, power_dbm);
   statistics.power_los_dbm = ratio_to_dbm(los, power_dbm);
   statistics.power_reflected_dbm = ratio_to_dbm(reflected, power_dbm);
   statistics.power_transmitted_dbm = ratio_to_dbm(transmitted, power_dbm);
-  if (los > 0.0 && total - los > 0.0) statistics.k_factor_db = power_ratio_to_db(los / (reflected + transmitted));
+  if (los > 0.0 && rest > 0.0) statistics.k_factor_db = power_ratio_to_db(los / rest);
+  statistics.power_diffracted_dbm = ratio_to_dbm(diffracted, power_dbm);
   const double coherent = coherent_power_ratio(paths);
   statistics.power_dbm = ratio_to_dbm(coherent, power_dbm);
   if (coherent > 0.0) statistics.path_gain_db = power_ratio_to_db(coherent);

@@ -18,6 +18,7 @@ struct Id {
 };
 
 using FacetId = Id<struct FacetTag>;        ///< a facet of the whole scene
+using WedgeId = Id<struct WedgeTag>;        ///< a diffracting edge of the whole scene
 using BodyId = Id<struct BodyTag>;          ///< 0 is the standing scenery, objects follow
 using MaterialId = Id<struct MaterialTag>;  ///< a material of the scene
 

@@ -1,11 +1,13 @@
 #pragma once
 /// Named surface materials: a closed set of models, chosen at run time because one scene mixes them.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "dcem/core/units.hpp"
 #include "dcem/em/itu_p2040.hpp"
@@ -43,11 +45,26 @@ struct ItuMaterial {
   friend bool operator==(const ItuMaterial&, const ItuMaterial&) = default;
 };
 
-using MaterialModel = std::variant<PerfectConductor, ConstantReflection, Dielectric, ItuMaterial>;
+/// One layer of a wall: a medium with its thickness, which must be there.
+using MaterialLayer = std::variant<Dielectric, ItuMaterial>;
+
+/// Layers one behind the other, between air and air (em/multilayer.hpp). Surfaces are two-sided sheets without a front:
+/// whichever side a wave comes from, it meets the first layer first. The transmission does not depend on that order,
+/// nor does the reflected power where nothing is lost.
+struct Multilayer {
+  std::vector<MaterialLayer> layers;  ///< at least one
+
+  friend bool operator==(const Multilayer&, const Multilayer&) = default;
+};
+
+using MaterialModel = std::variant<PerfectConductor, ConstantReflection, Dielectric, ItuMaterial, Multilayer>;
 
 struct Material {
   std::string name;
   MaterialModel model;
+  /// Standard deviation of the surface height, ≥ 0; 0: smooth. It reduces what is reflected (em/roughness.hpp, Ament),
+  /// with every model; what passes is not changed.
+  double roughness_rms_m = 0.0;
 
   friend bool operator==(const Material&, const Material&) = default;
 };
@@ -65,6 +82,11 @@ inline bool model_transmits(const Dielectric& model) {
 }
 inline bool model_transmits(const ItuMaterial& model) {
   return model.thickness_m.has_value() && model.name != "metal";
+}
+inline bool model_transmits(const Multilayer& model) {
+  return std::all_of(model.layers.begin(), model.layers.end(), [](const MaterialLayer& layer) {
+    return std::visit([](const auto& medium) { return model_transmits(medium); }, layer);
+  });
 }
 
 /// Collects the wording of errors: "material 'wall': …".
@@ -102,6 +124,15 @@ class MaterialCheck {
     require_thickness(model.thickness_m);
   }
 
+  void operator()(const Multilayer& model) const {
+    require(!model.layers.empty(), "a multilayer must have at least one layer");
+    for (const MaterialLayer& layer : model.layers) {
+      std::visit(*this, layer);
+      const bool thick = std::visit([](const auto& medium) { return medium.thickness_m.has_value(); }, layer);
+      require(thick, "every layer must have a thickness");
+    }
+  }
+
  private:
   void require_thickness(const std::optional<double>& thickness_m) const {
     if (thickness_m)
@@ -114,17 +145,35 @@ class MaterialCheck {
 }  // namespace detail
 
 /// Whether paths may cross a surface of this material. A constant surface: if it has a penetration loss. A dielectric
-/// and an ITU material: if it has a thickness. A perfect conductor never, and the ITU's "metal" never either, whatever
-/// its thickness: its skin depth is 5 µm at 1 GHz and 0.5 µm at 100 GHz, so that no wall or car body lets anything
-/// through that a double could hold.
+/// and an ITU material: if it has a thickness. A multilayer: always, but for layers of metal. A perfect conductor
+/// never, and the ITU's "metal" never either, whatever its thickness: its skin depth is 5 µm at 1 GHz and 0.5 µm at 100
+/// GHz, so that no wall or car body lets anything through that a double could hold.
 inline bool transmits(const Material& material) {
   return std::visit([](const auto& model) { return detail::model_transmits(model); }, material.model);
 }
 
+/// Names of the ITU materials that a material is made of, each once: one for an ITU material, those of the layers of a
+/// multilayer, none for the other models. Their tables limit the frequencies at which it may be used.
+inline std::vector<std::string> itu_names(const Material& material) {
+  std::vector<std::string> names;
+  const auto collect = [&names](const ItuMaterial* model) {
+    if (model && std::find(names.begin(), names.end(), model->name) == names.end()) names.push_back(model->name);
+  };
+  collect(std::get_if<ItuMaterial>(&material.model));
+  if (const auto* stack = std::get_if<Multilayer>(&material.model)) {
+    for (const MaterialLayer& layer : stack->layers) collect(std::get_if<ItuMaterial>(&layer));
+  }
+  return names;
+}
+
 /// Throws std::invalid_argument, naming the material, when a number is not finite or out of range: amplitude outside
-/// 0…1, loss < 0, ε' < 1, σ < 0, thickness ≤ 0, ρ² + 10^(−loss/10) > 1, or a name that no table of the ITU holds.
+/// 0…1, loss < 0, ε' < 1, σ < 0, thickness ≤ 0, ρ² + 10^(−loss/10) > 1, roughness < 0, a name that no table of the ITU
+/// holds, no layer at all or one without a thickness.
 inline void validate(const Material& material) {
-  std::visit(detail::MaterialCheck(material.name), material.model);
+  const detail::MaterialCheck check(material.name);
+  std::visit(check, material.model);
+  check.require(std::isfinite(material.roughness_rms_m) && material.roughness_rms_m >= 0.0,
+                "roughness must be finite and not negative");
 }
 
 }  // namespace dcem

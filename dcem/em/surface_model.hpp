@@ -1,9 +1,11 @@
 #pragma once
 /// Where the field gets its reflection and transmission coefficients from: a concept for models of the user's own, and
 /// the table of the built-in materials.
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -13,6 +15,8 @@
 #include "dcem/core/error.hpp"
 #include "dcem/core/ids.hpp"
 #include "dcem/em/material.hpp"
+#include "dcem/em/multilayer.hpp"
+#include "dcem/em/roughness.hpp"
 #include "dcem/em/slab.hpp"
 
 namespace dcem {
@@ -31,7 +35,8 @@ class MaterialTable {
   /// refuses, for a frequency outside an ITU table (unless `itu` allows it) and for |η| > 1e300 there.
   MaterialTable(std::vector<Material> materials, double frequency_hz, const ItuSettings& itu = {});
 
-  /// Coefficients of a material; `cos_incidence` is clamped to 0…1. Never NaN.
+  /// Coefficients of a material, the reflection with the reduction for its roughness; `cos_incidence` is clamped to
+  /// 0…1. Never NaN.
   SurfaceResponse response(MaterialId material, double cos_incidence) const;
 
   const Material& material(MaterialId id) const;
@@ -53,24 +58,34 @@ class MaterialTable {
     double thickness_rad;
     bool opaque;
   };
-  using PreparedSurface = std::variant<SurfaceResponse, HalfSpace, Slab>;
+  struct Stack {
+    std::vector<Layer> layers;
+    bool opaque;
+  };
+  using PreparedSurface = std::variant<SurfaceResponse, HalfSpace, Slab, Stack>;
 
   PreparedSurface prepare(const PerfectConductor&) const { return SurfaceResponse{perfect_conductor_reflection(), {}}; }
   PreparedSurface prepare(const ConstantReflection& model) const;
   PreparedSurface prepare(const Dielectric& model) const;
   PreparedSurface prepare(const ItuMaterial& model) const;
+  PreparedSurface prepare(const Multilayer& model) const;
   void prepare_all();
+  bool extrapolates(const Material& material) const;
+  double phase_spread_at_normal_rad(const Material& material) const;
+  static bool representable(const PreparedSurface& surface);
 
   static SurfaceResponse respond(const SurfaceResponse& constant, double) { return constant; }
   static SurfaceResponse respond(const HalfSpace& half_space, double cos_incidence) {
     return {half_space_reflection(half_space.permittivity, cos_incidence), {}};
   }
   static SurfaceResponse respond(const Slab& slab, double cos_incidence);
+  static SurfaceResponse respond(const Stack& stack, double cos_incidence);
 
   std::vector<Material> materials_;
   double frequency_hz_;
   ItuSettings itu_;
   std::vector<PreparedSurface> surfaces_;
+  std::vector<double> phase_spreads_at_normal_rad_;  // of the roughness; 0: smooth
   std::vector<MaterialId> extrapolated_;
 };
 
@@ -87,12 +102,33 @@ inline void MaterialTable::prepare_all() {
     validate(material);
     const MaterialId id(surfaces_.size());
     surfaces_.push_back(std::visit([this](const auto& model) { return prepare(model); }, material.model));
-    const std::optional<Complex> eta = permittivity(id);
-    if (eta && !(std::abs(*eta) <= 1e300))
+    if (!representable(surfaces_.back()))
       throw std::invalid_argument("material '" + material.name + "': its permittivity at this frequency is too large");
-    const auto* itu_model = std::get_if<ItuMaterial>(&material.model);
-    if (itu_model && itu_properties(itu_model->name, frequency_hz_, itu_).extrapolated) extrapolated_.push_back(id);
+    phase_spreads_at_normal_rad_.push_back(phase_spread_at_normal_rad(material));
+    if (extrapolates(material)) extrapolated_.push_back(id);
   }
+}
+
+inline bool MaterialTable::extrapolates(const Material& material) const {
+  const std::vector<std::string> names = itu_names(material);
+  return std::any_of(names.begin(), names.end(), [this](const std::string& name) {
+    return itu_properties(name, frequency_hz_, itu_).extrapolated;
+  });
+}
+
+inline double MaterialTable::phase_spread_at_normal_rad(const Material& material) const {
+  if (material.roughness_rms_m == 0.0) return 0.0;
+  // Finite, so that at grazing incidence the product with cos θ = 0 is 0.
+  return std::min(roughness_phase_spread_rad(wave_number_rad_per_m(frequency_hz_), material.roughness_rms_m, 1.0),
+                  std::numeric_limits<double>::max());
+}
+
+inline bool MaterialTable::representable(const PreparedSurface& surface) {
+  const auto fits = [](const auto& medium) { return std::abs(medium.permittivity) <= 1e300; };
+  if (const auto* half_space = std::get_if<HalfSpace>(&surface)) return fits(*half_space);
+  if (const auto* slab = std::get_if<Slab>(&surface)) return fits(*slab);
+  const auto* stack = std::get_if<Stack>(&surface);
+  return !stack || std::all_of(stack->layers.begin(), stack->layers.end(), fits);
 }
 
 inline MaterialTable::PreparedSurface MaterialTable::prepare(const ConstantReflection& model) const {
@@ -117,16 +153,38 @@ inline MaterialTable::PreparedSurface MaterialTable::prepare(const ItuMaterial& 
   return slab;
 }
 
+inline MaterialTable::PreparedSurface MaterialTable::prepare(const Multilayer& model) const {
+  Stack stack{{}, !detail::model_transmits(model)};
+  for (const MaterialLayer& layer : model.layers) {
+    // A medium with a thickness is prepared as a slab.
+    const Slab slab = std::visit([this](const auto& medium) { return std::get<Slab>(prepare(medium)); }, layer);
+    stack.layers.push_back({slab.permittivity, slab.thickness_rad});
+  }
+  return stack;
+}
+
 inline SurfaceResponse MaterialTable::respond(const Slab& slab, double cos_incidence) {
   SurfaceResponse response = slab_response(slab.permittivity, slab.thickness_rad, cos_incidence);
   if (slab.opaque) response.transmission = {};
   return response;
 }
 
+inline SurfaceResponse MaterialTable::respond(const Stack& stack, double cos_incidence) {
+  SurfaceResponse response = multilayer_response(stack.layers, cos_incidence);
+  if (stack.opaque) response.transmission = {};
+  return response;
+}
+
 inline SurfaceResponse MaterialTable::response(MaterialId material, double cos_incidence) const {
   DCEM_ASSERT(material.value < surfaces_.size());
-  return std::visit([cos_incidence](const auto& surface) { return respond(surface, cos_incidence); },
-                    surfaces_[material.value]);
+  SurfaceResponse response = std::visit(
+      [cos_incidence](const auto& surface) { return respond(surface, cos_incidence); }, surfaces_[material.value]);
+  const double spread_at_normal_rad = phase_spreads_at_normal_rad_[material.value];
+  if (spread_at_normal_rad == 0.0) return response;
+  const double factor = ament_factor(spread_at_normal_rad * std::clamp(cos_incidence, 0.0, 1.0));
+  response.reflection.te *= factor;
+  response.reflection.tm *= factor;
+  return response;
 }
 
 inline const Material& MaterialTable::material(MaterialId id) const {

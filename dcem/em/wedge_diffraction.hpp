@@ -95,7 +95,10 @@ ComplexMatrix2 face_reflection_matrix(const WedgeAngles& angles, WedgeFace face,
   const double azimuth = detail::virtual_azimuth_rad(angles, face, variant);
   const auto [cos_incidence, p, q] = detail::incidence_plane(azimuth, angles, face);
   const PolarizedCoefficients r = reflection(cos_incidence);
-  const Complex mixed = (r.te + r.tm) * (p * q);
+  // On that line rounding would choose the side, and not the same one for the reverse path.
+  const bool level =
+      variant != LossyWedge::luebbers84 && std::abs(angles.incident_azimuth_rad - angles.diffracted_azimuth_rad) < 1e-9;
+  const Complex mixed = level ? Complex{} : (r.te + r.tm) * (p * q);
   return {{{{r.tm * (q * q) - r.te * (p * p), mixed}, {-mixed, r.te * (q * q) - r.tm * (p * p)}}}};
 }
 

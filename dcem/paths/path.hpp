@@ -10,13 +10,15 @@
 
 namespace dcem {
 
-enum class InteractionKind : char { reflection = 'R', transmission = 'T' };
+enum class InteractionKind : char { reflection = 'R', transmission = 'T', diffraction = 'D' };
 
 /// One touch of a surface.
 struct Interaction {
   InteractionKind kind = InteractionKind::reflection;
-  FacetId facet;
+  FacetId facet;  ///< of a diffraction: face 0 of the wedge
   Vec3 point_m{0.0};
+  WedgeId wedge{};         ///< of a diffraction
+  bool in_shadow = false;  ///< of a diffraction: the wedge itself hides one neighbour from the other
 };
 
 /// A path from a transmitter to a receiver, solved for the current frame.
@@ -42,10 +44,12 @@ inline bool reported_before(const Path& a, const Path& b) {
       [](const Interaction& x, const Interaction& y) { return lexicographic_less(x.point_m, y.point_m); });
 }
 
-/// Whether two paths are the same: same kinds on the same facets in the same order.
+/// Whether two paths are the same: same kinds on the same facets and edges in the same order.
 inline bool same_sequence(const Path& a, const Path& b) {
   return std::equal(a.interactions.begin(), a.interactions.end(), b.interactions.begin(), b.interactions.end(),
-                    [](const Interaction& x, const Interaction& y) { return x.kind == y.kind && x.facet == y.facet; });
+                    [](const Interaction& x, const Interaction& y) {
+                      return x.kind == y.kind && x.facet == y.facet && x.wedge == y.wedge;
+                    });
 }
 
 }  // namespace dcem

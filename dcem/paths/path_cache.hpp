@@ -7,11 +7,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "dcem/paths/edge_reach.hpp"
 #include "dcem/paths/path.hpp"
+#include "dcem/paths/proposal_memory.hpp"
 #include "dcem/paths/sequence.hpp"
 
 namespace dcem {
@@ -35,59 +36,15 @@ struct CacheCounters {
   friend bool operator==(const CacheCounters&, const CacheCounters&) = default;
 };
 
-/// The mirrors of a path, counted from the receiver.
-inline Sequence mirrors_of(const Path& path) {
-  Sequence mirrors;
+/// The mirrors and edges of a path, counted from the receiver.
+inline Sequence sequence_of(const Path& path) {
+  Sequence sequence;
   for (auto interaction = path.interactions.rbegin(); interaction != path.interactions.rend(); ++interaction) {
-    if (interaction->kind == InteractionKind::reflection) mirrors.push_back(interaction->facet);
+    if (interaction->kind == InteractionKind::reflection) sequence.emplace_back(interaction->facet);
+    if (interaction->kind == InteractionKind::diffraction) sequence.emplace_back(interaction->wedge);
   }
-  return mirrors;
+  return sequence;
 }
-
-/// Sequences that rays have proposed lately, whether or not they carried a path. Each is kept for a number of frames
-/// after a ray followed it last: as many as the few rays of a steady frame need to add up to a full search.
-class ProposalMemory {
- public:
-  /// Notes that a ray followed a sequence; returns whether it is in the memory already.
-  bool note(const Sequence& sequence) {
-    const auto [entry, is_new] = index_.try_emplace(sequence, proposals_.size());
-    if (is_new) {
-      proposals_.push_back({sequence, frame_});
-    } else {
-      proposals_[entry->second].last_frame = frame_;
-    }
-    return !is_new;
-  }
-
-  /// Goes on to the next frame and forgets what no ray has followed in the last `lifetime_frames` frames.
-  void next_frame(std::uint32_t lifetime_frames) {
-    ++frame_;
-    const std::size_t forgotten = std::erase_if(
-        proposals_, [&](const Proposal& proposal) { return proposal.last_frame + lifetime_frames < frame_; });
-    if (forgotten == 0) return;
-    index_.clear();
-    for (std::size_t index = 0; index < proposals_.size(); ++index) index_.emplace(proposals_[index].sequence, index);
-  }
-
-  /// In the order in which they were first proposed.
-  template <typename Visit>
-  void for_each(Visit&& visit) const {
-    for (const Proposal& proposal : proposals_) visit(proposal.sequence);
-  }
-
-  std::size_t size() const { return proposals_.size(); }
-  void clear() { *this = {}; }
-
- private:
-  struct Proposal {
-    Sequence sequence;
-    std::uint64_t last_frame = 0;
-  };
-
-  std::vector<Proposal> proposals_;
-  std::unordered_map<Sequence, std::size_t, SequenceHash> index_;
-  std::uint64_t frame_ = 0;
-};
 
 /// The memory of one receiver, one list per transmitter. A list is written anew in each frame from the paths of that
 /// frame, so what is not found again is forgotten without further ado.
@@ -109,12 +66,14 @@ class PathCache {
     for (const Link& link : links_) forgotten += link ? link->size() : 0;
     links_.clear();
     proposals_.clear();
+    reach_.clear();
     return forgotten;
   }
 
   ProposalMemory& proposals() { return proposals_; }
+  EdgeReach& reach() { return reach_; }
 
-  /// Forgets the sequences for which `gone(facet)` holds at any facet; returns how many.
+  /// Forgets the sequences for which `gone(element)` holds at any element; returns how many.
   template <typename Gone>
   std::size_t forget(Gone&& gone) {
     std::size_t forgotten = 0;
@@ -134,12 +93,13 @@ class PathCache {
   /// The paths of a link in the new frame.
   void remember(std::size_t transmitter, std::span<const Path> paths) {
     std::vector<Sequence>& sequences = links_.at(transmitter).emplace();
-    for (const Path& path : paths) sequences.push_back(mirrors_of(path));
+    for (const Path& path : paths) sequences.push_back(sequence_of(path));
   }
 
  private:
   std::vector<Link> links_;
   ProposalMemory proposals_;
+  EdgeReach reach_;
 };
 
 }  // namespace dcem

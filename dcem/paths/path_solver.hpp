@@ -1,7 +1,9 @@
 #pragma once
-/// From a sequence of mirrors and two ends to a valid path, or none. Both discoveries use this one function, so a path
-/// has the same bits whoever proposed its sequence.
+/// From a sequence of mirrors and edges and two ends to a valid path, or none. All discoveries use this one class, so a
+/// path has the same bits whoever proposed its sequence.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <tuple>
@@ -9,6 +11,8 @@
 #include <vector>
 
 #include "dcem/core/error.hpp"
+#include "dcem/paths/chain_points.hpp"
+#include "dcem/paths/edge_rules.hpp"
 #include "dcem/paths/image_method.hpp"
 #include "dcem/paths/link_end.hpp"
 #include "dcem/paths/path.hpp"
@@ -33,142 +37,232 @@ struct SolverCounters {
 template <typename Tree>
 class PathSolver {
  public:
-  PathSolver(const SceneTracer<Tree>& tracer, int max_transmissions)
-      : tracer_(tracer), max_transmissions_(static_cast<std::size_t>(max_transmissions)) {}
+  PathSolver(const SceneTracer<Tree>& tracer, int max_transmissions, const EdgeRules& rules = {})
+      : tracer_(tracer), max_transmissions_(static_cast<std::size_t>(max_transmissions)), rules_(rules) {}
 
-  /// The path over `mirrors` (from the receiver outwards), with `images_m` as in `reflection_points`. Where facets
-  /// overlap in one plane, the path that comes back is the one over the facets that stand for the others.
+  /// The path over `sequence` (from the receiver outwards). Where facets overlap in one plane, the path that comes back
+  /// is the one over the facets that stand for the others.
+  std::optional<Path> solve(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence) {
+    return solve(transmitter, receiver, sequence, nullptr);
+  }
+  /// The same for mirrors alone, whose images of the receiver are known: images_m[i] is the image after mirror i.
   std::optional<Path> solve(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& mirrors,
                             const std::vector<Vec3>& images_m) {
-    ++counters_.sequences_solved;
-    std::optional<Path> path = solve_as_given(transmitter, receiver, mirrors, images_m);
-    if (!path || mirrors.empty()) return path;
-    Sequence chosen = mirrors;
-    while (std::optional<std::pair<Sequence, Path>> better = preferred_twin(transmitter, receiver, chosen, *path)) {
-      std::tie(chosen, *path) = std::move(*better);
-    }
-    return path;
+    return solve(transmitter, receiver, mirrors, &images_m);
   }
 
   const SolverCounters& counters() const { return counters_; }
   SolverCounters& counters() { return counters_; }
 
  private:
-  const WorldFacet& facet(FacetId id) const { return tracer_.scene().facet(id); }
+  const Scene& scene() const { return tracer_.scene(); }
+  const WorldFacet& facet(FacetId id) const { return scene().facet(id); }
 
-  std::optional<Path> solve_as_given(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& mirrors,
-                                     const std::vector<Vec3>& images_m) {
-    const auto plane = [&](std::size_t index) -> const Plane& { return facet(mirrors[index]).plane; };
-    if (!reflection_points(transmitter.position_m, images_m, mirrors.size(), plane, points_m_)) return std::nullopt;
-    const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
-    if (!touches_its_mirrors(transmitter, receiver, mirrors, ignored)) return std::nullopt;
-    return follow(transmitter, receiver, mirrors, ignored);
+  std::optional<Path> solve(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
+                            const std::vector<Vec3>* images_m) {
+    ++counters_.sequences_solved;
+    std::optional<Path> path = solve_as_given(transmitter, receiver, sequence, images_m);
+    if (!path || sequence.empty()) return path;
+    Sequence chosen = sequence;
+    while (std::optional<std::pair<Sequence, Path>> better = preferred_twin(transmitter, receiver, chosen, *path)) {
+      std::tie(chosen, *path) = std::move(*better);
+    }
+    return path;
   }
 
-  /// Whether each point of `points_m_` lies on its facet, and no end is mounted on the first mirror that it would see.
-  bool touches_its_mirrors(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& mirrors,
-                           const IgnoredBodies& ignored) {
-    const auto mounted = [](const LinkEnd& end, FacetId id) {
-      return std::binary_search(end.mounted_on.begin(), end.mounted_on.end(), id);
+  std::optional<Path> solve_as_given(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
+                                     const std::vector<Vec3>* images_m) {
+    if (!points_.find(scene(), transmitter.position_m, receiver.position_m, sequence, images_m)) return std::nullopt;
+    const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
+    if (sees_what_it_is_mounted_on(transmitter, receiver, sequence)) return std::nullopt;
+    in_shadow_.assign(sequence.size(), false);
+    for (std::size_t index = 0; index < sequence.size(); ++index) {
+      const SequenceElement element = sequence[sequence.size() - 1 - index];  // points run from the transmitter
+      const bool holds = element.is_edge() ? touches_edge(element.edge(), index, transmitter, receiver, ignored)
+                                           : touches_mirror(element.mirror(), index, sequence, ignored);
+      if (!holds) return std::nullopt;
+    }
+    return follow(transmitter, receiver, sequence, ignored);
+  }
+
+  /// Whether an end is mounted on the first surface that it would see: such a mirror does not reflect for it, and along
+  /// such a face it is at grazing, where the wedge's field is that of the face.
+  bool sees_what_it_is_mounted_on(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence) const {
+    const auto mounted = [&](const LinkEnd& end, SequenceElement element) {
+      const auto on = [&](FacetId id) { return std::binary_search(end.mounted_on.begin(), end.mounted_on.end(), id); };
+      if (!element.is_edge()) return on(element.mirror());
+      const WorldWedge& wedge = scene().wedge(element.edge());
+      return on(wedge.facets[0]) || on(wedge.facets[1]);
     };
-    if (!mirrors.empty() && (mounted(receiver, mirrors.front()) || mounted(transmitter, mirrors.back()))) return false;
-    for (std::size_t index = 0; index < mirrors.size(); ++index) {
-      const FacetId id =
-          mirrors[mirrors.size() - 1 - index];  // points run from the transmitter, mirrors from the receiver
-      if (!facet(id).present || tracer_.is_ignored(facet(id).body, ignored)) return false;
-      if (!tracer_.reflects_at(id, points_m_[index], ignored, counters_.traversal)) return false;
-      if (index > 0 && tracer_.lies_along(facet(id), facet(mirrors[mirrors.size() - index]).plane, points_m_[index])) {
+    return !sequence.empty() && (mounted(receiver, sequence.front()) || mounted(transmitter, sequence.back()));
+  }
+
+  /// Whether the path's point `index`, counted from the transmitter, lies where the mirror reflects.
+  bool touches_mirror(FacetId id, std::size_t index, const Sequence& sequence, const IgnoredBodies& ignored) {
+    if (!facet(id).present || tracer_.is_ignored(facet(id).body, ignored)) return false;
+    const Vec3& point_m = points_.points_m()[index];
+    if (!tracer_.reflects_at(id, point_m, ignored, counters_.traversal)) return false;
+    const std::size_t from_receiver = sequence.size() - 1 - index;
+    for (const std::size_t next : {from_receiver + 1, from_receiver - 1}) {  // the smaller one wraps around at 0
+      if (next >= sequence.size()) continue;
+      if (sequence[next].is_edge()) {
+        if (holds_edge(facet(id).plane, sequence[next].edge())) return false;  // that is in the wedge's own terms
+      } else if (next > from_receiver && tracer_.lies_along(facet(id), facet(sequence[next].mirror()).plane, point_m)) {
         return false;  // nothing bounces between two coplanar patches that are a hair apart
       }
     }
     return true;
   }
 
-  /// Walks the legs of `points_m_`, collecting the sheets they cross.
-  std::optional<Path> follow(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& mirrors,
+  bool holds_edge(const Plane& plane, WedgeId id) const {
+    const Wedge& edge = scene().wedge(id).edge;
+    const double tolerance_m = scene().settings().weld_tolerance_m + edge.stray_m;
+    return std::abs(signed_distance_m(plane, edge.start_m)) <= tolerance_m &&
+           std::abs(signed_distance_m(plane, edge.end_m)) <= tolerance_m;
+  }
+
+  /// Whether the wedge diffracts at the path's point `index`: both neighbours in its exterior, no third facet there.
+  bool touches_edge(WedgeId id, std::size_t index, const LinkEnd& transmitter, const LinkEnd& receiver,
+                    const IgnoredBodies& ignored) {
+    const WorldWedge& wedge = scene().wedge(id);
+    if (!diffracts(wedge, rules_) || tracer_.is_ignored(wedge.body, ignored)) return false;
+    const std::vector<Vec3>& points_m = points_.points_m();
+    const Vec3& here_m = points_m[index];
+    const Vec3& before_m = index == 0 ? transmitter.position_m : points_m[index - 1];
+    const Vec3& after_m = index + 1 == points_m.size() ? receiver.position_m : points_m[index + 1];
+    if (!clear_of_faces(wedge.edge, before_m - here_m) || !clear_of_faces(wedge.edge, after_m - here_m)) return false;
+    in_shadow_[index] =
+        std::abs(azimuth_rad(wedge.edge, before_m - here_m) - azimuth_rad(wedge.edge, after_m - here_m)) > pi;
+    if (rules_.shadow_only && !in_shadow_[index]) return false;
+    const double tolerance_m = scene().settings().weld_tolerance_m + wedge.edge.stray_m;
+    for (const FacetId near : tracer_.facets_near(here_m, tolerance_m, ignored, counters_.traversal)) {
+      if (near != wedge.facets[0] && near != wedge.facets[1]) return false;
+    }
+    return true;
+  }
+
+  /// In the exterior, and off both faces by more than rounding.
+  static bool clear_of_faces(const Wedge& wedge, const Vec3& away_m) {
+    if (!in_exterior(wedge, away_m)) return false;
+    const double across_m = std::hypot(glm::dot(away_m, wedge.tangent), glm::dot(away_m, wedge.normal));
+    const double azimuth = azimuth_rad(wedge, away_m);
+    return across_m * std::min(azimuth, wedge.exterior_angle_rad - azimuth) > in_plane_guard_m;
+  }
+
+  /// A place where legs begin and end: what they ignore there.
+  struct Stop {
+    std::array<FacetId, 2> facets;
+    std::array<const Plane*, 2> planes;
+    LegEnd end() const { return {facets, planes}; }
+  };
+
+  Stop stop_at(SequenceElement element) const {
+    const std::array<FacetId, 2> facets =
+        element.is_edge() ? scene().wedge(element.edge()).facets : std::array{element.mirror(), element.mirror()};
+    return {facets, {&facet(facets[0]).plane, &facet(facets[1]).plane}};
+  }
+
+  /// Walks the legs between the points, collecting the sheets they cross.
+  std::optional<Path> follow(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
                              const IgnoredBodies& ignored) {
+    const std::vector<Vec3>& points_m = points_.points_m();
     Path path;
     std::size_t left = max_transmissions_;
     Vec3 from_m = transmitter.position_m;
-    LegEnd start{transmitter.mounted_on, nullptr};
-    for (std::size_t leg = 0; leg <= mirrors.size(); ++leg) {
-      const bool last = leg == mirrors.size();
-      const FacetId* mirror = last ? nullptr : &mirrors[mirrors.size() - 1 - leg];
-      const Vec3 to_m = last ? receiver.position_m : points_m_[leg];
-      const LegEnd end = last ? LegEnd{receiver.mounted_on, nullptr} : LegEnd{{mirror, 1}, &facet(*mirror).plane};
-      const double leg_length_m = glm::distance(from_m, to_m);
-      if (!(leg_length_m > in_plane_guard_m)) return std::nullopt;  // two points in one: no direction, no spreading
-      ++counters_.legs;
-      if (!tracer_.follow_leg(from_m, to_m, start, end, ignored, left, crossings_, counters_.traversal)) {
-        return std::nullopt;
-      }
-      for (const Crossing& crossing : crossings_) {
-        path.interactions.push_back(
-            {InteractionKind::transmission, crossing.facet, from_m + crossing.t * (to_m - from_m)});
-      }
-      left -= crossings_.size();
-      if (!last) path.interactions.push_back({InteractionKind::reflection, *mirror, to_m});
-      path.length_m += leg_length_m;
+    Stop before{}, here{};
+    for (std::size_t leg = 0; leg <= sequence.size(); ++leg) {
+      const bool last = leg == sequence.size();
+      if (!last) here = stop_at(sequence[sequence.size() - 1 - leg]);
+      const LegEnd start = leg == 0 ? LegEnd{transmitter.mounted_on, {}} : before.end();
+      const LegEnd end = last ? LegEnd{receiver.mounted_on, {}} : here.end();
+      const Vec3 to_m = last ? receiver.position_m : points_m[leg];
+      if (!walk(from_m, to_m, start, end, ignored, left, path)) return std::nullopt;
+      if (!last) path.interactions.push_back(interaction_at(sequence[sequence.size() - 1 - leg], leg));
       from_m = to_m;
-      start = end;
+      before = here;
     }
     return path;
   }
 
-  /// The first valid sequence, before `mirrors` in order of precedence, over facets that lie on top of the path's own
+  /// One leg: false where it is blocked, crosses too many sheets, or has no direction.
+  bool walk(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end, const IgnoredBodies& ignored,
+            std::size_t& left, Path& path) {
+    const double leg_length_m = glm::distance(from_m, to_m);
+    if (!(leg_length_m > in_plane_guard_m)) return false;
+    ++counters_.legs;
+    if (!tracer_.follow_leg(from_m, to_m, start, end, ignored, left, crossings_, counters_.traversal)) return false;
+    for (const Crossing& crossing : crossings_) {
+      path.interactions.push_back(
+          {InteractionKind::transmission, crossing.facet, from_m + crossing.t * (to_m - from_m)});
+    }
+    left -= crossings_.size();
+    path.length_m += leg_length_m;
+    return true;
+  }
+
+  Interaction interaction_at(SequenceElement element, std::size_t index) const {
+    const Vec3& point_m = points_.points_m()[index];
+    if (!element.is_edge()) return {InteractionKind::reflection, element.mirror(), point_m};
+    return {InteractionKind::diffraction, scene().wedge(element.edge()).facets[0], point_m, element.edge(),
+            in_shadow_[index]};
+  }
+
+  /// The first valid sequence, before this one in order of precedence, over facets that lie on top of the path's own
   /// ones at its reflection points.
   std::optional<std::pair<Sequence, Path>> preferred_twin(const LinkEnd& transmitter, const LinkEnd& receiver,
-                                                          const Sequence& mirrors, const Path& path) {
+                                                          const Sequence& sequence, const Path& path) {
     const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
-    std::vector<std::vector<FacetId>> choices(mirrors.size());
+    std::vector<std::vector<SequenceElement>> choices(sequence.size());
     bool any = false;
-    std::size_t index = mirrors.size();
+    std::size_t index = sequence.size();
     for (const Interaction& interaction : path.interactions) {
-      if (interaction.kind != InteractionKind::reflection) continue;
+      if (interaction.kind == InteractionKind::transmission) continue;
       --index;
-      choices[index] = preferred_facets(mirrors[index], interaction.point_m, ignored);
+      choices[index] = interaction.kind == InteractionKind::reflection
+                           ? preferred_mirrors(sequence[index].mirror(), interaction.point_m, ignored)
+                           : std::vector{sequence[index]};
       any = any || choices[index].size() > 1;
     }
     if (!any) return std::nullopt;
-    Sequence candidate(mirrors.size());
-    return first_valid(transmitter, receiver, mirrors, choices, 0, candidate);
+    Sequence candidate = sequence;
+    return first_valid(transmitter, receiver, sequence, choices, 0, candidate);
   }
 
   /// Coplanar facets at a point that stand before `own`, in order, and `own` last.
-  std::vector<FacetId> preferred_facets(FacetId own, const Vec3& point_m, const IgnoredBodies& ignored) {
+  std::vector<SequenceElement> preferred_mirrors(FacetId own, const Vec3& point_m, const IgnoredBodies& ignored) {
     std::vector<FacetId> facets =
-        tracer_.facets_near(point_m, tracer_.scene().settings().weld_tolerance_m, ignored, counters_.traversal);
+        tracer_.facets_near(point_m, scene().settings().weld_tolerance_m, ignored, counters_.traversal);
     std::erase_if(facets, [&](FacetId other) {
       return other == own || !tracer_.precedes(other, own) || !tracer_.parallel(other, own);
     });
     std::sort(facets.begin(), facets.end(), [&](FacetId a, FacetId b) { return tracer_.precedes(a, b); });
     facets.push_back(own);
-    return facets;
+    return {facets.begin(), facets.end()};
   }
 
   std::optional<std::pair<Sequence, Path>> first_valid(const LinkEnd& transmitter, const LinkEnd& receiver,
-                                                       const Sequence& mirrors,
-                                                       const std::vector<std::vector<FacetId>>& choices,
+                                                       const Sequence& sequence,
+                                                       const std::vector<std::vector<SequenceElement>>& choices,
                                                        std::size_t index, Sequence& candidate) {
-    if (index == mirrors.size()) {
-      if (candidate == mirrors) return std::nullopt;  // nothing stands before the path itself
-      std::vector<Vec3> images_m{receiver.position_m};
-      for (const FacetId id : candidate) append_image(images_m, facet(id).plane);
-      std::optional<Path> path = solve_as_given(transmitter, receiver, candidate, images_m);
+    if (index == sequence.size()) {
+      if (candidate == sequence) return std::nullopt;  // nothing stands before the path itself
+      std::optional<Path> path = solve_as_given(transmitter, receiver, candidate, nullptr);
       if (!path) return std::nullopt;
       return std::pair(candidate, std::move(*path));
     }
-    for (const FacetId choice : choices[index]) {
+    for (const SequenceElement choice : choices[index]) {
       candidate[index] = choice;
-      if (auto found = first_valid(transmitter, receiver, mirrors, choices, index + 1, candidate)) return found;
+      if (auto found = first_valid(transmitter, receiver, sequence, choices, index + 1, candidate)) return found;
     }
     return std::nullopt;
   }
 
   const SceneTracer<Tree>& tracer_;
   std::size_t max_transmissions_;
+  EdgeRules rules_;
   SolverCounters counters_;
-  std::vector<Vec3> points_m_;
+  ChainPoints points_;
+  std::vector<bool> in_shadow_;
   std::vector<Crossing> crossings_;
 };
 

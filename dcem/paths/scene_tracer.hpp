@@ -32,7 +32,7 @@ struct Crossing {
 /// within the weld tolerance (coplanar twins, dirt). A wall that stands on that facet is not ignored, however close.
 struct LegEnd {
   std::span<const FacetId> facets;
-  const Plane* plane = nullptr;  ///< of the reflecting facet; null at a device
+  std::array<const Plane*, 2> planes{};  ///< of the reflecting facet or of a wedge's two faces; null at a device
 };
 
 /// Bodies that do not exist for a link: those that its devices ride on.
@@ -94,7 +94,9 @@ class SceneTracer {
 
   bool skips(const LegEnd& end, FacetId facet, const Vec3& point_m) const {
     if (std::find(end.facets.begin(), end.facets.end(), facet) != end.facets.end()) return true;
-    return end.plane != nullptr && lies_along(scene_.facet(facet), *end.plane, point_m);
+    return std::any_of(end.planes.begin(), end.planes.end(), [&](const Plane* plane) {
+      return plane != nullptr && lies_along(scene_.facet(facet), *plane, point_m);
+    });
   }
 
   /// Where a leg meets the plane of a facet: the same number whichever of the facet's triangles was hit.

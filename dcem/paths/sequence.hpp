@@ -1,24 +1,50 @@
 #pragma once
-/// The discrete identity of a candidate: which mirrors, in which order, counted from the receiver.
+/// The discrete identity of a candidate: which mirrors and edges, in which order, counted from the receiver.
 ///
 /// Transmissions are no part of it: which sheets a path crosses follows from where its legs run.
+#include <algorithm>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <unordered_set>
 #include <vector>
 
+#include "dcem/core/error.hpp"
 #include "dcem/core/ids.hpp"
 #include "dcem/core/random.hpp"
 
 namespace dcem {
 
-/// Mirrors from the receiver outwards; empty: the direct path.
-using Sequence = std::vector<FacetId>;
+/// A mirror, or an edge that diffracts.
+class SequenceElement {
+ public:
+  SequenceElement(FacetId mirror) : code_(mirror.value) { DCEM_ASSERT(mirror.value < edge_bit); }  // NOLINT: implicit
+  SequenceElement(WedgeId edge) : code_(edge.value | edge_bit) { DCEM_ASSERT(edge.value < edge_bit); }  // NOLINT
+
+  bool is_edge() const { return (code_ & edge_bit) != 0; }
+  FacetId mirror() const { return FacetId(code_); }
+  WedgeId edge() const { return WedgeId(code_ & ~edge_bit); }
+  std::uint32_t code() const { return code_; }  ///< different for different elements
+
+  friend auto operator<=>(const SequenceElement&, const SequenceElement&) = default;
+
+ private:
+  static constexpr std::uint32_t edge_bit = 0x80000000U;
+  std::uint32_t code_;
+};
+
+/// From the receiver outwards; empty: the direct path.
+using Sequence = std::vector<SequenceElement>;
+
+inline std::size_t edge_count(std::span<const SequenceElement> sequence) {
+  return static_cast<std::size_t>(
+      std::count_if(sequence.begin(), sequence.end(), [](SequenceElement element) { return element.is_edge(); }));
+}
 
 struct SequenceHash {
   std::size_t operator()(const Sequence& sequence) const noexcept {
     std::uint64_t hash = sequence.size();
-    for (const FacetId facet : sequence) hash = hash_values(hash, facet.value);
+    for (const SequenceElement element : sequence) hash = hash_values(hash, element.code());
     return static_cast<std::size_t>(hash);
   }
 };

@@ -92,6 +92,10 @@ class Scene {
   const WorldGeometry& world() const { return world_; }
   std::span<const WorldFacet> facets() const { return world_.facets(); }
   const WorldFacet& facet(FacetId id) const { return world_.facets()[id.value]; }
+  std::span<const WorldWedge> wedges() const { return world_.wedges(); }
+  const WorldWedge& wedge(WedgeId id) const { return world_.wedges()[id.value]; }
+  /// The wedges at the rim of a facet.
+  std::span<const WedgeId> wedges_of_facet(FacetId id) const { return world_.wedges_of_facet(id); }
   std::span<const Vec3> vertices_m() const { return world_.vertices_m(); }
   std::span<const std::array<std::uint32_t, 3>> triangles() const { return world_.triangles(); }
   std::array<Vec3, 3> corners_m(std::uint32_t triangle) const { return world_.corners_m(triangle); }
@@ -104,6 +108,9 @@ class Scene {
   std::span<const Aabb<double>> triangle_boxes() const { return world_.triangle_boxes(); }
   /// The number of a facet within its body: it does not change when other bodies come or go.
   std::uint32_t facet_number(FacetId id) const { return id.value - world_.first(facet(id).body).facet; }
+
+  /// The number of a wedge within its body.
+  std::uint32_t wedge_number(WedgeId id) const { return id.value - world_.first(wedge(id).body).wedge; }
 
   /// Index of the first triangle of each body: the groups of the tree.
   std::vector<std::uint32_t> first_triangles() const;

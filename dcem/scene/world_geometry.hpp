@@ -10,6 +10,7 @@
 #include "dcem/core/ids.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/surface_mesh.hpp"
+#include "dcem/geometry/wedge.hpp"
 #include "dcem/scene/frame.hpp"
 
 namespace dcem {
@@ -23,6 +24,14 @@ struct WorldFacet {
   std::uint32_t first_hull_point = 0, hull_point_count = 0;
   bool transmits = false;  ///< a leg may cross it; an opaque facet blocks
   bool present = true;     ///< false while its body is not there
+};
+
+/// A diffracting edge of the world in the current frame.
+struct WorldWedge {
+  Wedge edge;                     ///< in world coordinates; `facets` are numbers within the body
+  std::array<FacetId, 2> facets;  ///< face 0 and face n; of a free edge twice its only facet
+  BodyId body;
+  bool present = true;  ///< false while its body is not there
 };
 
 /// What a mesh's material index means in the scene.
@@ -41,6 +50,12 @@ class WorldGeometry {
   void clear() { *this = {}; }
 
   std::span<const WorldFacet> facets() const { return facets_; }
+  std::span<const WorldWedge> wedges() const { return wedges_; }
+  /// The wedges at the rim of a facet, ascending.
+  std::span<const WedgeId> wedges_of_facet(FacetId facet) const {
+    const std::uint32_t first = first_wedge_of_facet_[facet.value];
+    return std::span(wedges_by_facet_).subspan(first, first_wedge_of_facet_[facet.value + 1] - first);
+  }
   std::span<const Vec3> vertices_m() const { return vertices_m_; }
   std::span<const std::array<std::uint32_t, 3>> triangles() const { return triangles_; }
   FacetId facet_of_triangle(std::uint32_t triangle) const { return facet_of_triangle_[triangle]; }
@@ -57,7 +72,7 @@ class WorldGeometry {
 
   /// Where a body's parts begin in the common arrays.
   struct First {
-    std::uint32_t vertex = 0, triangle = 0, facet = 0, hull_point = 0;
+    std::uint32_t vertex = 0, triangle = 0, facet = 0, hull_point = 0, wedge = 0;
   };
   const First& first(BodyId id) const { return first_[id.value]; }
   std::size_t body_count() const { return first_.size(); }
@@ -65,10 +80,14 @@ class WorldGeometry {
  private:
   void append_facets(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials, const First& first);
   void append_triangles(const SurfaceMesh& mesh, const First& first);
+  void append_wedges(const SurfaceMesh& mesh, const First& first);
   void place_boxes(const SurfaceMesh& mesh, const First& first, bool present);
 
   std::vector<First> first_;
   std::vector<WorldFacet> facets_;
+  std::vector<WorldWedge> wedges_;
+  std::vector<WedgeId> wedges_by_facet_;
+  std::vector<std::uint32_t> first_wedge_of_facet_{0};  ///< one more entry than facets
   std::vector<Vec3> vertices_m_, hull_points_m_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<FacetId> facet_of_triangle_;
@@ -82,9 +101,11 @@ inline void WorldGeometry::append(const SurfaceMesh& mesh, std::span<const Surfa
                                   const BodyState& state) {
   const BodyId id(first_.size());
   first_.push_back({static_cast<std::uint32_t>(vertices_m_.size()), static_cast<std::uint32_t>(triangles_.size()),
-                    static_cast<std::uint32_t>(facets_.size()), static_cast<std::uint32_t>(hull_points_m_.size())});
+                    static_cast<std::uint32_t>(facets_.size()), static_cast<std::uint32_t>(hull_points_m_.size()),
+                    static_cast<std::uint32_t>(wedges_.size())});
   append_facets(mesh, materials, first_.back());
   append_triangles(mesh, first_.back());
+  append_wedges(mesh, first_.back());
   vertices_m_.insert(vertices_m_.end(), mesh.vertices_m.begin(), mesh.vertices_m.end());
   hull_points_m_.insert(hull_points_m_.end(), mesh.hull_points_m.begin(), mesh.hull_points_m.end());
   place(id, mesh, state);
@@ -110,6 +131,22 @@ inline void WorldGeometry::append_triangles(const SurfaceMesh& mesh, const First
   boxes_.resize(triangles_.size());
 }
 
+inline void WorldGeometry::append_wedges(const SurfaceMesh& mesh, const First& first) {
+  const BodyId body(first_.size() - 1);
+  std::vector<std::vector<WedgeId>> of_facet(mesh.facets.size());
+  for (const Wedge& local : mesh.wedges) {
+    const WedgeId id(wedges_.size());
+    const std::uint32_t one = local.facets[0], other = is_free(local) ? one : local.facets[1];
+    wedges_.push_back({local, {FacetId(first.facet + one), FacetId(first.facet + other)}, body, true});
+    of_facet[one].push_back(id);
+    if (other != one) of_facet[other].push_back(id);
+  }
+  for (const std::vector<WedgeId>& ids : of_facet) {
+    wedges_by_facet_.insert(wedges_by_facet_.end(), ids.begin(), ids.end());
+    first_wedge_of_facet_.push_back(static_cast<std::uint32_t>(wedges_by_facet_.size()));
+  }
+}
+
 inline void WorldGeometry::place(BodyId id, const SurfaceMesh& mesh, const BodyState& state) {
   const First& first = first_[id.value];
   const Mat3 rotation = rotation_matrix(state.placement.pose);
@@ -126,6 +163,17 @@ inline void WorldGeometry::place(BodyId id, const SurfaceMesh& mesh, const BodyS
     const Plane& local = mesh.facets[index].plane;
     if (!stands) facet.plane = {to_world(local.point_m), rotation * local.normal};
     facet.present = state.present;
+  }
+  for (std::size_t index = 0; index < mesh.wedges.size(); ++index) {
+    WorldWedge& wedge = wedges_[first.wedge + index];
+    const Wedge& local = mesh.wedges[index];
+    if (!stands) {
+      wedge.edge.start_m = to_world(local.start_m);
+      wedge.edge.end_m = to_world(local.end_m);
+      wedge.edge.tangent = rotation * local.tangent;
+      wedge.edge.normal = rotation * local.normal;
+    }
+    wedge.present = state.present;
   }
   place_boxes(mesh, first, state.present);
 }

@@ -1,5 +1,6 @@
 #pragma once
 /// Which discovery and which cache a scene gets.
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -8,12 +9,16 @@
 
 namespace dcem {
 
-/// Facets up to which `automatic` chooses exact discovery, by the order of reflection: the number of sequences grows
-/// with the power of the order.
-inline std::size_t automatic_exact_facet_limit(int reflections) {
-  if (reflections <= 2) return exact_discovery_facet_limit;
-  if (reflections == 3) return 200;
-  return 32;
+/// Facets up to which `automatic` chooses exact discovery, by the orders: the number of sequences grows with their
+/// power.
+inline std::size_t automatic_exact_facet_limit(const PropagationSettings& propagation) {
+  const int reflections = reflection_order(propagation), diffractions = diffraction_order(propagation);
+  const std::size_t by_reflections = reflections <= 2 ? exact_discovery_facet_limit : reflections == 3 ? 200 : 32;
+  const std::size_t by_diffractions = diffractions == 0   ? exact_discovery_facet_limit
+                                      : diffractions == 1 ? 150
+                                      : diffractions == 2 ? 30
+                                                          : 12;
+  return std::min(by_reflections, by_diffractions);
 }
 
 /// Exact or sampled: what a simulation with these settings really does. Throws std::invalid_argument where exact
@@ -25,7 +30,7 @@ inline Discovery resolve_discovery(const PropagationSettings& propagation, const
                                 " facets; expected at most " + std::to_string(exact_discovery_facet_limit));
   }
   if (propagation.discovery != Discovery::automatic) return propagation.discovery;
-  return facets <= automatic_exact_facet_limit(reflection_order(propagation)) ? Discovery::exact : Discovery::sampled;
+  return facets <= automatic_exact_facet_limit(propagation) ? Discovery::exact : Discovery::sampled;
 }
 
 /// Off or seed: what a simulation that discovers in this way really remembers. Throws std::invalid_argument where

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "dcem/accel/maintainer.hpp"
+#include "dcem/channel/diffraction_chain.hpp"
 #include "dcem/em/itu_p2040.hpp"
 #include "dcem/em/path_loss.hpp"
 
@@ -32,11 +33,26 @@ enum class CacheMode {
 /// Exact discovery tries sequences of facets; this version offers it up to this many facets.
 inline constexpr std::size_t exact_discovery_facet_limit = 1000;
 
+/// Where around an edge diffracted paths are reported.
+enum class DiffractionRegion {
+  everywhere,  ///< the total field is continuous
+  shadow       ///< only where the wedge itself hides the one side from the other
+};
+
+struct DiffractionSettings {
+  LossyWedge lossy_wedge = LossyWedge::holm_reciprocal;  ///< how lossy faces enter the coefficient
+  DiffractionRegion region = DiffractionRegion::everywhere;
+  bool free_edges = false;                ///< the rims of open sheets diffract as half planes
+  double min_exterior_angle_deg = 190.0;  ///< flatter edges do not diffract, above 180 and at most 360
+};
+
 struct PropagationSettings {
-  bool line_of_sight = true;            ///< report the direct path
-  int max_reflections = 2;              ///< reflections of a path, 0…10
-  int max_transmissions = 2;            ///< sheets a path may cross, 0…10
-  std::optional<int> max_interactions;  ///< reflections (and, later, diffractions) together; default: no further bound
+  bool line_of_sight = true;                   ///< report the direct path
+  int max_reflections = 2;                     ///< reflections of a path, 0…10
+  int max_transmissions = 2;                   ///< sheets a path may cross, 0…10
+  int max_diffractions = 1;                    ///< diffractions of a path, 0…3
+  std::optional<int> max_interactions;         ///< reflections and diffractions together; default: no further bound
+  DiffractionSettings diffraction{};           ///< which edges diffract, and how
   Discovery discovery = Discovery::automatic;  ///< how paths are found
   std::uint32_t rays = 2000;                   ///< rays per receiver in sampled discovery, in a frame without history
   std::optional<std::uint32_t> rays_steady;  ///< the same in a later frame of a cached run; default: a tenth of `rays`
@@ -65,6 +81,17 @@ inline int reflection_order(const PropagationSettings& propagation) {
   return bound < propagation.max_reflections ? bound : propagation.max_reflections;
 }
 
+/// The number of diffractions that is really in force.
+inline int diffraction_order(const PropagationSettings& propagation) {
+  return std::min(propagation.max_diffractions, propagation.max_interactions.value_or(propagation.max_diffractions));
+}
+
+/// Reflections and diffractions together, as they are really bounded.
+inline int interaction_order(const PropagationSettings& propagation) {
+  const int sum = propagation.max_reflections + propagation.max_diffractions;
+  return std::min(sum, propagation.max_interactions.value_or(sum));
+}
+
 /// Throws std::invalid_argument, naming the field, where a value is out of range.
 inline void validate(const SimulationSettings& settings) {
   const auto check = [](bool holds, const char* message) {
@@ -75,6 +102,9 @@ inline void validate(const SimulationSettings& settings) {
   check(propagation.max_reflections >= 0 && propagation.max_reflections <= 10, "max_reflections: expected 0 to 10");
   check(propagation.max_transmissions >= 0 && propagation.max_transmissions <= 10,
         "max_transmissions: expected 0 to 10");
+  check(propagation.max_diffractions >= 0 && propagation.max_diffractions <= 3, "max_diffractions: expected 0 to 3");
+  const double least_deg = propagation.diffraction.min_exterior_angle_deg;
+  check(least_deg > 180.0 && least_deg <= 360.0, "min_exterior_angle_deg: expected above 180, at most 360");
   check(!propagation.max_interactions || *propagation.max_interactions >= 0, "max_interactions: expected 0 or more");
   check(!propagation.min_path_gain_db || std::isfinite(*propagation.min_path_gain_db),
         "min_path_gain_db: expected a finite number");

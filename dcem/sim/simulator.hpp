@@ -56,10 +56,10 @@ class Simulator {
 
   /// Moves scene and tree to a frame without solving anything.
   UpkeepReport move_to(const Frame& frame);
-  /// One path on its own, in the current frame: over `mirrors`, counted from the receiver, between a transmitter and a
+  /// One path on its own, in the current frame: over `sequence`, counted from the receiver, between a transmitter and a
   /// receiver of the scene. Nothing where there is no such path or an end is absent.
   std::optional<PathContribution> solve_path(std::size_t transmitter, std::size_t receiver,
-                                             const Sequence& mirrors) const;
+                                             const Sequence& sequence) const;
 
   /// One map per transmitter over the grid, in the current frame. `progress(n)` is called from the working threads
   /// whenever n more points are done.
@@ -74,6 +74,9 @@ class Simulator {
   struct TransmitterEnds {
     std::vector<std::optional<LinkEnd>> link;
     std::vector<RadioEnd> radio;
+    std::vector<ReachedEdges> reached;  ///< the edges within reach; empty lists where no diffraction is wanted
+    std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
+    WorkCounters work;                  ///< what finding them took
   };
 
   Simulator(Scene scene, SimulationSettings settings, std::nullptr_t) requires std::same_as<Surface, MaterialTable>
@@ -93,8 +96,16 @@ class Simulator {
     return make_link_end(Tracer(scene_, tree_), state.position_m, state.ignored_body, counters);
   }
   void forget_replaced(const ChangeSet& changes, CacheCounters& counters);
-  Solved solve_all(std::span<const Device> receivers, std::span<PathCache> caches) const;
-  TransmitterEnds transmitter_ends() const;
+  Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters,
+                   std::span<PathCache> caches) const;
+  /// With `reach`, which has an entry per transmitter, edges that were within reach in frames before count, too.
+  TransmitterEnds transmitter_ends(std::span<EdgeReach> reach) const;
+  void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
+  Evaluator evaluator() const {
+    const PropagationSettings& propagation = settings_.propagation;
+    return Evaluator(scene_, surface_, propagation.path_loss, settings_.frequency_hz,
+                     {propagation.diffraction.lossy_wedge, propagation.max_transmissions});
+  }
   PathSearchSettings search_settings() const;
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
   Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
@@ -112,6 +123,7 @@ class Simulator {
   CacheMode cache_;
   std::vector<std::uint32_t> moved_;  ///< triangles that the tree has still to hear of
   std::vector<PathCache> caches_;     ///< one per receiver of the scene; none where the cache is off
+  std::vector<EdgeReach> reach_;      ///< one per transmitter; none where the cache is off
   Frame frame_;
 };
 
@@ -126,7 +138,10 @@ Simulator<Surface, Tree>::Simulator(Scene scene, SimulationSettings settings, Su
   validate(settings_);
   discovery_ = resolve_discovery(settings_.propagation, scene_);
   cache_ = resolve_cache(settings_.propagation, discovery_);
-  if (cache_ == CacheMode::seed) caches_.resize(scene_.receivers().size());
+  if (cache_ == CacheMode::seed) {
+    caches_.resize(scene_.receivers().size());
+    reach_.resize(scene_.transmitters().size());
+  }
   frame_ = scene_.frame_at(0.0);
   scene_.apply(frame_);
   tree_.build_grouped(scene_.triangle_boxes(), scene_.first_triangles());

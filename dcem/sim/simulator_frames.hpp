@@ -38,7 +38,7 @@ FrameResult Simulator<Surface, Tree>::advance(const Frame& frame) {
   frame_ = frame;
   result.update_time_s = update_watch.seconds();
   const detail::Stopwatch solve_watch;
-  Solved solved = solve_all(scene_.receivers(), caches_);
+  Solved solved = solve_all(scene_.receivers(), transmitter_ends(reach_), caches_);
   result.links = std::move(solved.links);
   result.work = solved.work;
   result.cache += solved.cache;
@@ -57,22 +57,19 @@ UpkeepReport Simulator<Surface, Tree>::move_to(const Frame& frame) {
 
 template <SurfaceModel Surface, typename Tree>
 std::optional<PathContribution> Simulator<Surface, Tree>::solve_path(std::size_t transmitter, std::size_t receiver,
-                                                                     const Sequence& mirrors) const {
+                                                                     const Sequence& sequence) const {
   const Device& from = scene_.transmitters()[transmitter];
   const Device& to = scene_.receivers()[receiver];
   const DeviceState from_state = scene_.device_state(from, frame_), to_state = scene_.device_state(to, frame_);
   if (!from_state.present || !to_state.present) return std::nullopt;
   const Tracer tracer(scene_, tree_);
-  PathSolver<Tree> solver(tracer, settings_.propagation.max_transmissions);
+  const PathSearchSettings search = search_settings();
+  PathSolver<Tree> solver(tracer, search.max_transmissions, search.edges);
   TraversalCounters counters;
-  std::vector<Vec3> images_m{to_state.position_m};
-  for (const FacetId mirror : mirrors) append_image(images_m, scene_.facet(mirror).plane);
-  std::optional<Path> path =
-      solver.solve(link_end(from_state, counters), link_end(to_state, counters), mirrors, images_m);
+  std::optional<Path> path = solver.solve(link_end(from_state, counters), link_end(to_state, counters), sequence);
   if (!path) return std::nullopt;
-  const Evaluator evaluator(scene_, surface_, settings_.propagation.path_loss, settings_.frequency_hz);
-  return evaluator.evaluate(std::move(*path), {from_state.position_m, from_state.velocity_mps, from.antenna},
-                            {to_state.position_m, to_state.velocity_mps, to.antenna});
+  return evaluator().evaluate(std::move(*path), {from_state.position_m, from_state.velocity_mps, from.antenna},
+                              {to_state.position_m, to_state.velocity_mps, to.antenna});
 }
 
 template <SurfaceModel Surface, typename Tree>
@@ -91,8 +88,9 @@ UpkeepReport Simulator<Surface, Tree>::update_tree(const ChangeSet& changes) {
 template <SurfaceModel Surface, typename Tree>
 void Simulator<Surface, Tree>::forget_replaced(const ChangeSet& changes, CacheCounters& counters) {
   if (changes.replaced.empty()) return;
-  const auto gone = [&](FacetId facet) {
-    return std::binary_search(changes.replaced.begin(), changes.replaced.end(), scene_.facet(facet).body);
+  const auto gone = [&](SequenceElement element) {
+    const BodyId body = element.is_edge() ? scene_.wedge(element.edge()).body : scene_.facet(element.mirror()).body;
+    return std::binary_search(changes.replaced.begin(), changes.replaced.end(), body);
   };
   for (PathCache& cache : caches_) {
     const std::size_t forgotten = cache.forget(gone);
@@ -102,7 +100,8 @@ void Simulator<Surface, Tree>::forget_replaced(const ChangeSet& changes, CacheCo
 }
 
 template <SurfaceModel Surface, typename Tree>
-typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::transmitter_ends() const {
+typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::transmitter_ends(
+    std::span<EdgeReach> reach) const {
   TransmitterEnds ends;
   for (const Device& device : scene_.transmitters()) {
     const DeviceState state = scene_.device_state(device, frame_);
@@ -110,34 +109,64 @@ typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::tra
     ends.link.push_back(state.present ? std::optional(link_end(state, counters)) : std::nullopt);
     ends.radio.push_back({state.position_m, state.velocity_mps, device.antenna});
   }
+  ends.reached.resize(ends.link.size());
+  if (diffraction_order(settings_.propagation) > 0) find_transmitter_reach(ends, reach);
   return ends;
+}
+
+template <SurfaceModel Surface, typename Tree>
+void Simulator<Surface, Tree>::find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const {
+  const Tracer tracer(scene_, tree_);
+  const PathSearchSettings search = search_settings();
+  if (reach.empty()) {
+    ends.own_reach.resize(ends.link.size());
+    reach = ends.own_reach;
+  }
+  std::vector<SearchCounters> spent(ends.link.size());
+  parallel_for(ends.link.size(), settings_.threads, [&](std::size_t index, unsigned) {
+    if (!ends.link[index]) return reach[index].clear();
+    const bool known = reach[index].size() > 0;
+    reach[index].next_frame(detail::proposal_lifetime_frames(search));
+    find_reach(tracer, search, *ends.link[index], {scene_.transmitters()[index].id, frame_.index},
+               known ? search.rays_steady : search.rays, reach[index], spent[index]);
+    ends.reached[index] = reach[index].edges();
+  });
+  for (const SearchCounters& one : spent) detail::add_search_work(one, ends.work);
 }
 
 template <SurfaceModel Surface, typename Tree>
 PathSearchSettings Simulator<Surface, Tree>::search_settings() const {
   const PropagationSettings& propagation = settings_.propagation;
-  return {discovery_ == Discovery::exact, reflection_order(propagation),
-          propagation.max_transmissions,  propagation.rays,
-          steady_rays(propagation),       propagation.seed};
+  return {discovery_ == Discovery::exact,
+          reflection_order(propagation),
+          propagation.max_transmissions,
+          propagation.rays,
+          steady_rays(propagation),
+          propagation.seed,
+          diffraction_order(propagation),
+          interaction_order(propagation),
+          {degrees_to_radians(propagation.diffraction.min_exterior_angle_deg), propagation.diffraction.free_edges,
+           propagation.diffraction.region == DiffractionRegion::shadow}};
 }
 
 template <SurfaceModel Surface, typename Tree>
 std::vector<LinkResult> Simulator<Surface, Tree>::solve(std::span<const Device> receivers, WorkCounters* work) const {
-  Solved solved = solve_all(receivers, {});
+  Solved solved = solve_all(receivers, transmitter_ends({}), {});
   if (work != nullptr) *work += solved.work;
   return std::move(solved.links);
 }
 
 template <SurfaceModel Surface, typename Tree>
 typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_all(std::span<const Device> receivers,
+                                                                              const TransmitterEnds& transmitters,
                                                                               std::span<PathCache> caches) const {
-  const TransmitterEnds transmitters = transmitter_ends();
   std::vector<Solved> by_receiver(receivers.size());
   parallel_for(receivers.size(), settings_.threads, [&](std::size_t index, unsigned) {
     PathCache* cache = caches.empty() ? nullptr : &caches[index];
     by_receiver[index] = solve_receiver(receivers[index], index, transmitters, cache);
   });
   Solved sum;
+  sum.work = transmitters.work;
   for (Solved& one : by_receiver) {
     for (LinkResult& link : one.links) sum.links.push_back(std::move(link));
     sum.work += one.work;
@@ -167,15 +196,16 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiv
   for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
     if (scene_.transmitters()[transmitter].id == receiver.id) ends[transmitter].reset();  // one device has no link
   }
-  std::vector<LinkPaths> found = find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache);
-  const Evaluator evaluator(scene_, surface_, settings_.propagation.path_loss, settings_.frequency_hz);
+  std::vector<LinkPaths> found =
+      find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached);
+  const Evaluator field = evaluator();
   const RadioEnd to{state.position_m, state.velocity_mps, receiver.antenna};
   for (std::size_t transmitter = 0; transmitter < found.size(); ++transmitter) {
     if (!ends[transmitter]) continue;
     LinkResult& link = solved.links.emplace_back(
-        make_link(std::move(found[transmitter]), transmitter, transmitters.radio[transmitter], to, evaluator));
+        make_link(std::move(found[transmitter]), transmitter, transmitters.radio[transmitter], to, field));
     link.receiver = index;
-    link.complete = search.exhaustive || search.max_reflections == 0;
+    link.complete = search.exhaustive || (search.max_reflections == 0 && search.max_diffractions == 0);
     solved.work.paths += link.paths.size();
   }
   detail::add_search_work(counters, solved.work);

@@ -20,7 +20,7 @@ template <SurfaceModel Surface, typename Tree>
 std::vector<RadioMap> Simulator<Surface, Tree>::radio_maps(const ReceiverGrid& grid,
                                                            const std::function<void(std::size_t)>& progress,
                                                            WorkCounters* work) const {
-  const TransmitterEnds transmitters = transmitter_ends();
+  const TransmitterEnds transmitters = transmitter_ends({});
   const Tracer tracer(scene_, tree_);
   std::vector<Vec3> transmitters_m;
   std::vector<RadioMap> maps;
@@ -43,9 +43,9 @@ std::vector<RadioMap> Simulator<Surface, Tree>::radio_maps(const ReceiverGrid& g
     }
     if (progress) progress(grid.columns());
   });
-  for (const WorkCounters& one : spent) {
-    if (work != nullptr) *work += one;
-  }
+  if (work == nullptr) return maps;
+  *work += transmitters.work;
+  for (const WorkCounters& one : spent) *work += one;
   return maps;
 }
 

@@ -223,7 +223,13 @@ template <SurfaceModel Surface>
 bool Verifier<Surface>::is_allowed(const LinkResult& link, std::size_t path) const {
   const Path& own = link.paths[path].path;
   const PropagationSettings& propagation = alone_.settings().propagation;
-  if (mirrors_of(own).size() > static_cast<std::size_t>(reflection_order(propagation))) return false;
+  const Sequence sequence = sequence_of(own);
+  const std::size_t edges = edge_count(sequence);
+  if (sequence.size() - edges > static_cast<std::size_t>(reflection_order(propagation)) ||
+      edges > static_cast<std::size_t>(diffraction_order(propagation)) ||
+      sequence.size() > static_cast<std::size_t>(interaction_order(propagation))) {
+    return false;
+  }
   return std::none_of(link.paths.begin(), link.paths.begin() + static_cast<std::ptrdiff_t>(path),
                       [&](const PathContribution& other) { return same_sequence(other.path, own); });
 }
@@ -235,7 +241,7 @@ void Verifier<Surface>::check_paths(const FrameResult& result) {
     const LinkResult& link = result.links[index];
     for (std::size_t path = 0; path < link.paths.size(); ++path) {
       const PathContribution& reported = link.paths[path];
-      const auto again = alone_.solve_path(link.transmitter, link.receiver, mirrors_of(reported.path));
+      const auto again = alone_.solve_path(link.transmitter, link.receiver, sequence_of(reported.path));
       same[index].push_back(again && is_allowed(link, path) && detail::same_bits(*again, reported));
     }
   });

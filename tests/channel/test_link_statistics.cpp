@@ -9,7 +9,8 @@ using namespace dcem;
 
 namespace {
 
-constexpr InteractionKind R = InteractionKind::reflection, T = InteractionKind::transmission;
+constexpr InteractionKind R = InteractionKind::reflection, T = InteractionKind::transmission,
+                          D = InteractionKind::diffraction;
 
 struct Tap {
   Complex amplitude;
@@ -50,7 +51,7 @@ TEST_CASE("a link without paths has a flag, a zero and nothing else") {
     CHECK(s.path_count == 0);
     for (const auto& value :
          {s.power_dbm, s.power_incoherent_dbm, s.power_los_dbm, s.power_reflected_dbm, s.power_transmitted_dbm,
-          s.path_gain_db, s.first_delay_s, s.mean_delay_s, s.rms_delay_spread_s, s.k_factor_db,
+          s.power_diffracted_dbm, s.path_gain_db, s.first_delay_s, s.mean_delay_s, s.rms_delay_spread_s, s.k_factor_db,
           s.azimuth_spread_arrival_rad, s.azimuth_spread_departure_rad, s.mean_doppler_hz, s.rms_doppler_spread_hz}) {
       CHECK_FALSE(value.has_value());
     }
@@ -65,6 +66,7 @@ TEST_CASE("one path: its power, no spread, no K factor") {
   CHECK(s.path_gain_db == close(-80.0));
   CHECK_FALSE(s.power_reflected_dbm.has_value());
   CHECK_FALSE(s.power_transmitted_dbm.has_value());
+  CHECK_FALSE(s.power_diffracted_dbm.has_value());
   CHECK_FALSE(s.k_factor_db.has_value());
   CHECK(s.first_delay_s == 1e-7);
   CHECK(s.mean_delay_s == close(1e-7));
@@ -129,6 +131,33 @@ TEST_CASE("three taps of three kinds: each power in its column, and the moments 
   // Circular: around ±π the spread of arrivals is small. |1/2 + 1/2·cos 0.2|; departures 0, ±π/2: |1/2|.
   CHECK(s.azimuth_spread_arrival_rad == close(std::sqrt(-2.0 * std::log(0.5 + 0.5 * std::cos(0.2)))));
   CHECK(s.azimuth_spread_departure_rad == close(std::sqrt(2.0 * std::log(2.0))));
+}
+
+TEST_CASE("a path with a diffraction counts as diffracted, whatever else it touches, and only there") {
+  for (const std::vector<InteractionKind>& kinds : std::vector<std::vector<InteractionKind>>{
+           {D}, {R, D}, {D, R}, {T, D}, {D, T}, {R, D, R}, {T, R, T, D}, {D, D}}) {
+    const LinkStatistics s = statistics({{Complex(1e-5, 0), 10e-9, kinds}});
+    CHECK(s.power_diffracted_dbm == close(-100.0));
+    CHECK(s.power_incoherent_dbm == close(-100.0));
+    CHECK_FALSE(s.power_reflected_dbm.has_value());
+    CHECK_FALSE(s.power_transmitted_dbm.has_value());
+    CHECK_FALSE(s.power_los_dbm.has_value());
+  }
+}
+
+TEST_CASE("diffracted power has a column of its own and counts against the line of sight") {
+  // Powers 8, 4, 2, 1 and 1 times 1e-10.
+  const LinkStatistics s = statistics({{Complex(std::sqrt(8e-10), 0), 10e-9, {}},
+                                       {Complex(2e-5, 0), 20e-9, {R}},
+                                       {Complex(0, std::sqrt(2e-10)), 25e-9, {T}},
+                                       {Complex(0, 1e-5), 30e-9, {D}},
+                                       {Complex(1e-5, 0), 40e-9, {R, D}}});
+  CHECK(s.power_diffracted_dbm == close(-96.98970004336019));  // 2e-10
+  CHECK(s.power_reflected_dbm == close(-93.97940008672037));   // 4e-10
+  CHECK(s.power_transmitted_dbm == close(-96.98970004336019));
+  CHECK(s.power_incoherent_dbm == close(-87.95880017344075));   // 16e-10
+  CHECK(s.k_factor_db == doctest::Approx(0.0).epsilon(1e-12));  // 8 over 8
+  CHECK(s.mean_delay_s == close((8 * 10e-9 + 4 * 20e-9 + 2 * 25e-9 + 30e-9 + 40e-9) / 16));
 }
 
 TEST_CASE("the delay spread keeps its digits far from the origin of delays") {

@@ -229,7 +229,7 @@ TEST_CASE("the summary counts, and says which discovery was used") {
   const std::string json = summary.json();
   // Step 0.1 s over 0.05 s + 0.15 s.
   for (const char* part : {R"("version": "1.2.3")", R"("real_time_factor": 0.5)", R"("discovery": "sampled")",
-                           R"("discovery_asked_for": "automatic")", R"("cache": "seed")", R"("max_diffractions": 0)",
+                           R"("discovery_asked_for": "automatic")", R"("cache": "seed")", R"("max_diffractions": 1)",
                            R"("rays": 4000)", R"("links": 4)", R"("paths": 4)", R"("odd thing")", R"("triangles": 14)",
                            R"("closed_shells": 1)", R"("model": "constant")"}) {
     CAPTURE(part);

@@ -223,6 +223,53 @@ TEST_CASE("the scenario's materials override or complete those of the MTL file")
   }
 }
 
+TEST_CASE("a wall of layers, told by the keys of dielectric and ITU materials") {
+  ScenarioCase files;
+  files.materials = R"("ground": {"model": "multilayer", "layers": [
+    {"itu": "ceiling-board", "thickness_m": 0.0125},
+    {"relative_permittivity": 1, "thickness_m": 0.07},
+    {"model": "dielectric", "relative_permittivity": 5, "conductivity_s_per_m": 0.1, "thickness_m": 0.15},
+    {"model": "itu", "itu": "concrete", "thickness_m": 0.2}]})";
+  const Multilayer expected{{ItuMaterial{"ceiling_board", 0.0125}, Dielectric{1.0, 0.0, 0.07},
+                             Dielectric{5.0, 0.1, 0.15}, ItuMaterial{"concrete", 0.2}}};
+  const io::Scenario scenario = files.load();
+  CHECK(model_of<Multilayer>(scenario, "ground") == expected);
+  CHECK(scenario.scene.material(*scenario.scene.find_material("ground")).roughness_rms_m == 0.0);
+  SUBCASE("the key layers alone says the model") {
+    files.materials.replace(files.materials.find(R"("model": "multilayer", )"), 23, "");
+    CHECK(model_of<Multilayer>(files.load(), "ground") == expected);
+  }
+  SUBCASE("over the model of an MTL file") {
+    files.ground_mtl = "newmtl ground\nem_model constant\nem_reflection 0.7\n";
+    CHECK(model_of<Multilayer>(files.load(), "ground") == expected);
+  }
+  SUBCASE("an MTL file cannot hold layers") {
+    files.ground_mtl = "newmtl ground\nem_model multilayer\n";
+    CHECK(contains(files.error(), "ground.mtl:2: em_model: layers do not fit"));
+  }
+}
+
+TEST_CASE("roughness goes with every model, from both kinds of files") {
+  ScenarioCase files;
+  const auto roughness_m = [&files] {
+    const io::Scenario scenario = files.load();
+    return scenario.scene.material(*scenario.scene.find_material("ground")).roughness_rms_m;
+  };
+  for (const std::string model : {R"("model": "pec")", R"("reflection": 0.7)", R"("relative_permittivity": 4)",
+                                  R"("itu": "concrete")", R"("layers": [{"itu": "concrete", "thickness_m": 0.1}])"}) {
+    CAPTURE(model);
+    files.materials = R"("ground": {"roughness_rms_m": 0.0025, )" + model + "}";
+    CHECK(roughness_m() == 0.0025);
+  }
+  files.ground_mtl = "newmtl ground\nem_model constant\nem_reflection 0.7\nem_roughness_rms_m 0.001\n";
+  files.materials = "";
+  CHECK(roughness_m() == 0.001);
+  files.materials = R"("ground": {"roughness_rms_m": 0.0025})";
+  CHECK(roughness_m() == 0.0025);
+  files.materials = R"("ground": {"model": "pec"})";  // another model: the file's keys do not count
+  CHECK(roughness_m() == 0.0);
+}
+
 TEST_CASE("one name with two meanings in two files is an error unless the scenario decides") {
   ScenarioCase files;
   std::ofstream(files.folder / "other.mtl") << "newmtl ground\nem_model pec\n";
@@ -242,6 +289,10 @@ TEST_CASE("ITU materials outside their table: an error, or a warning when asked 
   files.more = R"(, "itu": {"allow_extrapolation": true})";
   REQUIRE(files.load().warnings.size() == 1);
   CHECK(contains(files.load().warnings[0], "'ground'"));
+  files.materials = R"("ground": {"layers": [{"itu": "wet_ground", "thickness_m": 0.1},
+    {"itu": "concrete", "thickness_m": 0.1}, {"itu": "wet_ground", "thickness_m": 0.2}]})";
+  REQUIRE(files.load().warnings.size() == 1);  // concrete reaches to 100 GHz, and wet ground is named once
+  CHECK(contains(files.load().warnings[0], "'wet_ground'"));
   files.more = R"(, "itu": {"revision": 4, "allow_extrapolation": true})";
   CHECK(contains(files.error(), "is in revision 3"));
 }

@@ -18,7 +18,8 @@ using namespace dcem::test;
 namespace {
 
 /// Writes a scenario over a scenery and reads it back.
-io::Scenario scenario(const Patches& scenery, const std::string& objects, const std::string& devices) {
+io::Scenario scenario(const Patches& scenery, const std::string& objects, const std::string& devices,
+                      const std::string& orders = R"("max_reflections": 3, "max_diffractions": 0)") {
   const TemporaryFolder folder;
   write_law_materials(folder / "laws.mtl");
   write_patches(folder / "scenery.obj", scenery);
@@ -28,8 +29,7 @@ io::Scenario scenario(const Patches& scenery, const std::string& objects, const 
     std::ofstream json(folder / "moving.json");
     json << R"({"format": "dcem-scenario/1", "scene": {"obj": "scenery.obj"}, "frequency_hz": 28e9,)"
          << R"("materials": {"metal": {"model": "pec"}}, "objects": [)" << objects << "], " << devices
-         << R"(, "propagation": {"max_reflections": 3, "max_transmissions": 2, "max_diffractions": 0, )"
-         << R"("discovery": "exact"}})";
+         << R"(, "propagation": {"max_transmissions": 2, "discovery": "exact", )" << orders << "}}";
   }
   return io::load_scenario(folder / "moving.json");
 }
@@ -64,7 +64,7 @@ std::optional<double> shortening_hz(const std::string& id, const std::array<std:
 }
 
 struct Tally {
-  std::size_t checked = 0, on_objects = 0;
+  std::size_t checked = 0, on_objects = 0, at_moving_edges = 0;
   double largest_hz = 0.0;
 };
 
@@ -84,17 +84,24 @@ void check_doppler(Simulator<>& simulator, double time_s, Tally& tally) {
     CHECK(std::abs(seen.doppler_hz - *expected) < 2e-5 + 1e-8 * std::abs(*expected));
     ++tally.checked;
     tally.on_objects += id.find('@') != std::string::npos;
+    for (const Interaction& one : seen.path.interactions) {
+      tally.at_moving_edges +=
+          one.kind == InteractionKind::diffraction && simulator.scene().facet(one.facet).body != BodyId{};
+    }
     tally.largest_hz = std::max(tally.largest_hz, std::abs(*expected));
   }
 }
 
-void check_times(io::Scenario read, std::size_t least_checked, std::size_t least_on_objects) {
+void check_times(io::Scenario read, std::size_t least_checked, std::size_t least_on_objects,
+                 std::size_t least_at_moving_edges = 0) {
   Simulator<> simulator(std::move(read.scene), read.settings);
   Tally tally;
   for (int instant = 0; instant < 30; ++instant) check_doppler(simulator, 0.21 + 0.131 * instant, tally);
-  MESSAGE(tally.checked << " paths, " << tally.on_objects << " over objects, up to " << tally.largest_hz << " Hz");
+  MESSAGE(tally.checked << " paths, " << tally.on_objects << " over objects, " << tally.at_moving_edges
+                        << " times at a moving edge, up to " << tally.largest_hz << " Hz");
   CHECK(tally.checked > least_checked);
   CHECK(tally.on_objects >= least_on_objects);
+  CHECK(tally.at_moving_edges >= least_at_moving_edges);
   CHECK(tally.largest_hz > 1000.0);
 }
 
@@ -169,4 +176,32 @@ TEST_CASE("Doppler: bodies that turn, in yaw across ±180°, in pitch and in rol
                        {"id": "own", "attach_to": "rider", "offset_m": [-1.2, 0.2, 2.3], "sees_own_body": true},
                        {"id": "rx", "position_m": [14, -3, 1.7], "velocity_mps": [-17, 3, -0.1]}])";
   check_times(scenario(street(), objects, devices), 400, 60);
+}
+
+TEST_CASE("Doppler: edges of a box that drives and turns, in yaw, pitch and roll, between ends that move") {
+  const std::string objects = R"(
+    {"id": "truck", "box_m": [7, 3, 4], "material": "metal",
+     "motion": {"waypoints": [{"t_s": 0, "position_m": [-3, 4, 0.3], "yaw_deg": 150},
+                              {"t_s": 5, "position_m": [12, -1, 0.6], "yaw_deg": -100, "pitch_deg": 8, "roll_deg": -5}]}},
+    {"id": "van", "box_m": [5, 2, 2.5], "material": "metal",
+     "motion": {"position_m": [4, -6, 0], "yaw_deg": 20, "velocity_mps": [-6, 2, 0]}})";
+  const std::string devices =
+      R"("transmitters": [{"id": "tx", "power_dbm": 0, "position_m": [-12, 2, 3.1], "velocity_mps": [12, -1, 0.3]}],
+         "receivers": [{"id": "roof", "attach_to": "van", "offset_m": [0.5, 0.1, 2.9]},
+                       {"id": "low", "position_m": [14, -3, 1.1], "velocity_mps": [-17, 3, -0.1]},
+                       {"id": "still", "position_m": [6, 9, 2.2]}])";
+  check_times(scenario(street(), objects, devices, R"("max_reflections": 1, "max_diffractions": 1)"), 1000, 400, 300);
+}
+
+TEST_CASE("Doppler: two edges in a row, of two boxes that move") {
+  const std::string objects = R"(
+    {"id": "truck", "box_m": [7, 3, 4], "material": "metal",
+     "motion": {"waypoints": [{"t_s": 0, "position_m": [-3, 1, 0.3], "yaw_deg": 150},
+                              {"t_s": 5, "position_m": [4, -1, 0.6], "yaw_deg": 190, "roll_deg": -5}]}},
+    {"id": "van", "box_m": [5, 2, 2.5], "material": "metal",
+     "motion": {"position_m": [9, -6, 0], "yaw_deg": 20, "velocity_mps": [-1, 2, 0]}})";
+  const std::string devices =
+      R"("transmitters": [{"id": "tx", "power_dbm": 0, "position_m": [-12, 2, 1.1], "velocity_mps": [2, -1, 0.3]}],
+         "receivers": [{"id": "low", "position_m": [18, -3, 1.2], "velocity_mps": [-17, 3, -0.1]}])";
+  check_times(scenario(street(), objects, devices, R"("max_reflections": 0, "max_diffractions": 2)"), 100, 100, 200);
 }

@@ -19,8 +19,7 @@ struct Shares {
 /// Power that a sheet in the plane x = 0 sends to q in front of it and to the mirror image of q behind it, over that of
 /// free space. Both paths are equally long and meet the sheet under the same angle. With p and q at one height the
 /// field is TE for V antennas and TM for H antennas.
-Shares shares(const std::string& material, const Vec3& p, const Vec3& q, std::size_t component) {
-  const Scene scene = scene_through_files({sheet(Vec3(0, 0, 0), Vec3(0, 400, 0), Vec3(0, 0, 300), material)});
+Shares shares(const Scene& scene, const Vec3& p, const Vec3& q, std::size_t component) {
   const auto behind = paths_between(scene, p, Vec3(-q.x, q.y, q.z), law_settings(1, 1));
   const auto before = paths_between(scene, p, q, law_settings(1, 1));
   REQUIRE(behind.size() == 1);
@@ -31,6 +30,25 @@ Shares shares(const std::string& material, const Vec3& p, const Vec3& q, std::si
   const double free_space = std::pow(wavelength_m / (4.0 * pi * behind[0].path.length_m), 2);
   return {std::norm(before[1].transfer(component, component)) / free_space,
           std::norm(behind[0].transfer(component, component)) / free_space};
+}
+
+Patches large_sheet(const std::string& material) {
+  return {sheet(Vec3(0, 0, 0), Vec3(0, 400, 0), Vec3(0, 0, 300), material)};
+}
+
+Shares shares(const std::string& material, const Vec3& p, const Vec3& q, std::size_t component) {
+  return shares(scene_through_files(large_sheet(material)), p, q, component);
+}
+
+/// Of a material that no MTL file can hold.
+Shares shares(const Material& material, const Vec3& p, const Vec3& q, std::size_t component) {
+  const TemporaryFolder folder;
+  write_law_materials(folder / "laws.mtl");
+  write_patches(folder / "sheet.obj", large_sheet(material.name));
+  Scene scene;
+  scene.add_material(material);
+  add_obj_file(scene, folder / "sheet.obj", [&](const TriangleMesh& mesh) { scene.set_scenery(mesh); });
+  return shares(scene, p, q, component);
 }
 
 }  // namespace
@@ -46,6 +64,27 @@ TEST_CASE("a lossless slab splits the power, a lossy one keeps some: both polari
       CHECK(lossless.reflected + lossless.passed == doctest::Approx(1.0).epsilon(1e-11));
       CHECK(lossy.reflected + lossy.passed < 1.0 - 1e-3);
       CHECK(lossy.reflected + lossy.passed > 0.0);
+    }
+  }
+}
+
+TEST_CASE("a lossless stack of layers splits the power, loss and roughness keep some") {
+  const Dielectric board{2.7, 0.0, 0.0125}, air{1.0, 0.0, 0.071}, pane{6.3, 0.0, 0.004};
+  const Multilayer clear{{board, air, pane}};
+  const Multilayer wet{{board, Dielectric{1.0, 0.02, 0.071}, pane}};
+  for (const std::size_t component : {0U, 1U}) {
+    for (const double y : {0.0, 0.7, 3.0, 9.0, 40.0}) {
+      CAPTURE(y);
+      CAPTURE(component);
+      const Vec3 p(3.3, -0.5 * y, 1.2), q(2.1, 0.5 * y, 1.2);
+      const Shares lossless = shares({"stack", clear}, p, q, component);
+      const Shares rough = shares({"stack", clear, 5e-4}, p, q, component);
+      const Shares lossy = shares({"stack", wet}, p, q, component);
+      // 1e-11 as above.
+      CHECK(lossless.reflected + lossless.passed == doctest::Approx(1.0).epsilon(1e-11));
+      CHECK(rough.passed == lossless.passed);
+      CHECK(rough.reflected < lossless.reflected);
+      CHECK(lossy.reflected + lossy.passed < 1.0 - 1e-3);
     }
   }
 }

@@ -83,6 +83,7 @@ SimulationSettings second_order(double frequency_hz) {
   settings.frequency_hz = frequency_hz;
   settings.propagation.max_reflections = 2;
   settings.propagation.max_transmissions = 0;
+  settings.propagation.max_diffractions = 0;  // the lists hold none
   settings.propagation.discovery = Discovery::exact;
   settings.threads = 1;
   return settings;

@@ -36,7 +36,7 @@ Visited visit_all(const Scene& scene, const LinkEnd& receiver, int order) {
         CHECK(images_m.front() == receiver.position_m);
         glm::vec<3, long double, glm::defaultp> image_m(receiver.position_m);
         for (std::size_t index = 0; index < sequence.size(); ++index) {
-          image_m = image_of(scene.facet(sequence[index]).plane, image_m);
+          image_m = image_of(scene.facet(sequence[index].mirror()).plane, image_m);
           const double error_m = static_cast<double>(glm::distance(image_m, decltype(image_m)(images_m[index + 1])));
           visited.worst_image_m = std::max(visited.worst_image_m, error_m);
         }
@@ -61,11 +61,13 @@ void for_every_sequence(std::size_t facets, std::size_t order, Sequence& sequenc
 /// search knows nothing of occlusion.
 bool touches_all(TracedScene<>& traced, const Vec3& transmitter_m, const Vec3& receiver_m, const Sequence& sequence) {
   std::vector<Vec3> images_m{receiver_m}, points_m;
-  for (const FacetId id : sequence) append_image(images_m, traced.scene.facet(id).plane);
-  const auto plane = [&](std::size_t index) -> const Plane& { return traced.scene.facet(sequence[index]).plane; };
+  for (const SequenceElement element : sequence) append_image(images_m, traced.scene.facet(element.mirror()).plane);
+  const auto plane = [&](std::size_t index) -> const Plane& {
+    return traced.scene.facet(sequence[index].mirror()).plane;
+  };
   if (!reflection_points(transmitter_m, images_m, sequence.size(), plane, points_m)) return false;
   for (std::size_t index = 0; index < sequence.size(); ++index) {
-    const FacetId id = sequence[sequence.size() - 1 - index];
+    const FacetId id = sequence[sequence.size() - 1 - index].mirror();
     if (!traced.tracer.reflects_at(id, points_m[index], {}, traced.counters)) return false;
   }
   return true;

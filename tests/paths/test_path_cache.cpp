@@ -35,18 +35,27 @@ Path path_over(const std::vector<std::pair<InteractionKind, std::size_t>>& inter
 constexpr InteractionKind R = InteractionKind::reflection;
 constexpr InteractionKind T = InteractionKind::transmission;
 
+/// A path that is diffracted at edge `edge` of facet 6 between two reflections.
+Path path_over_edge(std::size_t edge) {
+  Path path = path_over({{R, 1}, {T, 8}, {InteractionKind::diffraction, 6}, {R, 2}});
+  path.interactions[2].wedge = WedgeId(edge);
+  return path;
+}
+
 }  // namespace
 
-// What is remembered is a list of facet numbers: there is no room for a point, a length or a gain.
+// What is remembered is a list of numbers of facets and edges: there is no room for a point, a length or a gain.
 static_assert(std::is_same_v<std::remove_cvref_t<decltype(PathCache().sequences(0))>,
-                             std::optional<std::vector<std::vector<FacetId>>>>);
-static_assert(sizeof(FacetId) == sizeof(std::uint32_t));
+                             std::optional<std::vector<std::vector<SequenceElement>>>>);
+static_assert(sizeof(SequenceElement) == sizeof(std::uint32_t));
 
-TEST_CASE("the mirrors of a path count from the receiver and leave out what it crosses") {
-  CHECK(mirrors_of({}).empty());
-  CHECK(mirrors_of(path_over({{T, 9}, {R, 1}, {T, 8}, {R, 2}, {R, 3}, {T, 7}})) ==
+TEST_CASE("the mirrors and edges of a path count from the receiver and leave out what it crosses") {
+  CHECK(sequence_of({}).empty());
+  CHECK(sequence_of(path_over({{T, 9}, {R, 1}, {T, 8}, {R, 2}, {R, 3}, {T, 7}})) ==
         Sequence{facet(3), facet(2), facet(1)});
-  CHECK(mirrors_of(path_over({{T, 9}})).empty());
+  CHECK(sequence_of(path_over({{T, 9}})).empty());
+  CHECK(sequence_of(path_over_edge(1)) == Sequence{facet(2), WedgeId(1), facet(1)});
+  CHECK(sequence_of(path_over_edge(1)) != Sequence{facet(2), facet(1), facet(1)});
 }
 
 TEST_CASE("proposals are kept for their lifetime after the last ray that followed them, in the order they came") {
@@ -104,8 +113,9 @@ TEST_CASE("forgetting takes the sequences that lead over a facet, keeps the link
                                 path_over({{R, 7}})};
   cache.remember(0, paths);
   cache.remember(2, paths);
-  CHECK(cache.forget([](FacetId id) { return id == FacetId(5); }) == 0);  // only crossed: no part of a sequence
-  CHECK(cache.forget([](FacetId id) { return id == FacetId(4); }) == 4);
+  CHECK(cache.forget([](SequenceElement element) { return element == SequenceElement(FacetId(5)); }) ==
+        0);  // only crossed: no part of a sequence
+  CHECK(cache.forget([](SequenceElement element) { return element == SequenceElement(FacetId(4)); }) == 4);
   CHECK(*cache.sequences(0) == std::vector<Sequence>{{}, {facet(7)}});
   CHECK_FALSE(cache.sequences(1).has_value());
   CHECK(cache.clear() == 4);

@@ -23,7 +23,9 @@ struct Question {
 
   std::optional<Path> solve(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& mirrors) {
     std::vector<Vec3> images_m{receiver.position_m};
-    for (const FacetId id : mirrors) append_image(images_m, traced.scene.facet(id).plane);
+    for (const SequenceElement element : mirrors) {
+      append_image(images_m, traced.scene.facet(element.mirror()).plane);
+    }
     return solver.solve(transmitter, receiver, mirrors, images_m);
   }
   std::optional<Path> solve(const Vec3& transmitter_m, const Vec3& receiver_m, const Sequence& mirrors) {

@@ -27,7 +27,9 @@ Proposed launch(TracedScene<>& traced, const LinkEnd& receiver, const LaunchSett
   launcher.for_each_sequence(receiver, rotation, [&](const Sequence& sequence, const std::vector<Vec3>& images_m) {
     proposed.repeated += !proposed.sequences.insert(sequence).second;
     std::vector<Vec3> expected_m{receiver.position_m};
-    for (const FacetId id : sequence) append_image(expected_m, traced.scene.facet(id).plane);
+    for (const SequenceElement element : sequence) {
+      append_image(expected_m, traced.scene.facet(element.mirror()).plane);
+    }
     CHECK(images_m == expected_m);  // the same function, hence the same bits as in the exact search
   });
   proposed.rays = launcher.rays();

@@ -109,7 +109,7 @@ struct Oracle {
       std::set<std::string> ids;
       for (const PathContribution& path : link.paths) {
         CHECK(ids.insert(path_id(simulator.scene(), path.path)).second);
-        const auto again = simulator.solve_path(link.transmitter, link.receiver, mirrors_of(path.path));
+        const auto again = simulator.solve_path(link.transmitter, link.receiver, sequence_of(path.path));
         REQUIRE(again.has_value());
         CHECK(bits(*again) == bits(path));
       }
@@ -211,7 +211,9 @@ TEST_CASE("a still scene: everything is reused, nothing dies, and births add wha
   exact.propagation.cache = CacheMode::off;
   Simulator<> all(scene, exact);
   CHECK(paths <= all.advance_to(0.0, 0).work.paths);
-  CHECK(paths * 10 >= all.advance_to(0.0, 0).work.paths * 9);  // 200 + 199·20 rays have looked around
+  // 400 + 199·40 rays have looked around. Of the edges' paths, most of them weak, a good part stays undiscovered: both
+  // ends must come by an edge within a few frames.
+  CHECK(paths * 10 >= all.advance_to(0.0, 0).work.paths * 6);
 }
 
 TEST_CASE("all rays in a frame without history, few later, all again when an end was away") {
@@ -223,6 +225,7 @@ TEST_CASE("all rays in a frame without history, few later, all again when an end
   SimulationSettings settings = seeded(500, 50);
   settings.propagation.max_reflections = 1;
   settings.propagation.max_transmissions = 0;  // then each ray is one ray
+  settings.propagation.max_diffractions = 0;   // and transmitters shoot none
   Simulator<> simulator(scene, settings);
   std::size_t index = 0;
   const auto rays = [&](bool a, bool b) {
@@ -266,7 +269,7 @@ TEST_CASE("another object at the same place: the paths over the first one die, t
     std::uint64_t count = 0;
     for (const PathContribution& path : result.links[0].paths) {
       const std::string id = path_id(simulator.scene(), path.path);
-      count += id.find('R') != std::string::npos && id.find("@" + name) != std::string::npos ? 1U : 0U;
+      count += id.find("@" + name) != std::string::npos ? 1U : 0U;  // the box is opaque: no path crosses it
     }
     return count;
   };

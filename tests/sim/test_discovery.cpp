@@ -27,10 +27,11 @@ Scene scene_with_facets(std::size_t count) {
   return scene;
 }
 
-Discovery resolved(Discovery asked, int reflections, std::size_t facets) {
+Discovery resolved(Discovery asked, int reflections, std::size_t facets, int diffractions = 0) {
   PropagationSettings propagation;
   propagation.discovery = asked;
   propagation.max_reflections = reflections;
+  propagation.max_diffractions = diffractions;
   return resolve_discovery(propagation, scene_with_facets(facets));
 }
 
@@ -47,9 +48,22 @@ TEST_CASE("left to itself, discovery is exact while the scene is small for its o
   CHECK(resolved(Discovery::automatic, 10, 33) == Discovery::sampled);
 }
 
+TEST_CASE("edges make a scene large for exact discovery: each further diffraction sooner") {
+  std::size_t most = 1000, before = 1001;
+  for (const int diffractions : {0, 1, 2, 3}) {
+    while (most > 0 && resolved(Discovery::automatic, 2, most, diffractions) == Discovery::sampled) --most;
+    MESSAGE(diffractions << " diffractions: exact up to " << most << " facets");
+    CHECK(most >= 10);  // two boxes without a floor
+    CHECK(resolved(Discovery::automatic, 2, most + 1, diffractions) == Discovery::sampled);
+    CHECK(most < before);
+    before = most;
+  }
+}
+
 TEST_CASE("max_interactions counts when the order is judged") {
   PropagationSettings propagation;
   propagation.max_reflections = 10;
+  propagation.max_diffractions = 0;
   propagation.max_interactions = 1;
   CHECK(resolve_discovery(propagation, scene_with_facets(300)) == Discovery::exact);
 }

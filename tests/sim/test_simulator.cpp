@@ -44,7 +44,8 @@ bool same_bits(const LinkStatistics& a, const LinkStatistics& b) {
   return a.line_of_sight == b.line_of_sight && a.path_count == b.path_count && same_bits(a.power_dbm, b.power_dbm) &&
          same_bits(a.power_incoherent_dbm, b.power_incoherent_dbm) && same_bits(a.power_los_dbm, b.power_los_dbm) &&
          same_bits(a.power_reflected_dbm, b.power_reflected_dbm) &&
-         same_bits(a.power_transmitted_dbm, b.power_transmitted_dbm) && same_bits(a.path_gain_db, b.path_gain_db) &&
+         same_bits(a.power_transmitted_dbm, b.power_transmitted_dbm) &&
+         same_bits(a.power_diffracted_dbm, b.power_diffracted_dbm) && same_bits(a.path_gain_db, b.path_gain_db) &&
          same_bits(a.first_delay_s, b.first_delay_s) && same_bits(a.mean_delay_s, b.mean_delay_s) &&
          same_bits(a.rms_delay_spread_s, b.rms_delay_spread_s) && same_bits(a.k_factor_db, b.k_factor_db) &&
          same_bits(a.azimuth_spread_arrival_rad, b.azimuth_spread_arrival_rad) &&
@@ -351,6 +352,7 @@ TEST_CASE("sampled results say that they may be incomplete, unless there was not
     scene.add_transmitter(device_at("t", Vec3(1, 1.2, 2)));
     scene.add_receiver(device_at("r", Vec3(7.4, 4.7, 1.1)));
     SimulationSettings settings = settings_for(order, 2);
+    settings.propagation.max_diffractions = 0;
     settings.propagation.discovery = Discovery::sampled;
     settings.propagation.rays = 10;
     Simulator<> simulator(std::move(scene), settings);

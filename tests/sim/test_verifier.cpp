@@ -125,7 +125,7 @@ TEST_CASE("a good run passes, and the report counts what was looked at") {
       CHECK(sum.paths_found == report.recall.paths_found);
       CHECK(report.recall.links == 12 * 4);
       if (discovery == Discovery::sampled) CHECK(report.recall.paths_found == paths);
-      CHECK(report.recall.by_count() > 0.9);
+      CHECK(report.recall.by_count() > 0.6);  // 500 rays come by two thirds of what edges bring, most of it weak
       CHECK(report.recall.by_power() > 0.9);
     }
   }
@@ -222,8 +222,8 @@ TEST_CASE("a path beyond the declared orders is extra, though it is there") {
   Simulator<> deeper(office(), three);
   const FrameResult all = deeper.advance_to(0.0, 0);
   const auto& paths = all.links[0].paths;
-  const auto third = std::find_if(paths.begin(), paths.end(),
-                                  [](const PathContribution& path) { return mirrors_of(path.path).size() == 3; });
+  const auto third =
+      std::find_if(paths.begin(), paths.end(), [](const PathContribution& path) { return kinds(path.path) == "RRR"; });
   REQUIRE(third != paths.end());
   for (const Discovery discovery : both_discoveries) {
     const VerificationReport report =

@@ -111,12 +111,13 @@ inline Antenna antenna(PolarizationKind kind) {
 
 inline constexpr double law_frequency_hz = 28e9;
 
-/// Exact discovery by name, on one thread.
+/// Exact discovery by name, on one thread, without diffraction: a law about edges asks for it.
 inline SimulationSettings law_settings(int reflections, int transmissions, Discovery discovery = Discovery::exact) {
   SimulationSettings settings;
   settings.frequency_hz = law_frequency_hz;
   settings.propagation.max_reflections = reflections;
   settings.propagation.max_transmissions = transmissions;
+  settings.propagation.max_diffractions = 0;
   settings.propagation.discovery = discovery;
   settings.threads = 1;
   return settings;
@@ -292,7 +293,7 @@ inline std::vector<double> all_numbers(const PathContribution& path) {
     }
   }
   for (const Interaction& interaction : path.path.interactions) {
-    numbers.insert(numbers.end(), {double(interaction.kind == InteractionKind::reflection), interaction.point_m.x,
+    numbers.insert(numbers.end(), {double(interaction.kind), double(interaction.in_shadow), interaction.point_m.x,
                                    interaction.point_m.y, interaction.point_m.z});
   }
   return numbers;
@@ -303,7 +304,7 @@ inline std::vector<double> all_numbers(const LinkStatistics& s) {
   std::vector<double> numbers{double(s.line_of_sight), double(s.path_count)};
   for (const auto& value :
        {s.power_dbm, s.power_incoherent_dbm, s.power_los_dbm, s.power_reflected_dbm, s.power_transmitted_dbm,
-        s.path_gain_db, s.first_delay_s, s.mean_delay_s, s.rms_delay_spread_s, s.k_factor_db,
+        s.power_diffracted_dbm, s.path_gain_db, s.first_delay_s, s.mean_delay_s, s.rms_delay_spread_s, s.k_factor_db,
         s.azimuth_spread_arrival_rad, s.azimuth_spread_departure_rad, s.mean_doppler_hz, s.rms_doppler_spread_hz}) {
     numbers.push_back(value ? 1.0 : 0.0);
     numbers.push_back(value.value_or(0.0));

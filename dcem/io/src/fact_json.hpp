@@ -2,6 +2,7 @@
 /// Materials and mended meshes as JSON, for the summary and the inspection. Private to dcem::io.
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "dcem/em/material.hpp"
@@ -31,22 +32,37 @@ inline nlohmann::ordered_json model_json(const ItuMaterial& model) {
   if (model.thickness_m) json["thickness_m"] = *model.thickness_m;
   return json;
 }
+inline nlohmann::ordered_json model_json(const Multilayer& model) {
+  nlohmann::ordered_json layers = nlohmann::ordered_json::array();
+  for (const MaterialLayer& layer : model.layers) {
+    layers.push_back(std::visit([](const auto& medium) { return model_json(medium); }, layer));
+  }
+  return {{"model", "multilayer"}, {"layers", std::move(layers)}};
+}
 
 }  // namespace detail
 
 /// The keys of the scenario file's `materials` entry, and whether paths may cross the surface.
 inline nlohmann::ordered_json material_json(const Material& material) {
   nlohmann::ordered_json json = std::visit([](const auto& model) { return detail::model_json(model); }, material.model);
+  if (material.roughness_rms_m > 0.0) json["roughness_rms_m"] = material.roughness_rms_m;
   json["opaque"] = !transmits(material);
   return json;
 }
 
 inline nlohmann::ordered_json surface_report_json(const SurfaceReport& report) {
-  return {{"vertices_read", report.vertices_read},           {"vertices_welded", report.vertices_welded},
-          {"triangles_read", report.triangles_read},         {"triangles_without_area", report.triangles_without_area},
-          {"triangles_repeated", report.triangles_repeated}, {"open_edges", report.open_edges},
-          {"crowded_edges", report.crowded_edges},           {"uneven_sets", report.uneven_sets},
-          {"closed_shells", report.closed_shells},           {"standing_shells", report.standing_shells}};
+  return {{"vertices_read", report.vertices_read},
+          {"vertices_welded", report.vertices_welded},
+          {"triangles_read", report.triangles_read},
+          {"triangles_without_area", report.triangles_without_area},
+          {"triangles_repeated", report.triangles_repeated},
+          {"open_edges", report.open_edges},
+          {"crowded_edges", report.crowded_edges},
+          {"uneven_sets", report.uneven_sets},
+          {"closed_shells", report.closed_shells},
+          {"standing_shells", report.standing_shells},
+          {"wedges", report.wedges},
+          {"free_edges", report.free_edges}};
 }
 
 /// The document as text that ends with a line feed. Bytes of names that are not UTF-8 become replacement characters.

@@ -13,11 +13,12 @@ namespace dcem::io {
 namespace {
 
 constexpr std::string_view prefix = "em_";
+constexpr const char* known_models = "pec, constant, dielectric, itu or multilayer";
 
 /// What may stand under a key. The upper limits only keep out slips of units and of the keyboard.
 struct KeyRule {
   std::string_view name;
-  std::optional<NumberRange> range = {};  ///< absent: text
+  std::optional<NumberRange> range = {};  ///< absent: text or layers
   bool later_version = false;
 };
 
@@ -34,9 +35,9 @@ constexpr std::array<KeyRule, 15> rules{{
     {"scattering_lobe", {}, true},
     {"scattering_back_lobe", {}, true},
     {"scattering_forward_share", {}, true},
-    {"roughness_rms_m", {}, true},
+    {"roughness_rms_m", NumberRange{0.0, 1.0}},
     {"foliage_db_per_m", {}, true},
-    {"layers", {}, true},
+    {"layers"},
 }};
 
 const KeyRule* find_rule(const std::string& name) {
@@ -50,10 +51,12 @@ class MaterialMaker {
   MaterialMaker(const std::string& name, const MaterialKeys& keys) : name_(name), keys_(keys) {}
 
   std::optional<Material> make() const {
+    if (find("roughness_rms_m") && find("scattering"))
+      find("roughness_rms_m")->fail("does not go with 'scattering'; expected one of the two");
     for (const auto& [name, key] : keys_.keys) refuse_later(name, key);
     const std::string model = model_name();
     if (model.empty()) return std::nullopt;
-    const Material material{name_, make_model(model)};
+    const Material material{name_, make_model(model), number("roughness_rms_m").value_or(0.0)};
     check(material);
     return material;
   }
@@ -79,6 +82,7 @@ class MaterialMaker {
     if (find("itu")) return "itu";
     if (find("reflection")) return "constant";
     if (find("relative_permittivity")) return "dielectric";
+    if (find("layers")) return "multilayer";
     if (itu_name_from_material_name(name_)) return "itu";
     if (!keys_.keys.empty()) fail("has keys but no model; expected a key 'model' (em_model in an MTL file)");
     return {};
@@ -89,10 +93,8 @@ class MaterialMaker {
     if (model == "constant") return make_constant();
     if (model == "dielectric") return make_dielectric();
     if (model == "itu") return make_itu();
-    const MaterialKey& key = *find("model");
-    if (model == "multilayer")
-      key.fail("'multilayer' is not in this version; expected pec, constant, dielectric or itu");
-    key.fail("unknown model " + in_quotes(model) + "; expected pec, constant, dielectric or itu");
+    if (model == "multilayer") return make_multilayer();
+    find("model")->fail("unknown model " + in_quotes(model) + "; expected " + known_models);
   }
 
   ConstantReflection make_constant() const {
@@ -109,24 +111,28 @@ class MaterialMaker {
   ItuMaterial make_itu() const {
     allow({"itu", "thickness_m"});
     const MaterialKey* key = find("itu");
-    const std::optional<std::string> itu_name =
-        key ? canonical_itu_name(std::get<std::string>(key->value)) : itu_name_from_material_name(name_);
-    if (itu_name) return {*itu_name, number("thickness_m")};
-    if (!key) fail("model 'itu' needs a key 'itu'; expected the name of a material of ITU-R P.2040");
-    std::vector<std::string> names = itu_material_names(3);
-    for (const std::string& name : itu_material_names(4)) names.push_back(name);
-    const std::string& given = std::get<std::string>(key->value);
-    key->fail("unknown ITU-R P.2040 material " + in_quotes(given) + "; the nearest known one is '" +
-              nearest_name(given, names) + "'");
+    const std::optional<std::string> name = key ? itu_name(*key) : itu_name_from_material_name(name_);
+    if (!name) fail("model 'itu' needs a key 'itu'; expected the name of a material of ITU-R P.2040");
+    return {*name, number("thickness_m")};
   }
 
-  /// Refuses keys that would have no effect under this model.
-  void allow(const std::vector<std::string_view>& names) const {
+  Multilayer make_multilayer() const {
+    allow({"layers"});
+    const MaterialKey* key = find("layers");
+    if (!key) fail("model 'multilayer' lacks the key 'layers'; expected a list of layers in the scenario's materials");
+    const auto& layers = std::get<std::vector<MaterialLayer>>(key->value);
+    if (layers.empty()) key->fail("empty; expected at least one layer");
+    return {layers};
+  }
+
+  /// Refuses keys that would have no effect under this model. Any surface may be rough.
+  void allow(std::vector<std::string_view> names) const {
+    names.push_back("roughness_rms_m");
     for (const auto& [name, key] : keys_.keys) {
       if (name == "model" || std::find(names.begin(), names.end(), name) != names.end()) continue;
       std::string expected;
       for (const std::string_view other : names) expected += (expected.empty() ? "" : ", ") + std::string(other);
-      key.fail("does not go with model '" + model_name() + "'; expected " + (expected.empty() ? "no key" : expected));
+      key.fail("does not go with model '" + model_name() + "'; expected " + expected);
     }
   }
 
@@ -174,13 +180,24 @@ const NumberRange* material_number_range(const std::string& name) {
   return rule && rule->range ? &*rule->range : nullptr;
 }
 
+std::string itu_name(const MaterialKey& key) {
+  const std::string& given = std::get<std::string>(key.value);
+  if (const std::optional<std::string> name = canonical_itu_name(given)) return *name;
+  std::vector<std::string> names = itu_material_names(3);
+  for (const std::string& name : itu_material_names(4)) names.push_back(name);
+  key.fail("unknown ITU-R P.2040 material " + in_quotes(given) + "; the nearest known one is '" +
+           nearest_name(given, names) + "'");
+}
+
 MaterialKeys keys_from_mtl(const MtlMaterial& mtl) {
   MaterialKeys result{mtl.file + ":" + std::to_string(mtl.line), {}};
   for (const auto& [spelling, entry] : mtl.em_keys) {
     const std::string name = spelling.substr(prefix.size());
     MaterialKey key{entry.value, mtl.file + ":" + std::to_string(entry.line), spelling};
     const KeyRule* rule = find_rule(name);
-    if (!rule || name == "layers") {
+    if (name == "layers" || (name == "model" && entry.value == "multilayer"))
+      key.fail("layers do not fit in an MTL file; expected them in the scenario's materials");
+    if (!rule) {
       key.fail("unknown key; the nearest known one is '" + std::string(prefix) +
                nearest_name(name, material_key_names()) + "'");
     }

@@ -15,7 +15,7 @@ namespace dcem::io {
 
 /// One key with its value and where it stands.
 struct MaterialKey {
-  std::variant<double, std::string> value;
+  std::variant<double, std::string, std::vector<MaterialLayer>> value;
   std::string place;     ///< FILE or FILE:LINE
   std::string spelling;  ///< as the user wrote it: "em_reflection", "materials.wall.reflection"
 
@@ -34,7 +34,11 @@ const std::vector<std::string>& material_key_names();
 /// The numbers that may stand under a key; null where the value is text or where the key belongs to a later version.
 const NumberRange* material_number_range(const std::string& name);
 
-/// The keys of a `newmtl` block. Throws InputError on an unknown key and on what should be a number and is none.
+/// The canonical name of the material of ITU-R P.2040 that a key names. Throws InputError with the nearest one.
+std::string itu_name(const MaterialKey& key);
+
+/// The keys of a `newmtl` block. Throws InputError on an unknown key, on what should be a number and is none, and on
+/// the model `multilayer`, whose layers only a scenario can hold.
 MaterialKeys keys_from_mtl(const MtlMaterial& mtl);
 
 /// The keys of the MTL file, overridden or completed by those of the scenario. Where the scenario names another model

@@ -1,5 +1,6 @@
 #include "dcem/io/result_writer.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "dcem/core/units.hpp"
@@ -69,6 +70,15 @@ void append_transfer(JsonLine& line, const ComplexMatrix2& transfer) {
 void append_direction(JsonLine& line, std::string_view name, const Direction& direction) {
   line.key(name).open('{').key("azimuth_rad").number(direction.azimuth_rad);
   line.key("zenith_rad").number(direction.zenith_rad).close('}');
+}
+
+// Only paths with a diffraction say whether a wedge hides one side of it from the other.
+void append_shadow(JsonLine& line, const std::vector<Interaction>& interactions) {
+  const auto diffracts = [](const Interaction& at) { return at.kind == InteractionKind::diffraction; };
+  if (std::none_of(interactions.begin(), interactions.end(), diffracts)) return;
+  const bool in_shadow =
+      std::any_of(interactions.begin(), interactions.end(), [](const Interaction& at) { return at.in_shadow; });
+  line.key("in_shadow").prepared(in_shadow ? "true" : "false");
 }
 
 AtomicFile* open_sheet(OutputFolder& folder, bool wanted, const char* name) {
@@ -151,7 +161,9 @@ void ResultWriter::append_path(const LinkResult& link, const PathContribution& p
   line.key("received_power_dbm").number(power_dbm_[link.transmitter] + gain_db);
   append_direction(line, "departure", path.departure);
   append_direction(line, "arrival", path.arrival);
-  line.key("doppler_hz").number(path.doppler_hz).close('}');
+  line.key("doppler_hz").number(path.doppler_hz);
+  append_shadow(line, interactions);
+  line.close('}');
 }
 
 std::string ResultWriter::object_json(BodyId id) const {
@@ -167,7 +179,7 @@ void ResultWriter::append_link(const FrameResult& frame, const LinkResult& link)
   line.empty();  // valid_until_m: nothing is proved about other frames
   line.number(values.power_dbm).number(values.power_incoherent_dbm).number(values.power_los_dbm);
   line.number(values.power_reflected_dbm).number(values.power_transmitted_dbm);
-  line.empty(2);  // there are no diffracted and no diffuse paths
+  line.number(values.power_diffracted_dbm).empty();  // there are no diffuse paths
   line.number(values.path_gain_db).number(values.first_delay_s).number(values.mean_delay_s);
   line.number(values.rms_delay_spread_s).number(values.k_factor_db);
   line.number(values.azimuth_spread_arrival_rad).number(values.azimuth_spread_departure_rad);

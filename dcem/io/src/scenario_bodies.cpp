@@ -15,12 +15,34 @@ ObjSettings read_obj_settings(const JsonObject& owner) {
   return settings;
 }
 
+/// A layer is told by the keys of the models `dielectric` and `itu`; `model` may stand there but need not.
+MaterialLayer read_layer(const JsonValue& value) {
+  const JsonObject layer =
+      value.object({"model", "itu", "relative_permittivity", "conductivity_s_per_m", "thickness_m"});
+  const auto number = [&layer](const char* key) { return layer.at(key).number(*material_number_range(key)); };
+  const bool is_itu = layer.exactly_one_of({"itu", "relative_permittivity"}) == "itu";
+  if (const auto model = layer.find("model")) model->one_of({is_itu ? "itu" : "dielectric"});
+  const bool has_conductivity = layer.has("conductivity_s_per_m");
+  if (!is_itu) {
+    const double conductivity_s_per_m = has_conductivity ? number("conductivity_s_per_m") : 0.0;
+    return Dielectric{number("relative_permittivity"), conductivity_s_per_m, number("thickness_m")};
+  }
+  if (has_conductivity)
+    layer.at("conductivity_s_per_m").fail("goes with relative_permittivity only; expected no such key");
+  const JsonValue itu = layer.at("itu");
+  return ItuMaterial{itu_name({itu.text(), itu.place(), itu.path()}), number("thickness_m")};
+}
+
 MaterialKey read_material_key(const std::string& name, const JsonValue& value) {
   MaterialKey key{0.0, value.place(), value.path()};
   if (const NumberRange* range = material_number_range(name)) {
     key.value = value.number(*range);
   } else if (name == "model" || name == "itu") {
     key.value = value.text();
+  } else if (name == "layers") {
+    std::vector<MaterialLayer> layers;
+    for (const JsonValue& element : value.elements()) layers.push_back(read_layer(element));
+    key.value = std::move(layers);
   }
   return key;
 }
@@ -178,18 +200,18 @@ void BodyLoader::add_materials() {
 }
 
 void BodyLoader::check_frequency(const Material& material) {
-  const auto* model = std::get_if<ItuMaterial>(&material.model);
-  if (!model) return;
   const JsonValue place = scenario_.at("frequency_hz");
-  try {
-    const SimulationSettings& settings = result_.settings;
-    if (!itu_properties(model->name, settings.frequency_hz, settings.itu).extrapolated) return;
-  } catch (const std::invalid_argument& error) {
-    place.fail(in_quotes(material.name) + ": " + error.what() +
-               "; expected a frequency of the table (or itu.allow_extrapolation, or another itu.revision)");
+  const SimulationSettings& settings = result_.settings;
+  for (const std::string& name : itu_names(material)) {
+    try {
+      if (!itu_properties(name, settings.frequency_hz, settings.itu).extrapolated) continue;
+    } catch (const std::invalid_argument& error) {
+      place.fail(in_quotes(material.name) + ": " + error.what() +
+                 "; expected a frequency of the table (or itu.allow_extrapolation, or another itu.revision)");
+    }
+    result_.warnings.push_back(place.place() + ": material " + in_quotes(material.name) + " ('" + name +
+                               "' of ITU-R P.2040) is extrapolated to a frequency outside its table");
   }
-  result_.warnings.push_back(place.place() + ": material " + in_quotes(material.name) + " ('" + model->name +
-                             "' of ITU-R P.2040) is extrapolated to a frequency outside its table");
 }
 
 }  // namespace dcem::io

@@ -7,7 +7,7 @@ namespace dcem::io {
 
 namespace {
 
-constexpr long long highest_order = 10;
+constexpr long long highest_order = 10, highest_diffraction_order = 3;
 
 /// The keys of `output` that this version does not write.
 const std::vector<std::string> later_outputs{"cfr",      "doppler", "npz",  "mat",  "qd",   "p2m",
@@ -50,11 +50,26 @@ AnyPathLoss read_path_loss(const JsonValue& value) {
   return {reported_at(value, [&] { return validate(model), model; })};
 }
 
-void refuse_later_propagation(const JsonObject& propagation) {
-  if (const auto value = propagation.find("max_diffractions"); value && value->integer(0, 3) != 0) {
-    value->not_in_this_version("0");
+DiffractionSettings read_diffraction(const JsonValue& value) {
+  const JsonObject object = value.object({"lossy_wedge", "region", "free_edges", "min_exterior_angle_deg"});
+  DiffractionSettings settings;
+  if (const auto variant = object.find("lossy_wedge")) {
+    const std::string name = variant->one_of({"holm_reciprocal", "reciprocal", "luebbers84"});
+    settings.lossy_wedge = name == "reciprocal"   ? LossyWedge::reciprocal
+                           : name == "luebbers84" ? LossyWedge::luebbers84
+                                                  : LossyWedge::holm_reciprocal;
   }
-  if (propagation.has("diffraction")) propagation.at("diffraction").not_in_this_version("no such key");
+  if (const auto region = object.find("region")) {
+    const bool shadow = region->one_of({"everywhere", "shadow"}) == "shadow";
+    settings.region = shadow ? DiffractionRegion::shadow : DiffractionRegion::everywhere;
+  }
+  settings.free_edges = object.boolean("free_edges", settings.free_edges);
+  settings.min_exterior_angle_deg =
+      object.number("min_exterior_angle_deg", settings.min_exterior_angle_deg, {180.0, 360.0, true});
+  return settings;
+}
+
+void refuse_later_propagation(const JsonObject& propagation) {
   for (const char* key : {"atmosphere", "antenna_array"}) {
     if (const auto value = propagation.find(key); value && !value->is_null()) value->not_in_this_version("null");
   }
@@ -135,8 +150,11 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
         static_cast<int>(file->integer("max_reflections", settings.max_reflections, 0, highest_order));
     settings.max_transmissions =
         static_cast<int>(file->integer("max_transmissions", settings.max_transmissions, 0, highest_order));
+    settings.max_diffractions =
+        static_cast<int>(file->integer("max_diffractions", settings.max_diffractions, 0, highest_diffraction_order));
+    if (const auto value = file->find("diffraction")) settings.diffraction = read_diffraction(*value);
     if (const auto value = file->find("max_interactions")) {
-      settings.max_interactions = static_cast<int>(value->integer(0, highest_order + 3));
+      settings.max_interactions = static_cast<int>(value->integer(0, highest_order + highest_diffraction_order));
     }
     if (const auto value = file->find("rays_steady")) {
       settings.rays_steady = static_cast<std::uint32_t>(value->integer(1, 100'000'000));

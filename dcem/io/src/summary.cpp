@@ -83,6 +83,8 @@ SurfaceReport joint_report(const Scene& scene) {
     sum.uneven_sets += part.uneven_sets;
     sum.closed_shells += part.closed_shells;
     sum.standing_shells += part.standing_shells;
+    sum.wedges += part.wedges;
+    sum.free_edges += part.free_edges;
   }
   return sum;
 }
@@ -109,6 +111,25 @@ Json path_loss_json(const AnyPathLoss& path_loss) {
           {"attenuation_db_per_m", close_in->attenuation_db_per_m}};
 }
 
+const char* name_of(LossyWedge variant) {
+  switch (variant) {
+    case LossyWedge::reciprocal:
+      return "reciprocal";
+    case LossyWedge::luebbers84:
+      return "luebbers84";
+    case LossyWedge::holm_reciprocal:
+      break;
+  }
+  return "holm_reciprocal";
+}
+
+Json diffraction_json(const DiffractionSettings& settings) {
+  return {{"lossy_wedge", name_of(settings.lossy_wedge)},
+          {"region", settings.region == DiffractionRegion::shadow ? "shadow" : "everywhere"},
+          {"free_edges", settings.free_edges},
+          {"min_exterior_angle_deg", settings.min_exterior_angle_deg}};
+}
+
 Json propagation_json(const RunFacts& facts) {
   const PropagationSettings& settings = facts.settings.propagation;
   const bool sampled = facts.discovery == Discovery::sampled;
@@ -116,8 +137,9 @@ Json propagation_json(const RunFacts& facts) {
   return {{"line_of_sight", settings.line_of_sight},
           {"max_reflections", settings.max_reflections},
           {"max_transmissions", settings.max_transmissions},
-          {"max_diffractions", 0},
-          {"max_interactions", settings.max_interactions.value_or(settings.max_reflections)},
+          {"max_diffractions", settings.max_diffractions},
+          {"max_interactions", interaction_order(settings)},
+          {"diffraction", diffraction_json(settings.diffraction)},
           {"discovery", name_of(facts.discovery)},
           {"discovery_asked_for", name_of(settings.discovery)},
           {"rays", sampled ? Json(settings.rays) : Json(nullptr)},
@@ -130,7 +152,7 @@ Json propagation_json(const RunFacts& facts) {
 
 Json settings_json(const RunFacts& facts) {
   const SimulationSettings& settings = facts.settings;
-  const std::size_t exact_limit = automatic_exact_facet_limit(reflection_order(settings.propagation));
+  const std::size_t exact_limit = automatic_exact_facet_limit(settings.propagation);
   return {{"frequency_hz", settings.frequency_hz},
           {"itu", {{"revision", settings.itu.revision}, {"allow_extrapolation", settings.itu.allow_extrapolation}}},
           {"threads", resolve_thread_count(settings.threads)},
@@ -139,7 +161,6 @@ Json settings_json(const RunFacts& facts) {
           {"propagation", propagation_json(facts)},
           {"defaults_of_this_version",
            {{"cache", "seed with sampled discovery, else off"},
-            {"max_diffractions", 0},
             {"discovery", "exact up to " + std::to_string(exact_limit) + " facets, else sampled"}}}};
 }
 

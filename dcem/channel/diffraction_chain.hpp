@@ -1,0 +1,226 @@
+#pragma once
+/// The transfer of a path with diffractions: reflections and transmissions along straight legs, and the cascade of its
+/// edges (em/diffraction_cascade.hpp).
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "dcem/core/constants.hpp"
+#include "dcem/em/diffraction_cascade.hpp"
+#include "dcem/em/dyad.hpp"
+#include "dcem/em/surface_model.hpp"
+#include "dcem/em/wedge_diffraction.hpp"
+#include "dcem/paths/path.hpp"
+#include "dcem/scene/scene.hpp"
+
+namespace dcem {
+
+/// How the field of a diffracted path is computed.
+struct DiffractionModel {
+  LossyWedge lossy_wedge = LossyWedge::holm_reciprocal;
+  /// Sheets that paths may cross: faces through which the direct field passes are half-transparent to the diffracted
+  /// one.
+  int max_transmissions = 0;
+};
+
+/// Follows fields along a path. `directions` are the unit propagation directions of its legs, one more than there are
+/// interactions.
+template <SurfaceModel Surface>
+class FieldCarrier {
+ public:
+  FieldCarrier(const Scene& scene, const Surface& surface, const Path& path, const std::vector<Vec3>& directions)
+      : scene_(scene), surface_(surface), path_(path), directions_(directions) {}
+
+  /// The field after the interactions first … last−1, which are reflections and transmissions.
+  ComplexVector3 carry(ComplexVector3 field, std::size_t first, std::size_t last) const {
+    for (std::size_t index = first; index < last; ++index) {
+      const Interaction& interaction = path_.interactions[index];
+      const WorldFacet& facet = scene_.facet(interaction.facet);
+      const Vec3& direction = directions_[index];
+      const double cos_incidence = std::min(1.0, std::abs(glm::dot(direction, facet.plane.normal)));
+      const SurfaceResponse response = surface_.response(facet.material, cos_incidence);
+      field = interaction.kind == InteractionKind::reflection
+                  ? reflect(field, direction, facet.plane.normal, response.reflection)
+                  : transmit(field, direction, facet.plane.normal, response.transmission);
+    }
+    return field;
+  }
+
+  /// A direction across the ray, turned by the mirrors on the way as a picture would be.
+  Vec3 turned(Vec3 across, std::size_t first, std::size_t last) const {
+    for (std::size_t index = first; index < last; ++index) {
+      if (path_.interactions[index].kind != InteractionKind::reflection) continue;
+      across = reflected_direction(across, scene_.facet(path_.interactions[index].facet).plane.normal);
+    }
+    return across;
+  }
+
+ private:
+  const Scene& scene_;
+  const Surface& surface_;
+  const Path& path_;
+  const std::vector<Vec3>& directions_;
+};
+
+/// All edges of one path.
+template <SurfaceModel Surface>
+class DiffractionChain {
+ public:
+  /// `from_m` and `to_m` are the two ends of the path.
+  DiffractionChain(const Scene& scene, const Surface& surface, const DiffractionModel& model, const Path& path,
+                   const std::vector<Vec3>& directions, const Vec3& from_m, const Vec3& to_m,
+                   double wave_number_rad_per_m)
+      : scene_(scene),
+        surface_(surface),
+        model_(model),
+        path_(path),
+        directions_(directions),
+        carrier_(scene, surface, path, directions),
+        wave_number_rad_per_m_(wave_number_rad_per_m) {
+    measure_legs(from_m, to_m);
+    for (const std::size_t place : places_) add_edge(place);
+  }
+
+  /// What arrives along the unit vectors `received` per unit field along `sent` a metre from the transmitter, in 1/m:
+  /// everything but the phase of the path's length.
+  ComplexMatrix2 transfer(const std::array<Vec3, 2>& sent, const std::array<Vec3, 2>& received) const {
+    return leaving(received) * (cascade() * arriving(sent));
+  }
+
+ private:
+  struct Edge {
+    EdgeBases bases;
+    WedgeAngles angles;
+    WedgeMatrices matrices;
+    ComplexMatrix2 arrival;
+    double alignment = 1.0;
+  };
+
+  /// Where the edges stand among the interactions, and how long the ways between them are.
+  void measure_legs(const Vec3& from_m, const Vec3& to_m) {
+    Vec3 before_m = from_m;
+    double length_m = 0.0;
+    for (std::size_t index = 0; index < path_.interactions.size(); ++index) {
+      const Interaction& interaction = path_.interactions[index];
+      length_m += glm::distance(before_m, interaction.point_m);
+      before_m = interaction.point_m;
+      if (interaction.kind != InteractionKind::diffraction) continue;
+      places_.push_back(index);
+      legs_m_.push_back(std::exchange(length_m, 0.0));
+    }
+    legs_m_.push_back(length_m + glm::distance(before_m, to_m));
+  }
+
+  void add_edge(std::size_t place) {
+    const WorldWedge& wedge = scene_.wedge(path_.interactions[place].wedge);
+    const Vec3 along = edge_direction(wedge.edge);
+    Edge edge;
+    edge.bases = edge_bases(along, directions_[place], directions_[place + 1]);
+    edge.angles = wedge_angles({along, wedge.edge.tangent, wedge.edge.normal}, wedge.edge.exterior_angle_rad / pi,
+                               directions_[place], directions_[place + 1]);
+    edge.matrices = wedge_matrices(edge.angles, reflection_of(wedge.facets[0]), reflection_of(wedge.facets[1]),
+                                   model_.lossy_wedge, transmission_of(wedge, edge.angles));
+    edge.arrival = edges_.empty() ? diagonal_matrix(1.0, 1.0) : arrival_at(edge.bases, place);
+    edge.alignment = edges_.empty() ? 1.0 : alignment_at(edge.bases, place);
+    edges_.push_back(edge);
+  }
+
+  auto reflection_of(FacetId facet) const {
+    return [this, material = scene_.facet(facet).material](double cos_incidence) {
+      return surface_.response(material, cos_incidence).reflection;
+    };
+  }
+  auto passage_of(FacetId facet) const {
+    return [this, material = scene_.facet(facet).material](double cos_incidence) {
+      return surface_.response(material, cos_incidence).transmission;
+    };
+  }
+
+  /// What the faces let through of the direct field; nothing where one of them is opaque or paths may not cross them.
+  std::optional<ComplexMatrix2> transmission_of(const WorldWedge& wedge, const WedgeAngles& angles) const {
+    const int sheets = is_free(wedge.edge) ? 1 : 2;
+    const bool opaque = !scene_.facet(wedge.facets[0]).transmits || !scene_.facet(wedge.facets[1]).transmits;
+    if (opaque || sheets > transmissions_left()) return std::nullopt;
+    if (sheets == 1) return face_transmission_matrix(angles, WedgeFace::zero, passage_of(wedge.facets[0]));
+    return wedge_transmission_matrix(angles, passage_of(wedge.facets[0]), passage_of(wedge.facets[1]));
+  }
+
+  /// Sheets that the direct path beside the edge may cross beyond those that this path crosses already.
+  int transmissions_left() const {
+    int left = model_.max_transmissions;
+    for (const Interaction& interaction : path_.interactions) {
+      left -= interaction.kind == InteractionKind::transmission ? 1 : 0;
+    }
+    return left;
+  }
+
+  ComplexMatrix2 arrival_at(const EdgeBases& here, std::size_t place) const {
+    const std::size_t first = places_[edges_.size() - 1] + 1;
+    const EdgeBases& before = edges_.back().bases;
+    const ComplexVector2 beta =
+        incident_components(here, carrier_.carry(ComplexVector3(before.diffracted_beta), first, place));
+    const ComplexVector2 phi =
+        incident_components(here, carrier_.carry(ComplexVector3(before.diffracted_phi), first, place));
+    return {{{{beta[0], phi[0]}, {beta[1], phi[1]}}}};
+  }
+
+  double alignment_at(const EdgeBases& here, std::size_t place) const {
+    const std::size_t first = places_[edges_.size() - 1] + 1;
+    return glm::dot(here.incident_phi, carrier_.turned(edges_.back().bases.diffracted_phi, first, place));
+  }
+
+  ComplexMatrix2 cascade() const {
+    std::vector<double> alignments;
+    for (const Edge& edge : edges_) alignments.push_back(edge.alignment);
+    std::vector<CascadeEdge<ComplexMatrix2>> edges;
+    for (std::size_t index = 0; index < edges_.size(); ++index) {
+      const Edge& edge = edges_[index];
+      const double distance_m = cascade_distance_parameter_m(CascadeDistances::symmetric, legs_m_, alignments, index,
+                                                             edge.angles.edge_angle_rad);
+      edges.push_back({diffraction_matrix_with_slopes(edge.angles, wave_number_rad_per_m_, equal_distances(distance_m),
+                                                      edge.matrices),
+                       edge.angles.edge_angle_rad, legs_m_[index + 1], edge.arrival, edge.alignment});
+    }
+    return cascade_transfer<ComplexMatrix2>(wave_number_rad_per_m_, legs_m_[0], edges);
+  }
+
+  /// From the transmitter's unit vectors to the basis in which the first edge is met.
+  ComplexMatrix2 arriving(const std::array<Vec3, 2>& sent) const {
+    ComplexMatrix2 matrix;
+    for (std::size_t in = 0; in < 2; ++in) {
+      const ComplexVector2 components =
+          incident_components(edges_.front().bases, carrier_.carry(ComplexVector3(sent[in]), 0, places_.front()));
+      for (std::size_t row = 0; row < 2; ++row) matrix(row, in) = components[row];
+    }
+    return matrix;
+  }
+
+  /// From the basis that leaves the last edge to the receiver's unit vectors.
+  ComplexMatrix2 leaving(const std::array<Vec3, 2>& received) const {
+    const EdgeBases& bases = edges_.back().bases;
+    const std::array<Vec3, 2> basis{bases.diffracted_beta, bases.diffracted_phi};
+    ComplexMatrix2 matrix;
+    for (std::size_t column = 0; column < 2; ++column) {
+      const ComplexVector3 field =
+          carrier_.carry(ComplexVector3(basis[column]), places_.back() + 1, path_.interactions.size());
+      for (std::size_t out = 0; out < 2; ++out) matrix(out, column) = dot(field, received[out]);
+    }
+    return matrix;
+  }
+
+  const Scene& scene_;
+  const Surface& surface_;
+  const DiffractionModel& model_;
+  const Path& path_;
+  const std::vector<Vec3>& directions_;
+  FieldCarrier<Surface> carrier_;
+  double wave_number_rad_per_m_;
+  std::vector<std::size_t> places_;  ///< of the diffractions among the interactions
+  std::vector<double> legs_m_;       ///< unfolded, from the transmitter over the edges to the receiver
+  std::vector<Edge> edges_;
+};
+
+}  // namespace dcem
