@@ -58,7 +58,7 @@ std::vector<Contender> contenders(bool sweep) {
 void follow(Contender& contender, const dcem::Scene& scene, const std::vector<std::uint32_t>& moved,
             const std::vector<std::uint32_t>& groups) {
   const Stopwatch watch;
-  const dcem::UpkeepReport report = contender.maintainer.update(contender.tree, moved, scene.triangle_boxes(), groups);
+  const dcem::UpkeepReport report = contender.maintainer.update(contender.tree, moved, scene.triangle_boxes());
   contender.update_ms.push_back(watch.elapsed_ms());
   contender.nodes_refit += report.nodes_refit;
   contender.nodes_rebuilt += report.nodes_rebuilt;

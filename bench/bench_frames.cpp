@@ -1,6 +1,6 @@
 /// Times the frames of scenarios, with counters and a hash of all paths.
 ///
-///   bench_frames ROUNDS SCENARIO.json... [--frames N]
+///   bench_frames ROUNDS SCENARIO.json... [--frames N] [--diffractions N]
 ///
 /// Each scenario is run with the cache off and, where discovery is sampled, with cache `seed`; with the default cache
 /// under the three policies of tree upkeep; each with one thread and with all cores. Configurations take turns within a
@@ -8,6 +8,7 @@
 /// path. Rounds, thread counts or policies of one cache mode whose hashes differ are an error: exit 1 and no row.
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -106,6 +107,7 @@ void print(const dcem::io::Scenario& scenario, std::size_t frames, const Configu
   const dcem::WorkCounters& work = row.totals.work;
   dcem::bench::CsvRow csv;
   csv.text(scenario.name).count(scenario.scene.facets().size()).count(frames);
+  csv.count(static_cast<std::size_t>(dcem::diffraction_order(scenario.settings.propagation)));
   csv.text(name_of(row.cache)).text(name_of(row.policy)).count(row.threads);
   csv.number(steady_ms / median(without_cache.median_ms), 3);
   csv.number(median(row.cold_ms), 3).number(steady_ms, 3).number(median(row.p95_ms), 3);
@@ -126,8 +128,9 @@ bool agree(const std::vector<Configuration>& all, const Configuration& one) {
 }
 
 /// False where results differ that must not.
-bool bench(const std::string& file, int rounds, std::size_t frames_wanted) {
-  const dcem::io::Scenario scenario = dcem::io::load_scenario(file);
+bool bench(const std::string& file, int rounds, std::size_t frames_wanted, std::optional<int> diffractions) {
+  dcem::io::Scenario scenario = dcem::io::load_scenario(file);
+  if (diffractions) scenario.settings.propagation.max_diffractions = *diffractions;
   const std::size_t frames = std::min(scenario.time.frames, frames_wanted);
   if (frames < 2) throw std::invalid_argument(file + ": one frame only; expected two or more");
   std::vector<Configuration> all = configurations(scenario);
@@ -154,17 +157,20 @@ bool bench(const std::string& file, int rounds, std::size_t frames_wanted) {
 int main(int count, char** arguments) {
   int rounds = 1;
   std::size_t frames = static_cast<std::size_t>(-1);
+  std::optional<int> diffractions;
   std::vector<std::string> files;
   CLI::App app("Times the frames of scenarios");
   app.add_option("ROUNDS", rounds, "how often each configuration is run")->required()->check(CLI::Range(1, 1'000'000));
   app.add_option("SCENARIO", files, "scenario files")->required();
+  app.add_option("--diffractions", diffractions, "in place of the scenarios' own number")->check(CLI::Range(0, 3));
   app.add_option("--frames", frames, "at most so many frames of each scenario")->check(CLI::Range(2, 1 << 30));
   return dcem::bench::run_program(app, count, arguments, [&] {
     std::puts(
-        "scenario,facets,frames,cache,policy,threads,ratio_to_cache_off,cold_frame_ms,steady_median_ms,p95_ms,"
+        "scenario,facets,frames,max_diffractions,cache,policy,threads,ratio_to_cache_off,cold_frame_ms,steady_median_"
+        "ms,p95_ms,"
         "maximum_ms,update_median_ms,source_median_ms,real_time_factor,paths,rays,sequences_proposed,sequences_solved,"
         "legs,nodes_visited,primitives_tested,nodes_refit,nodes_rebuilt,cache_reused,cache_born,cache_died,hash");
     return std::all_of(files.begin(), files.end(),
-                       [&](const std::string& file) { return bench(file, rounds, frames); });
+                       [&](const std::string& file) { return bench(file, rounds, frames, diffractions); });
   });
 }

@@ -48,6 +48,8 @@ class Bvh {
   /// The same, where primitives [group_first[i], group_first[i+1]) are group i, such as one object, and the last group
   /// ends with the boxes. Every group owns a subtree; a tree over the groups joins them. The first group starts at 0.
   void build_grouped(Boxes boxes, std::span<const std::uint32_t> group_first, const SahSettings& settings = {});
+  /// Builds everything anew, with the groups and settings of the last build.
+  void rebuild(Boxes boxes);
 
   /// Builds the tree below one node anew over the primitives it holds, with their present boxes. Nodes elsewhere keep
   /// their slots and contents, except that ancestors are refitted if the node's box has become another. Above group

@@ -31,6 +31,13 @@ void Bvh<Scalar>::build_grouped(Boxes boxes, std::span<const std::uint32_t> grou
   sah_at_build_ = sah_cost();
 }
 
+template <std::floating_point Scalar>
+void Bvh<Scalar>::rebuild(Boxes boxes) {
+  std::vector<std::uint32_t> group_first = group_first_;
+  if (!group_first.empty()) group_first.pop_back();
+  build_grouped(boxes, group_first, settings_);
+}
+
 /// Plants a tree over the groups at `slot` and each group's own tree at a leaf of it.
 template <std::floating_point Scalar>
 void Bvh<Scalar>::grow_groups(std::uint32_t slot, std::span<const std::uint32_t> groups, Boxes boxes,

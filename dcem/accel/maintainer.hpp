@@ -56,8 +56,7 @@ struct UpkeepReport {
   friend bool operator==(const UpkeepReport&, const UpkeepReport&) = default;
 };
 
-/// Decides for one `Bvh`. The groups of the tree are the objects of a scene: primitives [group_first[i],
-/// group_first[i+1]) belong to object i.
+/// Decides for one `Bvh`, whose groups are the objects of a scene.
 template <std::floating_point Scalar>
 class BvhMaintainer {
  public:
@@ -69,8 +68,7 @@ class BvhMaintainer {
   const UpkeepSettings& settings() const { return settings_; }
 
   /// Brings the tree up to date after the primitives in `moved` have got the boxes that stand in `boxes`.
-  UpkeepReport update(Tree& tree, std::span<const std::uint32_t> moved, Boxes boxes,
-                      std::span<const std::uint32_t> group_first);
+  UpkeepReport update(Tree& tree, std::span<const std::uint32_t> moved, Boxes boxes);
 
   /// Whether a rebuild of the subtree is due by either measure. Two leaves under a node can be joined in one way only:
   /// such a node is never worn.
@@ -107,7 +105,7 @@ class BruteForceMaintainer {
   explicit BruteForceMaintainer(const UpkeepSettings& settings = {}) { validate(settings); }
 
   UpkeepReport update(BruteForce<Scalar>& tree, std::span<const std::uint32_t> moved,
-                      typename BruteForce<Scalar>::Boxes boxes, std::span<const std::uint32_t>) const {
+                      typename BruteForce<Scalar>::Boxes boxes) const {
     tree.refit(moved, boxes);
     UpkeepReport report;
     report.sah_cost = report.sah_cost_at_build = tree.sah_cost();
@@ -137,11 +135,10 @@ using MaintainerOf = typename detail::MaintainerOf<Tree>::type;
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <std::floating_point Scalar>
-UpkeepReport BvhMaintainer<Scalar>::update(Tree& tree, std::span<const std::uint32_t> moved, Boxes boxes,
-                                           std::span<const std::uint32_t> group_first) {
+UpkeepReport BvhMaintainer<Scalar>::update(Tree& tree, std::span<const std::uint32_t> moved, Boxes boxes) {
   UpkeepReport report;
   if (settings_.policy == TreePolicy::rebuild_always && !moved.empty()) {
-    tree.build_grouped(boxes, group_first, tree.settings());
+    tree.rebuild(boxes);
     report.nodes_rebuilt = nodes_in_use(tree);
     report.subtrees_rebuilt = 1;
     report.root_rebuilt = true;
@@ -164,8 +161,9 @@ void BvhMaintainer<Scalar>::rebuild_worn(Tree& tree, Boxes boxes, UpkeepReport& 
   const auto rebuild_where = [&](bool in_group) {
     for (const std::uint32_t slot : visited_) {
       // Slots that an earlier rebuild gave away again hold new nodes, which are not worn.
-      if (tree.arrays().parent[slot] == free_slot || tree.lies_in_group(slot) != in_group) continue;
-      if (is_worn(tree.wear(slot)) || (slot == 0 && needs_renewal(tree))) rebuild(tree, slot, boxes, report);
+      if (tree.arrays().parent[slot] == free_slot) continue;
+      const bool due = is_worn(tree.wear(slot)) || (slot == 0 && needs_renewal(tree));
+      if (due && tree.lies_in_group(slot) == in_group) rebuild(tree, slot, boxes, report);
     }
   };
   rebuild_where(true);  // before the layer above: there the groups get other slots

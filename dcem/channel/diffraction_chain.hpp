@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/channel/field_carrier.hpp"
 #include "dcem/core/constants.hpp"
 #include "dcem/em/diffraction_cascade.hpp"
-#include "dcem/em/dyad.hpp"
 #include "dcem/em/surface_model.hpp"
 #include "dcem/em/wedge_diffraction.hpp"
 #include "dcem/paths/path.hpp"
@@ -26,45 +26,6 @@ struct DiffractionModel {
   int max_transmissions = 0;
 };
 
-/// Follows fields along a path. `directions` are the unit propagation directions of its legs, one more than there are
-/// interactions.
-template <SurfaceModel Surface>
-class FieldCarrier {
- public:
-  FieldCarrier(const Scene& scene, const Surface& surface, const Path& path, const std::vector<Vec3>& directions)
-      : scene_(scene), surface_(surface), path_(path), directions_(directions) {}
-
-  /// The field after the interactions first … last−1, which are reflections and transmissions.
-  ComplexVector3 carry(ComplexVector3 field, std::size_t first, std::size_t last) const {
-    for (std::size_t index = first; index < last; ++index) {
-      const Interaction& interaction = path_.interactions[index];
-      const WorldFacet& facet = scene_.facet(interaction.facet);
-      const Vec3& direction = directions_[index];
-      const double cos_incidence = std::min(1.0, std::abs(glm::dot(direction, facet.plane.normal)));
-      const SurfaceResponse response = surface_.response(facet.material, cos_incidence);
-      field = interaction.kind == InteractionKind::reflection
-                  ? reflect(field, direction, facet.plane.normal, response.reflection)
-                  : transmit(field, direction, facet.plane.normal, response.transmission);
-    }
-    return field;
-  }
-
-  /// A direction across the ray, turned by the mirrors on the way as a picture would be.
-  Vec3 turned(Vec3 across, std::size_t first, std::size_t last) const {
-    for (std::size_t index = first; index < last; ++index) {
-      if (path_.interactions[index].kind != InteractionKind::reflection) continue;
-      across = reflected_direction(across, scene_.facet(path_.interactions[index].facet).plane.normal);
-    }
-    return across;
-  }
-
- private:
-  const Scene& scene_;
-  const Surface& surface_;
-  const Path& path_;
-  const std::vector<Vec3>& directions_;
-};
-
 /// All edges of one path.
 template <SurfaceModel Surface>
 class DiffractionChain {
@@ -78,9 +39,11 @@ class DiffractionChain {
         model_(model),
         path_(path),
         directions_(directions),
+        from_m_(from_m),
+        to_m_(to_m),
         carrier_(scene, surface, path, directions),
         wave_number_rad_per_m_(wave_number_rad_per_m) {
-    measure_legs(from_m, to_m);
+    measure_legs();
     for (const std::size_t place : places_) add_edge(place);
   }
 
@@ -100,8 +63,8 @@ class DiffractionChain {
   };
 
   /// Where the edges stand among the interactions, and how long the ways between them are.
-  void measure_legs(const Vec3& from_m, const Vec3& to_m) {
-    Vec3 before_m = from_m;
+  void measure_legs() {
+    Vec3 before_m = from_m_;
     double length_m = 0.0;
     for (std::size_t index = 0; index < path_.interactions.size(); ++index) {
       const Interaction& interaction = path_.interactions[index];
@@ -111,7 +74,7 @@ class DiffractionChain {
       places_.push_back(index);
       legs_m_.push_back(std::exchange(length_m, 0.0));
     }
-    legs_m_.push_back(length_m + glm::distance(before_m, to_m));
+    legs_m_.push_back(length_m + glm::distance(before_m, to_m_));
   }
 
   void add_edge(std::size_t place) {
@@ -119,13 +82,65 @@ class DiffractionChain {
     const Vec3 along = edge_direction(wedge.edge);
     Edge edge;
     edge.bases = edge_bases(along, directions_[place], directions_[place + 1]);
-    edge.angles = wedge_angles({along, wedge.edge.tangent, wedge.edge.normal}, wedge.edge.exterior_angle_rad / pi,
-                               directions_[place], directions_[place + 1]);
+    edge.angles =
+        settled(place, wedge_angles({along, wedge.edge.tangent, wedge.edge.normal}, wedge.edge.exterior_angle_rad / pi,
+                                    directions_[place], directions_[place + 1]));
     edge.matrices = wedge_matrices(edge.angles, reflection_of(wedge.facets[0]), reflection_of(wedge.facets[1]),
                                    model_.lossy_wedge, transmission_of(wedge, edge.angles));
     edge.arrival = edges_.empty() ? diagonal_matrix(1.0, 1.0) : arrival_at(edge.bases, place);
     edge.alignment = edges_.empty() ? 1.0 : alignment_at(edge.bases, place);
     edges_.push_back(edge);
+  }
+
+  /// Within rounding of a boundary of the direct or of a reflected field, the observer is put on the side on which the
+  /// paths take it to be: the path itself says whether the direct one is hidden; a mirror does not reflect within
+  /// in_plane_guard_m of its rim.
+  WedgeAngles settled(std::size_t place, const WedgeAngles& angles) const {
+    const double turn_rad = angles.diffracted_azimuth_rad - angles.incident_azimuth_rad;
+    if (std::abs(std::abs(turn_rad) - pi) < shadow_boundary_rad) {
+      const double side = path_.interactions[place].in_shadow ? 1.0 : -1.0;
+      return moved_to(angles, angles.incident_azimuth_rad + std::copysign(pi + side * beside_rad, turn_rad));
+    }
+    const double opening_rad = angles.exterior_angle_over_pi * pi;
+    const double from_0_rad = angles.incident_azimuth_rad, from_n_rad = opening_rad - from_0_rad;
+    if (reflects_at_rim(place, from_0_rad, angles.diffracted_azimuth_rad)) {
+      return moved_to(angles, pi + beside_rad - from_0_rad);
+    }
+    if (reflects_at_rim(place, from_n_rad, opening_rad - angles.diffracted_azimuth_rad)) {
+      return moved_to(angles, opening_rad - (pi + beside_rad - from_n_rad));
+    }
+    return angles;
+  }
+
+  /// Whether the point of reflection at a face, from which both azimuths count, lies on its rim.
+  bool reflects_at_rim(std::size_t place, double incident_rad, double diffracted_rad) const {
+    if (std::abs(incident_rad + diffracted_rad - pi) > rim_search_rad) return false;
+    const double incident_m = across_m(place, stop_beside_m(place, -1)),
+                 diffracted_m = across_m(place, stop_beside_m(place, 1));
+    const double offset_m = incident_m * diffracted_m * std::sin(incident_rad + diffracted_rad) /
+                            (diffracted_m * std::sin(diffracted_rad) + incident_m * std::sin(incident_rad));
+    return std::abs(offset_m) <= in_plane_guard_m;
+  }
+
+  static WedgeAngles moved_to(WedgeAngles angles, double diffracted_azimuth_rad) {
+    angles.diffracted_azimuth_rad = diffracted_azimuth_rad;
+    return angles;
+  }
+
+  /// The point before (−1) or after (1) an interaction at which the path turns, or its end.
+  Vec3 stop_beside_m(std::size_t place, int step) const {
+    const std::size_t count = path_.interactions.size();
+    for (std::size_t index = place + static_cast<std::size_t>(step); index < count;
+         index += static_cast<std::size_t>(step)) {
+      if (path_.interactions[index].kind != InteractionKind::transmission) return path_.interactions[index].point_m;
+    }
+    return step < 0 ? from_m_ : to_m_;
+  }
+
+  double across_m(std::size_t place, const Vec3& point_m) const {
+    const Wedge& edge = scene_.wedge(path_.interactions[place].wedge).edge;
+    const Vec3 away_m = point_m - path_.interactions[place].point_m;
+    return std::hypot(glm::dot(away_m, edge.tangent), glm::dot(away_m, edge.normal));
   }
 
   auto reflection_of(FacetId facet) const {
@@ -211,11 +226,15 @@ class DiffractionChain {
     return matrix;
   }
 
+  static constexpr double beside_rad = 1e-13;  ///< a thousand roundings of an azimuth; of the field it is 1e-13·√(kL)
+  static constexpr double rim_search_rad = 1e-3;  ///< farther from a boundary no point of reflection is on the rim
+
   const Scene& scene_;
   const Surface& surface_;
   const DiffractionModel& model_;
   const Path& path_;
   const std::vector<Vec3>& directions_;
+  Vec3 from_m_, to_m_;
   FieldCarrier<Surface> carrier_;
   double wave_number_rad_per_m_;
   std::vector<std::size_t> places_;  ///< of the diffractions among the interactions

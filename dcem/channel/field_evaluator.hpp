@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "dcem/channel/diffraction_chain.hpp"
+#include "dcem/channel/field_carrier.hpp"
 #include "dcem/channel/path_contribution.hpp"
 #include "dcem/core/constants.hpp"
 #include "dcem/em/antenna.hpp"
-#include "dcem/em/dyad.hpp"
 #include "dcem/em/path_loss.hpp"
 #include "dcem/em/polarization.hpp"
 #include "dcem/em/surface_model.hpp"

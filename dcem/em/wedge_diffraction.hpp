@@ -68,6 +68,13 @@ inline double virtual_azimuth_rad(const WedgeAngles& angles, WedgeFace face, Los
   return virtual_azimuth_rad(source, observer, nearer);
 }
 
+/// Whether source and observer stand at one azimuth. On that line the reciprocal variants change which of the two sets
+/// an angle, and which of the two terms is the regular one; rounding would choose a side, and not the same one for the
+/// reverse path.
+inline bool is_level(const WedgeAngles& angles) {
+  return std::abs(angles.incident_azimuth_rad - angles.diffracted_azimuth_rad) < 1e-9;
+}
+
 /// The plane of incidence of the virtual ray in the edge-fixed basis: e⊥ = (−p, q)/√(p² + q²).
 struct IncidencePlane {
   double cos_incidence;
@@ -95,10 +102,8 @@ ComplexMatrix2 face_reflection_matrix(const WedgeAngles& angles, WedgeFace face,
   const double azimuth = detail::virtual_azimuth_rad(angles, face, variant);
   const auto [cos_incidence, p, q] = detail::incidence_plane(azimuth, angles, face);
   const PolarizedCoefficients r = reflection(cos_incidence);
-  // On that line rounding would choose the side, and not the same one for the reverse path.
-  const bool level =
-      variant != LossyWedge::luebbers84 && std::abs(angles.incident_azimuth_rad - angles.diffracted_azimuth_rad) < 1e-9;
-  const Complex mixed = level ? Complex{} : (r.te + r.tm) * (p * q);
+  const bool jumps = variant != LossyWedge::luebbers84 && detail::is_level(angles);
+  const Complex mixed = jumps ? Complex{} : (r.te + r.tm) * (p * q);
   return {{{{r.tm * (q * q) - r.te * (p * p), mixed}, {-mixed, r.te * (q * q) - r.tm * (p * p)}}}};
 }
 
@@ -150,6 +155,10 @@ WedgeMatrices wedge_matrices(const WedgeAngles& angles, const Face0& face_0, con
   const bool forward = angles.diffracted_azimuth_rad >= angles.incident_azimuth_rad;
   const ComplexMatrix2 twice = forward ? g_n * g_0 : g_0 * g_n;
   const ComplexMatrix2 regular = Complex(-0.5) * (blocked * twice + twice * blocked);
+  if (detail::is_level(angles)) {  // D1 and D2 are the same there; their slopes are opposite
+    const ComplexMatrix2 mean = Complex(0.5) * (regular + incident);
+    return {mean, mean, g_n, g_0};
+  }
   return forward ? WedgeMatrices{regular, incident, g_n, g_0} : WedgeMatrices{incident, regular, g_n, g_0};
 }
 

@@ -12,6 +12,10 @@ namespace dcem {
 
 enum class InteractionKind : char { reflection = 'R', transmission = 'T', diffraction = 'D' };
 
+/// This close to a shadow boundary, in azimuth about the edge, rounding would decide whether a wedge hides its two
+/// sides from each other; there `Interaction::in_shadow` says it, for the field as well.
+inline constexpr double shadow_boundary_rad = 1e-9;
+
 /// One touch of a surface.
 struct Interaction {
   InteractionKind kind = InteractionKind::reflection;

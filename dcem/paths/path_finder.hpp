@@ -18,7 +18,7 @@ namespace dcem {
 /// transmitter reaches, and is needed where diffractions are wanted.
 template <typename Tree>
 std::vector<LinkPaths> find_paths(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings,
-                                  const LinkEnd& receiver, const ReceiverKey& key,
+                                  const LinkEnd& receiver, const SphereKey& key,
                                   std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters,
                                   PathCache* cache = nullptr, std::span<const ReachedEdges> reached = {});
 
@@ -26,7 +26,7 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Tree>& tracer, const PathSea
 /// `rays` rays come by, in addition to it.
 template <typename Tree>
 void find_reach(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings, const LinkEnd& end,
-                const ReceiverKey& key, std::uint32_t rays, EdgeReach& reach, SearchCounters& counters);
+                const SphereKey& key, std::uint32_t rays, EdgeReach& reach, SearchCounters& counters);
 
 // ---------------------------------------------------------------------------------------------------------------------
 
@@ -64,7 +64,7 @@ inline void remember(PathCache& cache, std::span<const std::optional<LinkEnd>> t
 
 template <typename Tree>
 std::vector<LinkPaths> find_paths(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings,
-                                  const LinkEnd& receiver, const ReceiverKey& key,
+                                  const LinkEnd& receiver, const SphereKey& key,
                                   std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters,
                                   PathCache* cache, std::span<const ReachedEdges> reached) {
   DCEM_ASSERT(settings.max_diffractions == 0 || reached.size() == transmitters.size());
@@ -89,7 +89,7 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Tree>& tracer, const PathSea
 
 template <typename Tree>
 void find_reach(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings, const LinkEnd& end,
-                const ReceiverKey& key, std::uint32_t rays, EdgeReach& reach, SearchCounters& counters) {
+                const SphereKey& key, std::uint32_t rays, EdgeReach& reach, SearchCounters& counters) {
   const auto ignore_mirrors = [](const Sequence&, const std::vector<Vec3>&) {};
   if (settings.exhaustive) {
     ExactSearch search(tracer.scene(), settings.max_reflections);

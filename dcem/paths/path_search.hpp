@@ -47,8 +47,8 @@ struct SearchCounters {
   CacheCounters cache;
 };
 
-/// Whose paths are wanted: the receiver's name and the frame turn the sphere of rays.
-struct ReceiverKey {
+/// What turns a sphere of rays: the name of the device that shoots it, and the frame.
+struct SphereKey {
   std::string_view id;
   std::size_t frame = 0;
 };
@@ -109,7 +109,7 @@ class PathSearch {
   }
 
   /// Solves what rays propose in this frame and, with a memory, what they proposed in the frames before.
-  void shoot(const ReceiverKey& key, std::uint32_t rays, ProposalMemory* memory, EdgeReach* reach) {
+  void shoot(const SphereKey& key, std::uint32_t rays, ProposalMemory* memory, EdgeReach* reach) {
     if (memory != nullptr) try_again(*memory);
     RayLauncher<Tree> launcher(tracer_, {rays, settings_.max_reflections, settings_.max_transmissions});
     if (reach != nullptr) launcher.note_edges(*reach, settings_.edges, most_mirrors_of_a_half(settings_));

@@ -131,14 +131,23 @@ class PathSolver {
     const Vec3& before_m = index == 0 ? transmitter.position_m : points_m[index - 1];
     const Vec3& after_m = index + 1 == points_m.size() ? receiver.position_m : points_m[index + 1];
     if (!clear_of_faces(wedge.edge, before_m - here_m) || !clear_of_faces(wedge.edge, after_m - here_m)) return false;
-    in_shadow_[index] =
-        std::abs(azimuth_rad(wedge.edge, before_m - here_m) - azimuth_rad(wedge.edge, after_m - here_m)) > pi;
+    in_shadow_[index] = hides(wedge, before_m, here_m, after_m);
     if (rules_.shadow_only && !in_shadow_[index]) return false;
     const double tolerance_m = scene().settings().weld_tolerance_m + wedge.edge.stray_m;
     for (const FacetId near : tracer_.facets_near(here_m, tolerance_m, ignored, counters_.traversal)) {
       if (near != wedge.facets[0] && near != wedge.facets[1]) return false;
     }
     return true;
+  }
+
+  /// Whether the wedge stands between two points that diffract at `here_m`. Within rounding of the shadow boundary the
+  /// azimuths cannot say; there the test decides that decides of the straight leg between the two, so that exactly one
+  /// of the direct and the shadowed field is taken.
+  bool hides(const WorldWedge& wedge, const Vec3& before_m, const Vec3& here_m, const Vec3& after_m) const {
+    const double turn_rad =
+        std::abs(azimuth_rad(wedge.edge, before_m - here_m) - azimuth_rad(wedge.edge, after_m - here_m));
+    if (std::abs(turn_rad - pi) > shadow_boundary_rad) return turn_rad > pi;
+    return tracer_.meets(wedge.facets[0], before_m, after_m) || tracer_.meets(wedge.facets[1], before_m, after_m);
   }
 
   /// In the exterior, and off both faces by more than rounding.

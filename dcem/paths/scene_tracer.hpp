@@ -65,6 +65,17 @@ class SceneTracer {
   /// region.
   bool reflects_at(FacetId facet, const Vec3& point_m, const IgnoredBodies& ignored, TraversalCounters& counters) const;
 
+  /// Whether a straight leg meets a facet, its rim included: the test by which `follow_leg` decides.
+  bool meets(FacetId facet, const Vec3& from_m, const Vec3& to_m) const {
+    const WatertightRay leg(segment_between(from_m, to_m));
+    const WorldFacet& held = scene_.facet(facet);
+    for (std::uint32_t index = 0; index < held.triangle_count; ++index) {
+      const std::optional<double> t = leg.intersect(scene_.corners_m(held.first_triangle + index));
+      if (t && *t >= 0.0 && *t <= 1.0) return true;
+    }
+    return false;
+  }
+
   bool is_ignored(BodyId body, const IgnoredBodies& ignored) const { return ignored[0] == body || ignored[1] == body; }
 
   /// Whether `one` stands for `other` where both lie on top of each other: by material name, then id.

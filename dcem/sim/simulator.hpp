@@ -107,6 +107,8 @@ class Simulator {
                      {propagation.diffraction.lossy_wedge, propagation.max_transmissions});
   }
   PathSearchSettings search_settings() const;
+  std::span<const std::optional<LinkEnd>> ends_beside(const Device& receiver, const TransmitterEnds& transmitters,
+                                                      std::vector<std::optional<LinkEnd>>& others) const;
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
   Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                         PathCache* cache) const;

@@ -79,7 +79,7 @@ UpkeepReport Simulator<Surface, Tree>::update_tree(const ChangeSet& changes) {
     for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
   }
   // Kept where this throws (a box too far away): the tree must hear of them in a later frame.
-  const UpkeepReport report = maintainer_.update(tree_, moved_, scene_.triangle_boxes(), scene_.first_triangles());
+  const UpkeepReport report = maintainer_.update(tree_, moved_, scene_.triangle_boxes());
   moved_.clear();
   return report;
 }
@@ -177,6 +177,19 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_all(st
   return sum;
 }
 
+/// The transmitters without the device that the receiver itself is: a device has no link to itself.
+template <SurfaceModel Surface, typename Tree>
+std::span<const std::optional<LinkEnd>> Simulator<Surface, Tree>::ends_beside(
+    const Device& receiver, const TransmitterEnds& transmitters, std::vector<std::optional<LinkEnd>>& others) const {
+  const std::span<const Device> devices = scene_.transmitters();
+  const auto is_receiver = [&](const Device& device) { return device.id == receiver.id; };
+  const auto same = std::find_if(devices.begin(), devices.end(), is_receiver);
+  if (same == devices.end()) return transmitters.link;
+  others = transmitters.link;
+  others[static_cast<std::size_t>(same - devices.begin())].reset();
+  return others;
+}
+
 template <SurfaceModel Surface, typename Tree>
 typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiver(const Device& receiver,
                                                                                    std::size_t index,
@@ -192,10 +205,8 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiv
   SearchCounters counters;
   const LinkEnd end = link_end(state, counters.solver.traversal);
   const PathSearchSettings search = search_settings();
-  std::vector<std::optional<LinkEnd>> ends = transmitters.link;
-  for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
-    if (scene_.transmitters()[transmitter].id == receiver.id) ends[transmitter].reset();  // one device has no link
-  }
+  std::vector<std::optional<LinkEnd>> others;
+  const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
   std::vector<LinkPaths> found =
       find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached);
   const Evaluator field = evaluator();

@@ -84,7 +84,7 @@ struct Kept {
     }
     const Count before = count(changed);
     boxes = now;
-    const UpkeepReport report = maintainer.update(tree, moved, boxes, first);
+    const UpkeepReport report = maintainer.update(tree, moved, boxes);
     REQUIRE(tree.validate(boxes) == "");
     check(report, before, count(changed));
     return report;
@@ -447,7 +447,7 @@ TEST_CASE("a worn group and a worn layer above it in one frame: each is rebuilt 
   for (int frame = 0; frame < 20; ++frame) {
     const Boxes now = draw();
     kept.boxes = now;
-    const UpkeepReport report = kept.maintainer.update(kept.tree, numbers_below(groups * size), now, kept.first);
+    const UpkeepReport report = kept.maintainer.update(kept.tree, numbers_below(groups * size), now);
     CHECK(report.subtrees_rebuilt <= groups + 1);
     CHECK(report.nodes_rebuilt <= kept.count({}).in_use);
   }
@@ -473,7 +473,7 @@ TEST_CASE("after an update no visited node is worn by more than a rebuild below 
       boxes[primitive] = moved_by(boxes[primitive], step_m[primitive]);
     }
     kept.boxes = boxes;
-    kept.maintainer.update(kept.tree, numbers_below(boxes.size()), boxes, kept.first);
+    kept.maintainer.update(kept.tree, numbers_below(boxes.size()), boxes);
     std::size_t worn = 0;
     for_each_node(kept.tree.nodes(), 0, [&](std::uint32_t slot, std::uint32_t) {
       const SubtreeWear& wear = kept.tree.wear(slot);
@@ -729,8 +729,8 @@ TEST_CASE("boxes that a tree does not accept change nothing, whatever the policy
     const std::string before = bytes_of(kept.tree);
     Boxes bad = with_group_moved(kept, 1, Vec3(3, 0, 0));
     bad[30].max.x = infinity;
-    CHECK_THROWS_AS(kept.maintainer.update(kept.tree, numbers_below(60), bad, kept.first), std::invalid_argument);
-    CHECK_THROWS_AS(kept.maintainer.update(kept.tree, Numbers{0}, Boxes(3), kept.first), std::invalid_argument);
+    CHECK_THROWS_AS(kept.maintainer.update(kept.tree, numbers_below(60), bad), std::invalid_argument);
+    CHECK_THROWS_AS(kept.maintainer.update(kept.tree, Numbers{0}, Boxes(3)), std::invalid_argument);
     CHECK(bytes_of(kept.tree) == before);
     CHECK(kept.update(kept.boxes, {}).nodes_refit == 0);
   }
@@ -741,7 +741,7 @@ TEST_CASE("the oracle's maintainer takes over the boxes and reports nothing of a
   BruteForce<double> oracle;
   oracle.build(boxes);
   boxes[7] = cube(Vec3(99.0), 1.0);
-  const UpkeepReport report = MaintainerOf<BruteForce<double>>().update(oracle, Numbers{7}, boxes, Numbers{0});
+  const UpkeepReport report = MaintainerOf<BruteForce<double>>().update(oracle, Numbers{7}, boxes);
   CHECK(oracle.validate(boxes) == "");
   CHECK(report.nodes_kept + report.nodes_refit + report.nodes_rebuilt == 0);
   CHECK(report.sah_cost == oracle.sah_cost());

@@ -168,9 +168,9 @@ Tally follow(const Traffic& traffic, std::uint64_t seed, int frames, int questio
     CAPTURE(frame);
     const Numbers moved = drive.step();
     const auto& boxes = drive.boxes();
-    oracle_maintainer.update(oracle, moved, boxes, drive.first());
+    oracle_maintainer.update(oracle, moved, boxes);
     for (std::size_t index = 0; index < trees.size(); ++index) {
-      const UpkeepReport report = maintainers[index].update(trees[index], moved, boxes, drive.first());
+      const UpkeepReport report = maintainers[index].update(trees[index], moved, boxes);
       if (policies[index] == TreePolicy::adaptive) {
         tally.rebuilt += report.subtrees_rebuilt;
         tally.roots += report.root_rebuilt ? 1U : 0U;
@@ -291,7 +291,7 @@ TEST_CASE("tiny boxes: surfaces below the smallest number, ratios beyond the lar
     BvhMaintainer<double> maintainer;
     for (int frame = 0; frame < 40; ++frame) {
       draw();
-      const UpkeepReport report = maintainer.update(tree, all, boxes, first);
+      const UpkeepReport report = maintainer.update(tree, all, boxes);
       oracle.refit_all(boxes);
       CHECK(std::isfinite(report.sah_cost));
       CHECK(tree.validate(boxes) == "");

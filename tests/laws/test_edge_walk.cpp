@@ -213,11 +213,9 @@ TEST_CASE("closer and closer to a boundary the two sides come together, in every
   }
 }
 
-TEST_CASE("exactly on a boundary the field is that of its neighbours, but for positions that rounding decides twice") {
+TEST_CASE("exactly on a boundary the field is that of its neighbours") {
   // Round positions meet boundaries exactly; turned, they miss them by a rounding to either side. Whether the direct
-  // path is there and on which side the diffracted one stands are two decisions, each right to rounding: at a position
-  // within 1e-15 of a boundary they may differ, and then the field is that of the one side with the sign of the other.
-  // docs/physics.md names this limit; 1e-7 m beside the boundary nothing of it is left (the cases above).
+  // path is there and on which side the diffracted one stands must then be one decision.
   Dice dice(71);
   std::vector<Mat3> turns{Mat3(1.0)};
   for (int index = 0; index < 5; ++index) turns.push_back(rotation_about(dice.direction(), dice.between(-pi, pi)));
@@ -251,7 +249,7 @@ TEST_CASE("exactly on a boundary the field is that of its neighbours, but for po
   }
   MESSAGE(off << " of " << checked << " fields on a boundary are not those beside it, " << off_upright
               << " of them at round positions");
-  CHECK(off_upright <= checked / 6 / 20);  // one in twenty of the round positions
+  CHECK(off == 0);
 }
 
 TEST_CASE("a corner of panes behind another pane: what paths may not cross is not missing at the edge") {

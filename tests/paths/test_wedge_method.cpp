@@ -124,6 +124,18 @@ double largest_keller_defect(const Vec3& from_m, const std::vector<EdgeLine>& ed
   return largest;
 }
 
+double shortest_leg_m(const Vec3& from_m, const std::vector<EdgeLine>& edges, const Vec3& to_m,
+                      const EdgePlaces& places_m) {
+  double shortest_m = std::numeric_limits<double>::infinity();
+  Vec3 before_m = from_m;
+  for (std::size_t index = 0; index < edges.size(); ++index) {
+    const Vec3 here_m = edges[index].at(places_m[index]);
+    shortest_m = std::min(shortest_m, glm::distance(before_m, here_m));
+    before_m = here_m;
+  }
+  return std::min(shortest_m, glm::distance(before_m, to_m));
+}
+
 EdgeLine edge_between(const Vec3& start_m, const Vec3& end_m) {
   return {start_m, glm::normalize(end_m - start_m), glm::distance(start_m, end_m)};
 }
@@ -205,7 +217,8 @@ TEST_CASE("two and three skew edges: Keller's law at every place, and the least 
 }
 
 TEST_CASE("two and three edges far from the origin, as in a scene in map coordinates, keep their places") {
-  // Positions of 1e6 m are rounded to 1e-10 m, so a law of diffraction holds to that over the legs.
+  // Both ends of a leg are rounded to half a unit in the last place of their coordinates, 2^-53 of them, in three axes;
+  // a direction, and so the law, is known to that over the leg.
   Draw draw(17);
   for (const double offset_m : {1e3, 1e4, 1e6}) {
     const Vec3 offset = offset_m * Vec3(0.6, 5.4, 0.0);
@@ -222,7 +235,11 @@ TEST_CASE("two and three edges far from the origin, as in a scene in map coordin
       EdgePlaces places_m{};
       const bool there = diffraction_places(from_m, edges, to_m, places_m);
       CHECK(there);
-      if (there) CHECK(largest_keller_defect(from_m, edges, to_m, places_m) < 1e-9 + 2e-14 * offset_m);
+      if (!there) continue;
+      const double rounding_m = 2.0 * std::sqrt(3.0) * 0x1p-53 * glm::length(offset);
+      // Twice, for the legs on both sides of an edge.
+      const double bound = 1e-9 + 2.0 * rounding_m / shortest_leg_m(from_m, edges, to_m, places_m);
+      CHECK(largest_keller_defect(from_m, edges, to_m, places_m) < bound);
     }
   }
 }
@@ -339,22 +356,23 @@ TEST_CASE("an edge whose middle lies on the line of its neighbour has its place 
   const EdgeLine roof = edge_between(Vec3(10, 0, 10), Vec3(30, 0, 10));
   const EdgeLine corner = edge_between(Vec3(10, 0, 0), Vec3(10, 0, 20));
   Draw draw(16);
-  std::size_t expected = 0, found = 0;
+  std::size_t expected = 0;
   for (int round = 0; round < 400; ++round) {
     CAPTURE(round);
     const Vec3 from_m = draw.inside(Vec3(15, -20, 0), Vec3(45, -1, 10)),
                to_m = draw.inside(Vec3(-10, 1, 12), Vec3(9, 20, 40));
     const std::vector<EdgeLine> edges{roof, corner}, reversed{corner, roof};
     const std::vector<Real> least = golden_places(from_m, edges, to_m);
+    // The other minimiser may creep to a halt on its way into the corner where both edges meet; then that is the least.
+    const Real over_corner = length_of(from_m, edges, to_m, std::vector<Real>{0.0L, 10.0L});
+    if (length_of(from_m, edges, to_m, least) > over_corner) continue;
     const bool inside = least[0] > 0.01L && least[0] < 19.99L && least[1] > 0.01L && least[1] < 19.99L &&
                         std::abs(least[1] - 10) > 0.01L;
     if (!inside) continue;
     ++expected;
     EdgePlaces places_m{};
-    found += diffraction_places(to_m, reversed, from_m, places_m) ? 1U : 0U;
-    found += diffraction_places(from_m, edges, to_m, places_m) ? 1U : 0U;
+    CHECK(diffraction_places(to_m, reversed, from_m, places_m));
+    CHECK(diffraction_places(from_m, edges, to_m, places_m));
   }
   CHECK(expected > 20);
-  // Where the two places almost meet, a descent may end in the kink beside the minimum: seldom.
-  CHECK(static_cast<double>(found) >= 0.98 * 2.0 * static_cast<double>(expected));
 }
