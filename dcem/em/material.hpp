@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dcem/core/units.hpp"
+#include "dcem/em/effective_roughness.hpp"
 #include "dcem/em/itu_p2040.hpp"
 
 namespace dcem {
@@ -57,7 +58,15 @@ struct Multilayer {
   friend bool operator==(const Multilayer&, const Multilayer&) = default;
 };
 
-using MaterialModel = std::variant<PerfectConductor, ConstantReflection, Dielectric, ItuMaterial, Multilayer>;
+/// Leaves and twigs: no surface that reflects, but a loss for every metre inside. A closed shell of it is a tree or a
+/// hedge; paths go straight through, and what they lose is counted on their length inside.
+struct Foliage {
+  std::optional<double> attenuation_db_per_m{};  ///< ≥ 0; absent: by frequency (em/foliage.hpp)
+
+  friend bool operator==(const Foliage&, const Foliage&) = default;
+};
+
+using MaterialModel = std::variant<PerfectConductor, ConstantReflection, Dielectric, ItuMaterial, Multilayer, Foliage>;
 
 struct Material {
   std::string name;
@@ -65,6 +74,8 @@ struct Material {
   /// Standard deviation of the surface height, ≥ 0; 0: smooth. It reduces what is reflected (em/roughness.hpp, Ament),
   /// with every model; what passes is not changed.
   double roughness_rms_m = 0.0;
+  /// Diffuse scattering; the mirror keeps √(1 − S²). Not together with a roughness: both would take the same power.
+  Scattering scattering{};
 
   friend bool operator==(const Material&, const Material&) = default;
 };
@@ -87,6 +98,10 @@ inline bool model_transmits(const Multilayer& model) {
   return std::all_of(model.layers.begin(), model.layers.end(), [](const MaterialLayer& layer) {
     return std::visit([](const auto& medium) { return model_transmits(medium); }, layer);
   });
+}
+
+inline bool model_transmits(const Foliage&) {
+  return true;
 }
 
 /// Collects the wording of errors: "material 'wall': …".
@@ -133,6 +148,20 @@ class MaterialCheck {
     }
   }
 
+  void operator()(const Foliage& model) const {
+    if (!model.attenuation_db_per_m) return;
+    require(std::isfinite(*model.attenuation_db_per_m) && *model.attenuation_db_per_m >= 0.0,
+            "loss per metre of foliage must be finite and not negative");
+  }
+
+  void operator()(const Scattering& scattering) const {
+    try {
+      dcem::validate(scattering);
+    } catch (const std::invalid_argument& error) {
+      require(false, error.what());
+    }
+  }
+
  private:
   void require_thickness(const std::optional<double>& thickness_m) const {
     if (thickness_m)
@@ -152,6 +181,15 @@ inline bool transmits(const Material& material) {
   return std::visit([](const auto& model) { return detail::model_transmits(model); }, material.model);
 }
 
+inline bool is_foliage(const Material& material) {
+  return std::holds_alternative<Foliage>(material.model);
+}
+
+/// Whether a surface of this material scatters at all.
+inline bool scatters(const Material& material) {
+  return material.scattering.coefficient > 0.0 && !is_foliage(material);
+}
+
 /// Names of the ITU materials that a material is made of, each once: one for an ITU material, those of the layers of a
 /// multilayer, none for the other models. Their tables limit the frequencies at which it may be used.
 inline std::vector<std::string> itu_names(const Material& material) {
@@ -168,12 +206,16 @@ inline std::vector<std::string> itu_names(const Material& material) {
 
 /// Throws std::invalid_argument, naming the material, when a number is not finite or out of range: amplitude outside
 /// 0…1, loss < 0, ε' < 1, σ < 0, thickness ≤ 0, ρ² + 10^(−loss/10) > 1, roughness < 0, a name that no table of the ITU
-/// holds, no layer at all or one without a thickness.
+/// holds, no layer at all or one without a thickness, a scattering that validate() refuses, scattering and roughness
+/// both.
 inline void validate(const Material& material) {
   const detail::MaterialCheck check(material.name);
   std::visit(check, material.model);
   check.require(std::isfinite(material.roughness_rms_m) && material.roughness_rms_m >= 0.0,
                 "roughness must be finite and not negative");
+  check(material.scattering);
+  check.require(material.roughness_rms_m == 0.0 || material.scattering.coefficient == 0.0,
+                "roughness and scattering both reduce the mirror; give one of them");
 }
 
 }  // namespace dcem

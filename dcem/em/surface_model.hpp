@@ -28,6 +28,14 @@ concept SurfaceModel = requires(const Model& model, MaterialId material, double 
   { model.response(material, cos_incidence) } -> std::same_as<SurfaceResponse>;
 };
 
+/// A surface model that scatters, too. Its response() holds the mirror's share, √(1 − S²)·Γ; Γ itself is asked for by
+/// smooth_reflection(). A model without these two functions has no diffuse power.
+template <typename Model>
+concept ScatteringModel = SurfaceModel<Model> && requires(const Model& model, MaterialId material, double cos) {
+  { model.smooth_reflection(material, cos) } -> std::convertible_to<PolarizedCoefficients>;
+  { model.scattering(material) } -> std::convertible_to<Scattering>;
+};
+
 /// The built-in surface model: materials resolved once for one frequency.
 class MaterialTable {
  public:
@@ -35,9 +43,13 @@ class MaterialTable {
   /// refuses, for a frequency outside an ITU table (unless `itu` allows it) and for |η| > 1e300 there.
   MaterialTable(std::vector<Material> materials, double frequency_hz, const ItuSettings& itu = {});
 
-  /// Coefficients of a material, the reflection with the reduction for its roughness; `cos_incidence` is clamped to
-  /// 0…1. Never NaN.
+  /// Coefficients of a material, the reflection with the reduction for its roughness or its diffuse scattering;
+  /// `cos_incidence` is clamped to 0…1. Never NaN.
   SurfaceResponse response(MaterialId material, double cos_incidence) const;
+  /// The reflection of the same surface if it were smooth.
+  PolarizedCoefficients smooth_reflection(MaterialId material, double cos_incidence) const;
+  /// How the surface scatters.
+  const Scattering& scattering(MaterialId id) const { return material(id).scattering; }
 
   const Material& material(MaterialId id) const;
   std::size_t size() const { return materials_.size(); }
@@ -69,10 +81,19 @@ class MaterialTable {
   PreparedSurface prepare(const Dielectric& model) const;
   PreparedSurface prepare(const ItuMaterial& model) const;
   PreparedSurface prepare(const Multilayer& model) const;
+  PreparedSurface prepare(const Foliage&) const { return SurfaceResponse{{}, {1.0, 1.0}}; }
   void prepare_all();
   bool extrapolates(const Material& material) const;
   double phase_spread_at_normal_rad(const Material& material) const;
   static bool representable(const PreparedSurface& surface);
+
+  /// What the roughness or the scattering of a material leaves of its mirror.
+  double specular_factor(MaterialId material, double cos_incidence) const;
+  SurfaceResponse smooth_response(MaterialId material, double cos_incidence) const {
+    DCEM_ASSERT(material.value < surfaces_.size());
+    return std::visit([cos_incidence](const auto& surface) { return respond(surface, cos_incidence); },
+                      surfaces_[material.value]);
+  }
 
   static SurfaceResponse respond(const SurfaceResponse& constant, double) { return constant; }
   static SurfaceResponse respond(const HalfSpace& half_space, double cos_incidence) {
@@ -176,15 +197,22 @@ inline SurfaceResponse MaterialTable::respond(const Stack& stack, double cos_inc
 }
 
 inline SurfaceResponse MaterialTable::response(MaterialId material, double cos_incidence) const {
-  DCEM_ASSERT(material.value < surfaces_.size());
-  SurfaceResponse response = std::visit(
-      [cos_incidence](const auto& surface) { return respond(surface, cos_incidence); }, surfaces_[material.value]);
-  const double spread_at_normal_rad = phase_spreads_at_normal_rad_[material.value];
-  if (spread_at_normal_rad == 0.0) return response;
-  const double factor = ament_factor(spread_at_normal_rad * std::clamp(cos_incidence, 0.0, 1.0));
+  SurfaceResponse response = smooth_response(material, cos_incidence);
+  const double factor = specular_factor(material, cos_incidence);
+  if (factor == 1.0) return response;
   response.reflection.te *= factor;
   response.reflection.tm *= factor;
   return response;
+}
+
+inline PolarizedCoefficients MaterialTable::smooth_reflection(MaterialId material, double cos_incidence) const {
+  return smooth_response(material, cos_incidence).reflection;
+}
+
+inline double MaterialTable::specular_factor(MaterialId material, double cos_incidence) const {
+  const double spread_at_normal_rad = phase_spreads_at_normal_rad_[material.value];
+  if (spread_at_normal_rad == 0.0) return specular_share(materials_[material.value].scattering);
+  return ament_factor(spread_at_normal_rad * std::clamp(cos_incidence, 0.0, 1.0));
 }
 
 inline const Material& MaterialTable::material(MaterialId id) const {
@@ -199,6 +227,6 @@ inline std::optional<Complex> MaterialTable::permittivity(MaterialId id) const {
   return std::nullopt;
 }
 
-static_assert(SurfaceModel<MaterialTable>);
+static_assert(SurfaceModel<MaterialTable> && ScatteringModel<MaterialTable>);
 
 }  // namespace dcem
