@@ -10,6 +10,7 @@
 
 #include "dcem/channel/diffraction_chain.hpp"
 #include "dcem/channel/field_carrier.hpp"
+#include "dcem/channel/medium_loss.hpp"
 #include "dcem/channel/path_contribution.hpp"
 #include "dcem/core/constants.hpp"
 #include "dcem/em/antenna.hpp"
@@ -38,12 +39,13 @@ template <SurfaceModel Surface = MaterialTable, PathLossModel Loss = AnyPathLoss
 class FieldEvaluator {
  public:
   FieldEvaluator(const Scene& scene, const Surface& surface, Loss loss, double frequency_hz,
-                 const DiffractionModel& diffraction = {})
+                 const DiffractionModel& diffraction = {}, MediumLoss medium = {})
       : scene_(scene),
         surface_(surface),
         loss_(std::move(loss)),
         frequency_hz_(frequency_hz),
-        diffraction_(diffraction) {}
+        diffraction_(diffraction),
+        medium_(std::move(medium)) {}
 
   /// The field of a path between two ends.
   PathContribution evaluate(Path path, const RadioEnd& transmitter, const RadioEnd& receiver) const;
@@ -69,6 +71,7 @@ class FieldEvaluator {
   Loss loss_;
   double frequency_hz_;
   DiffractionModel diffraction_;
+  MediumLoss medium_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -168,12 +171,13 @@ PathContribution FieldEvaluator<Surface, Loss>::evaluate(Path path, const RadioE
                                                          const RadioEnd& receiver) const {
   const std::vector<Vec3> legs = directions(path, transmitter.position_m, receiver.position_m);
   PathContribution contribution;
-  contribution.transfer = transfer(path, legs, transmitter.position_m, receiver.position_m);
+  contribution.departure = detail::direction_of(legs.front());
+  contribution.arrival = detail::direction_of(-legs.back());
+  contribution.transfer = medium_.damped(transfer(path, legs, transmitter.position_m, receiver.position_m), path,
+                                         contribution.departure, contribution.arrival);
   detail::apply_antennas(contribution, transmitter.antenna, legs.front(), receiver.antenna, -legs.back());
   contribution.delay_s = path.length_m / speed_of_light_mps;
   contribution.doppler_hz = doppler_hz(path, legs, transmitter, receiver);
-  contribution.departure = detail::direction_of(legs.front());
-  contribution.arrival = detail::direction_of(-legs.back());
   contribution.path = std::move(path);
   return contribution;
 }

@@ -5,22 +5,26 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "dcem/channel/diffuse_contribution.hpp"
 #include "dcem/channel/path_contribution.hpp"
+#include "dcem/channel/power_sample.hpp"
 #include "dcem/core/units.hpp"
 
 namespace dcem {
 
 /// Powers are dBm; a value that is not defined (no path, no line of sight, …) is absent.
 struct LinkStatistics {
-  bool line_of_sight = false;  ///< the direct segment crosses nothing
-  std::size_t path_count = 0;
-  std::optional<double> power_dbm;              ///< coherent: |Σh|²
-  std::optional<double> power_incoherent_dbm;   ///< Σ|h|²
+  bool line_of_sight = false;                   ///< the direct segment crosses nothing
+  std::size_t path_count = 0;                   ///< of specular paths
+  std::optional<double> power_dbm;              ///< |Σh|² of the specular paths, and the diffuse power
+  std::optional<double> power_incoherent_dbm;   ///< Σ|h|², and the diffuse power
   std::optional<double> power_los_dbm;          ///< incoherent, the direct path
   std::optional<double> power_reflected_dbm;    ///< incoherent, paths with a reflection
   std::optional<double> power_transmitted_dbm;  ///< incoherent, paths that only cross sheets
   std::optional<double> power_diffracted_dbm;   ///< incoherent, paths with a diffraction
+  std::optional<double> power_diffuse_dbm;      ///< of rough surfaces
   std::optional<double> path_gain_db;           ///< coherent power over transmitted power
   std::optional<double> first_delay_s;
   std::optional<double> mean_delay_s;        ///< Σ P τ / Σ P
@@ -28,15 +32,27 @@ struct LinkStatistics {
   std::optional<double> k_factor_db;         ///< line of sight over everything else; absent without either
   std::optional<double> azimuth_spread_arrival_rad;
   std::optional<double> azimuth_spread_departure_rad;
+  std::optional<double> zenith_spread_arrival_rad;
+  std::optional<double> zenith_spread_departure_rad;
   std::optional<double> mean_doppler_hz;        ///< Σ P f / Σ P
   std::optional<double> rms_doppler_spread_hz;  ///< √(Σ P (f − mean)² / Σ P)
 };
 
-/// Statistics of the paths of one link. `power_dbm` is that of the transmitter; `line_of_sight` says whether the direct
-/// segment is free (it may be, while the direct path is not among the paths).
-LinkStatistics link_statistics(std::span<const PathContribution> paths, double power_dbm, bool line_of_sight);
+/// Statistics of one link. `power_dbm` is that of the transmitter; `line_of_sight` says whether the direct segment is
+/// free (it may be, while the direct path is not among the paths). Delays, angles and Doppler count diffuse power, too.
+LinkStatistics link_statistics(std::span<const PathContribution> paths, double power_dbm, bool line_of_sight,
+                               const DiffusePower& diffuse = {});
 
 // ---------------------------------------------------------------------------------------------------------------------
+
+/// All that brings power: paths, then tiles.
+inline std::vector<PowerSample> power_samples(std::span<const PathContribution> paths, const DiffusePower& diffuse) {
+  std::vector<PowerSample> samples;
+  samples.reserve(paths.size() + diffuse.tiles.size());
+  for (const PathContribution& path : paths) samples.push_back(power_sample(path));
+  for (const DiffuseContribution& tile : diffuse.tiles) samples.push_back(tile.sample);
+  return samples;
+}
 
 namespace detail {
 
@@ -44,95 +60,78 @@ inline std::optional<double> ratio_to_dbm(double power_ratio, double power_dbm) 
   return power_ratio > 0.0 ? std::optional(power_dbm + power_ratio_to_db(power_ratio)) : std::nullopt;
 }
 
-/// |Σh|², over all ports.
-inline double coherent_power_ratio(std::span<const PathContribution> paths) {
+/// |Σh|² over all ports. Tiles with a phase of their own take part; other diffuse power is added.
+inline double coherent_power_ratio(std::span<const PathContribution> paths, const DiffusePower& diffuse) {
   ComplexMatrix2 sum;
   for (const PathContribution& path : paths) sum = sum + path.ports;
-  return paths.empty() ? 0.0 : norm_squared(sum) / paths.front().transmit_ports;
+  const bool is_single = paths.empty() || paths.front().has_amplitude;
+  double power = 0.0;
+  for (const DiffuseContribution& tile : diffuse.tiles) {
+    const bool has_phase = is_single && tile.amplitude != Complex{};
+    has_phase ? void(sum(0, 0) += tile.amplitude) : void(power += tile.sample.power_ratio);
+  }
+  const int transmit_ports = paths.empty() ? 1 : paths.front().transmit_ports;
+  return norm_squared(sum) / transmit_ports + power;
 }
 
-/// Power-weighted moments of a quantity of the paths.
-template <typename Quantity>
-double weighted_mean(std::span<const PathContribution> paths, double total, Quantity&& quantity) {
-  double sum = 0.0;
-  for (const PathContribution& path : paths) sum += path.power_ratio * quantity(path);
-  return sum / total;
-}
-
-template <typename Quantity>
-double weighted_deviation(std::span<const PathContribution> paths, double total, double mean, Quantity&& quantity) {
-  const auto squared = [&](const PathContribution& path) {
-    const double difference = quantity(path) - mean;
-    return difference * difference;
-  };
-  return std::sqrt(weighted_mean(paths, total, squared));
-}
-
-/// Circular spread √(−2 ln|Σ P e^{ja}/Σ P|). Source: 3GPP TR 38.901, Annex A.
-template <typename Angle>
-double circular_spread_rad(std::span<const PathContribution> paths, double total, Angle&& angle) {
-  const double c = weighted_mean(paths, total, [&](const PathContribution& path) { return std::cos(angle(path)); });
-  const double s = weighted_mean(paths, total, [&](const PathContribution& path) { return std::sin(angle(path)); });
-  const double length = std::clamp(std::hypot(c, s), 1e-300, 1.0);
-  return std::sqrt(std::max(0.0, -2.0 * std::log(length)));
-}
-
-inline void add_powers(LinkStatistics& statistics, std::span<const PathContribution> paths, double power_dbm) {
+/// The kind of a path decides which share it belongs to.
+struct PowerShares {
   double los = 0.0, reflected = 0.0, transmitted = 0.0, diffracted = 0.0;
-  for (const PathContribution& path : paths) {
+
+  void add(const PathContribution& path) {
+    const std::vector<Interaction>& interactions = path.path.interactions;
     const auto has = [&](InteractionKind kind) {
-      return std::any_of(path.path.interactions.begin(), path.path.interactions.end(),
-                         [&](const Interaction& interaction) { return interaction.kind == kind; });
+      return std::any_of(interactions.begin(), interactions.end(),
+                         [&](const Interaction& at) { return at.kind == kind; });
     };
-    (path.path.interactions.empty()      ? los
+    (interactions.empty()                ? los
      : has(InteractionKind::diffraction) ? diffracted
      : has(InteractionKind::reflection)  ? reflected
                                          : transmitted) += path.power_ratio;
   }
-  const double rest = reflected + transmitted + diffracted;
-  const double total = los + rest;
-  statistics.power_incoherent_dbm = ratio_to_dbm(total, power_dbm);
-  statistics.power_los_dbm = ratio_to_dbm(los, power_dbm);
-  statistics.power_reflected_dbm = ratio_to_dbm(reflected, power_dbm);
-  statistics.power_transmitted_dbm = ratio_to_dbm(transmitted, power_dbm);
-  if (los > 0.0 && rest > 0.0) statistics.k_factor_db = power_ratio_to_db(los / rest);
-  statistics.power_diffracted_dbm = ratio_to_dbm(diffracted, power_dbm);
-  const double coherent = coherent_power_ratio(paths);
+};
+
+inline void add_powers(LinkStatistics& statistics, std::span<const PathContribution> paths, const DiffusePower& diffuse,
+                       double power_dbm) {
+  PowerShares shares;
+  for (const PathContribution& path : paths) shares.add(path);
+  const double rest = shares.reflected + shares.transmitted + shares.diffracted + diffuse.power_ratio;
+  statistics.power_incoherent_dbm = ratio_to_dbm(shares.los + rest, power_dbm);
+  statistics.power_los_dbm = ratio_to_dbm(shares.los, power_dbm);
+  statistics.power_reflected_dbm = ratio_to_dbm(shares.reflected, power_dbm);
+  statistics.power_transmitted_dbm = ratio_to_dbm(shares.transmitted, power_dbm);
+  statistics.power_diffracted_dbm = ratio_to_dbm(shares.diffracted, power_dbm);
+  statistics.power_diffuse_dbm = ratio_to_dbm(diffuse.power_ratio, power_dbm);
+  if (shares.los > 0.0 && rest > 0.0) statistics.k_factor_db = power_ratio_to_db(shares.los / rest);
+  const double coherent = coherent_power_ratio(paths, diffuse);
   statistics.power_dbm = ratio_to_dbm(coherent, power_dbm);
   if (coherent > 0.0) statistics.path_gain_db = power_ratio_to_db(coherent);
 }
 
-inline void add_moments(LinkStatistics& statistics, std::span<const PathContribution> paths) {
-  double total = 0.0, first_s = paths.front().delay_s;
-  for (const PathContribution& path : paths) {
-    total += path.power_ratio;
-    first_s = std::min(first_s, path.delay_s);
-  }
-  statistics.first_delay_s = first_s;
-  if (!(total > 0.0)) return;
-  const auto excess_s = [&](const PathContribution& path) { return path.delay_s - first_s; };
-  const auto doppler = [](const PathContribution& path) { return path.doppler_hz; };
-  const double mean_excess_s = weighted_mean(paths, total, excess_s);
-  const double mean_doppler_hz = weighted_mean(paths, total, doppler);
-  statistics.mean_delay_s = first_s + mean_excess_s;
-  statistics.rms_delay_spread_s = weighted_deviation(paths, total, mean_excess_s, excess_s);
-  statistics.mean_doppler_hz = mean_doppler_hz;
-  statistics.rms_doppler_spread_hz = weighted_deviation(paths, total, mean_doppler_hz, doppler);
-  statistics.azimuth_spread_arrival_rad =
-      circular_spread_rad(paths, total, [](const PathContribution& path) { return path.arrival.azimuth_rad; });
-  statistics.azimuth_spread_departure_rad =
-      circular_spread_rad(paths, total, [](const PathContribution& path) { return path.departure.azimuth_rad; });
+inline void add_moments(LinkStatistics& statistics, std::span<const PowerSample> samples) {
+  statistics.first_delay_s = first_delay_s(samples);
+  const std::optional<PowerMoments> moments = power_moments(samples);
+  if (!moments) return;
+  statistics.mean_delay_s = moments->mean_delay_s;
+  statistics.rms_delay_spread_s = moments->rms_delay_spread_s;
+  statistics.mean_doppler_hz = moments->mean_doppler_hz;
+  statistics.rms_doppler_spread_hz = moments->rms_doppler_spread_hz;
+  statistics.azimuth_spread_arrival_rad = moments->azimuth_spread_arrival_rad;
+  statistics.azimuth_spread_departure_rad = moments->azimuth_spread_departure_rad;
+  statistics.zenith_spread_arrival_rad = moments->zenith_spread_arrival_rad;
+  statistics.zenith_spread_departure_rad = moments->zenith_spread_departure_rad;
 }
 
 }  // namespace detail
 
-inline LinkStatistics link_statistics(std::span<const PathContribution> paths, double power_dbm, bool line_of_sight) {
+inline LinkStatistics link_statistics(std::span<const PathContribution> paths, double power_dbm, bool line_of_sight,
+                                      const DiffusePower& diffuse) {
   LinkStatistics statistics;
   statistics.line_of_sight = line_of_sight;
   statistics.path_count = paths.size();
-  if (paths.empty()) return statistics;
-  detail::add_powers(statistics, paths, power_dbm);
-  detail::add_moments(statistics, paths);
+  if (paths.empty() && diffuse.tiles.empty()) return statistics;
+  detail::add_powers(statistics, paths, diffuse, power_dbm);
+  detail::add_moments(statistics, power_samples(paths, diffuse));
   return statistics;
 }
 

@@ -10,7 +10,7 @@
 
 namespace dcem {
 
-enum class InteractionKind : char { reflection = 'R', transmission = 'T', diffraction = 'D' };
+enum class InteractionKind : char { reflection = 'R', transmission = 'T', diffraction = 'D', scattering = 'S' };
 
 /// This close to a shadow boundary, in azimuth about the edge, rounding would decide whether a wedge hides its two
 /// sides from each other; there `Interaction::in_shadow` says it, for the field as well.
@@ -25,10 +25,17 @@ struct Interaction {
   bool in_shadow = false;  ///< of a diffraction: the wedge itself hides one neighbour from the other
 };
 
+/// What a path runs through of one kind of foliage.
+struct FoliageLength {
+  MaterialId material;
+  double length_m = 0.0;
+};
+
 /// A path from a transmitter to a receiver, solved for the current frame.
 struct Path {
   std::vector<Interaction> interactions;  ///< in order from the transmitter to the receiver; empty: line of sight
   double length_m = 0.0;                  ///< sum of the legs
+  std::vector<FoliageLength> foliage{};   ///< by material; empty where the path crosses none
 };
 
 /// One letter per interaction, from transmitter to receiver; empty for the line of sight.

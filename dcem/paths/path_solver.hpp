@@ -13,6 +13,7 @@
 #include "dcem/core/error.hpp"
 #include "dcem/paths/chain_points.hpp"
 #include "dcem/paths/edge_rules.hpp"
+#include "dcem/paths/foliage.hpp"
 #include "dcem/paths/image_method.hpp"
 #include "dcem/paths/link_end.hpp"
 #include "dcem/paths/path.hpp"
@@ -206,6 +207,7 @@ class PathSolver {
     }
     left -= crossings_.size();
     path.length_m += leg_length_m;
+    add_foliage_along(scene(), from_m, to_m, ignored, path.foliage);
     return true;
   }
 

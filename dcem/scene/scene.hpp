@@ -106,6 +106,8 @@ class Scene {
   std::span<const Vec3> hull_m(const WorldFacet& facet) const { return world_.hull_m(facet); }
   /// Boxes of all triangles, in the order of `triangles()`; empty for triangles of an absent body.
   std::span<const Aabb<double>> triangle_boxes() const { return world_.triangle_boxes(); }
+  /// Closed shells of foliage; empty boxes for those of an absent body.
+  std::span<const FoliageShell> foliage() const { return world_.foliage(); }
   /// The number of a facet within its body: it does not change when other bodies come or go.
   std::uint32_t facet_number(FacetId id) const { return id.value - world_.first(facet(id).body).facet; }
 
@@ -124,6 +126,7 @@ class Scene {
   void take_over(BodyId id, const BodyState& state, ChangeSet& changes);
   std::optional<BodyId> find_in(const Frame& frame, const std::string& id) const;
   std::vector<SurfaceMaterial> resolve_materials(const SurfaceMesh& mesh) const;
+  static void check_foliage_is_closed(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials);
   void check_device(const Device& device, const std::unordered_set<std::string>& ids) const;
 
   SurfaceSettings settings_;
@@ -215,9 +218,21 @@ inline std::vector<SurfaceMaterial> Scene::resolve_materials(const SurfaceMesh& 
     const std::string& name = mesh.material_names[facet.material];
     const std::optional<MaterialId> id = find_material(name);
     if (!id) throw std::invalid_argument("material '" + name + "' is used but not defined; add it first");
-    resolved[facet.material] = {*id, transmits(material(*id))};
+    const Material& surface = material(*id);
+    resolved[facet.material] = {*id, transmits(surface), scatters(surface), is_foliage(surface)};
   }
+  check_foliage_is_closed(mesh, resolved);
   return resolved;
+}
+
+/// A length inside is defined for closed shells only.
+inline void Scene::check_foliage_is_closed(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials) {
+  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+    const Facet& facet = mesh.facets[mesh.facet_of_triangle[triangle]];
+    if (!materials[facet.material].is_foliage || mesh.shell_of_triangle[triangle] != 0) continue;
+    throw std::invalid_argument("material '" + mesh.material_names[facet.material] +
+                                "' is foliage on a surface that is not closed; expected closed shells of it");
+  }
 }
 
 inline void Scene::append(Body body) {

@@ -3,6 +3,7 @@
 /// frame: a facet id or a triangle index names one thing for as long as the scene lives.
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -23,7 +24,18 @@ struct WorldFacet {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t first_hull_point = 0, hull_point_count = 0;
   bool transmits = false;  ///< a leg may cross it; an opaque facet blocks
-  bool present = true;     ///< false while its body is not there
+  bool present = true;     ///< false while its body is not there, and always for the skin of foliage
+  bool scatters = false;   ///< diffuse power comes from it
+  bool is_foliage = false;
+};
+
+/// A closed shell of foliage in the current frame: paths go through it as if it were not there, and are weakened by
+/// their length inside.
+struct FoliageShell {
+  BodyId body;
+  MaterialId material;
+  std::vector<std::uint32_t> triangles;
+  Aabb<double> box;  ///< empty while its body is not there
 };
 
 /// A diffracting edge of the world in the current frame.
@@ -38,6 +50,8 @@ struct WorldWedge {
 struct SurfaceMaterial {
   MaterialId id;
   bool transmits = false;
+  bool scatters = false;
+  bool is_foliage = false;
 };
 
 class WorldGeometry {
@@ -67,8 +81,9 @@ class WorldGeometry {
     const auto& index = triangles_[triangle];
     return {vertices_m_[index[0]], vertices_m_[index[1]], vertices_m_[index[2]]};
   }
-  /// Boxes of all triangles; empty for triangles of an absent body.
+  /// Boxes of all triangles; empty for triangles of an absent body and of foliage.
   std::span<const Aabb<double>> triangle_boxes() const { return boxes_; }
+  std::span<const FoliageShell> foliage() const { return foliage_; }
 
   /// Where a body's parts begin in the common arrays.
   struct First {
@@ -81,7 +96,9 @@ class WorldGeometry {
   void append_facets(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials, const First& first);
   void append_triangles(const SurfaceMesh& mesh, const First& first);
   void append_wedges(const SurfaceMesh& mesh, const First& first);
+  void append_foliage(const SurfaceMesh& mesh, const First& first);
   void place_boxes(const SurfaceMesh& mesh, const First& first, bool present);
+  void place_foliage(BodyId id, bool present);
 
   std::vector<First> first_;
   std::vector<WorldFacet> facets_;
@@ -93,6 +110,7 @@ class WorldGeometry {
   std::vector<FacetId> facet_of_triangle_;
   std::vector<std::uint32_t> shell_of_triangle_;
   std::vector<Aabb<double>> boxes_;
+  std::vector<FoliageShell> foliage_;  ///< by body, then shell
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -106,6 +124,7 @@ inline void WorldGeometry::append(const SurfaceMesh& mesh, std::span<const Surfa
   append_facets(mesh, materials, first_.back());
   append_triangles(mesh, first_.back());
   append_wedges(mesh, first_.back());
+  append_foliage(mesh, first_.back());
   vertices_m_.insert(vertices_m_.end(), mesh.vertices_m.begin(), mesh.vertices_m.end());
   hull_points_m_.insert(hull_points_m_.end(), mesh.hull_points_m.begin(), mesh.hull_points_m.end());
   place(id, mesh, state);
@@ -117,7 +136,7 @@ inline void WorldGeometry::append_facets(const SurfaceMesh& mesh, std::span<cons
   for (const Facet& local : mesh.facets) {
     const SurfaceMaterial& material = materials[local.material];
     facets_.push_back({local.plane, material.id, body, first.triangle + local.first_triangle, local.triangle_count,
-                       first.hull_point + local.first_hull_point, local.hull_point_count, material.transmits, true});
+                       first.hull_point + local.first_hull_point, local.hull_point_count, material.transmits, !material.is_foliage, material.scatters, material.is_foliage});
   }
 }
 
@@ -147,6 +166,19 @@ inline void WorldGeometry::append_wedges(const SurfaceMesh& mesh, const First& f
   }
 }
 
+inline void WorldGeometry::append_foliage(const SurfaceMesh& mesh, const First& first) {
+  std::map<std::uint32_t, FoliageShell> shells;
+  for (std::uint32_t index = 0; index < mesh.triangles.size(); ++index) {
+    const WorldFacet& facet = facets_[first.facet + mesh.facet_of_triangle[index]];
+    if (!facet.is_foliage) continue;
+    FoliageShell& shell = shells[mesh.shell_of_triangle[index]];
+    shell.body = facet.body;
+    shell.material = facet.material;
+    shell.triangles.push_back(first.triangle + index);
+  }
+  for (auto& [number, shell] : shells) foliage_.push_back(std::move(shell));
+}
+
 inline void WorldGeometry::place(BodyId id, const SurfaceMesh& mesh, const BodyState& state) {
   const First& first = first_[id.value];
   const Mat3 rotation = rotation_matrix(state.placement.pose);
@@ -162,7 +194,7 @@ inline void WorldGeometry::place(BodyId id, const SurfaceMesh& mesh, const BodyS
     WorldFacet& facet = facets_[first.facet + index];
     const Plane& local = mesh.facets[index].plane;
     if (!stands) facet.plane = {to_world(local.point_m), rotation * local.normal};
-    facet.present = state.present;
+    facet.present = state.present && !facet.is_foliage;
   }
   for (std::size_t index = 0; index < mesh.wedges.size(); ++index) {
     WorldWedge& wedge = wedges_[first.wedge + index];
@@ -173,19 +205,32 @@ inline void WorldGeometry::place(BodyId id, const SurfaceMesh& mesh, const BodyS
       wedge.edge.tangent = rotation * local.tangent;
       wedge.edge.normal = rotation * local.normal;
     }
-    wedge.present = state.present;
+    const bool solid = !facets_[wedge.facets[0].value].is_foliage && !facets_[wedge.facets[1].value].is_foliage;
+    wedge.present = state.present && solid;
   }
   place_boxes(mesh, first, state.present);
+  place_foliage(id, state.present);
 }
 
 inline void WorldGeometry::place_boxes(const SurfaceMesh& mesh, const First& first, bool present) {
   for (std::size_t index = 0; index < mesh.triangles.size(); ++index) {
     const auto triangle = static_cast<std::uint32_t>(first.triangle + index);
     Aabb<double> box;
-    if (present) {
+    if (present && !facets_[facet_of_triangle_[triangle].value].is_foliage) {
       for (const Vec3& corner : corners_m(triangle)) box.extend(corner);
     }
     boxes_[triangle] = box;
+  }
+}
+
+inline void WorldGeometry::place_foliage(BodyId id, bool present) {
+  for (FoliageShell& shell : foliage_) {
+    if (shell.body != id) continue;
+    shell.box = {};
+    for (const std::uint32_t triangle : shell.triangles) {
+      if (!present) break;
+      for (const Vec3& corner : corners_m(triangle)) shell.box.extend(corner);
+    }
   }
 }
 

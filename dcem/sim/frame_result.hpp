@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dcem/accel/maintainer.hpp"
+#include "dcem/channel/diffuse_contribution.hpp"
 #include "dcem/channel/link_statistics.hpp"
 #include "dcem/channel/path_contribution.hpp"
 #include "dcem/paths/path_cache.hpp"
@@ -16,7 +17,8 @@ struct LinkResult {
   std::size_t transmitter = 0;          ///< index into the scene's transmitters
   std::size_t receiver = 0;             ///< index into the receivers that were solved
   bool complete = false;                ///< every valid path within the declared orders is there
-  std::vector<PathContribution> paths;  ///< by delay, then kinds, then points
+  std::vector<PathContribution> paths;  ///< specular, by delay, then kinds, then points
+  DiffusePower diffuse;                 ///< of rough surfaces; empty where it is not asked for
   LinkStatistics statistics;
 };
 
@@ -27,6 +29,8 @@ struct WorkCounters {
   std::uint64_t sequences_proposed = 0;  ///< distinct sequences of facets, over all receivers
   std::uint64_t sequences_solved = 0;    ///< (sequence, transmitter) pairs handed to the image method
   std::uint64_t paths = 0;
+  std::uint64_t diffuse_tiles = 0;             ///< points of rough surfaces that were looked at
+  std::uint64_t diffuse_links_unfinished = 0;  ///< links whose diffuse power has not converged within its budget
   std::uint64_t nodes_visited = 0;
   std::uint64_t primitives_tested = 0;
 
@@ -36,6 +40,8 @@ struct WorkCounters {
     sequences_proposed += other.sequences_proposed;
     sequences_solved += other.sequences_solved;
     paths += other.paths;
+    diffuse_tiles += other.diffuse_tiles;
+    diffuse_links_unfinished += other.diffuse_links_unfinished;
     nodes_visited += other.nodes_visited;
     primitives_tested += other.primitives_tested;
     return *this;

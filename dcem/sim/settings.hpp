@@ -11,6 +11,8 @@
 
 #include "dcem/accel/maintainer.hpp"
 #include "dcem/channel/diffraction_chain.hpp"
+#include "dcem/channel/diffuse_settings.hpp"
+#include "dcem/em/atmosphere.hpp"
 #include "dcem/em/itu_p2040.hpp"
 #include "dcem/em/path_loss.hpp"
 
@@ -60,6 +62,8 @@ struct PropagationSettings {
   std::uint64_t seed = 1;                    ///< turns the sphere of rays, with receiver id and frame number
   std::optional<double> min_path_gain_db;    ///< paths weaker than this are dropped after their field is known, dB
   AnyPathLoss path_loss{};                   ///< a real factor beside free-space spreading
+  std::optional<Atmosphere> atmosphere{};    ///< gases and rain; default: none
+  DiffuseSettings diffuse{};                 ///< power that rough surfaces scatter
 };
 
 struct SimulationSettings {
@@ -111,6 +115,8 @@ inline void validate(const SimulationSettings& settings) {
   if (const auto* close_in = std::get_if<CloseIn>(&propagation.path_loss.model)) validate(*close_in);
   check(propagation.rays >= 1 && propagation.rays <= 100'000'000, "rays: expected 1 to 1e8");
   check(steady_rays(propagation) >= 1 && steady_rays(propagation) <= 100'000'000, "rays_steady: expected 1 to 1e8");
+  if (propagation.atmosphere) validate(*propagation.atmosphere);
+  validate(propagation.diffuse);
   validate(settings.upkeep);
 }
 

@@ -10,8 +10,10 @@
 
 #include "dcem/accel/bvh.hpp"
 #include "dcem/accel/maintainer.hpp"
+#include "dcem/channel/diffuse_power.hpp"
 #include "dcem/channel/field_evaluator.hpp"
 #include "dcem/channel/link_statistics.hpp"
+#include "dcem/channel/medium_loss.hpp"
 #include "dcem/channel/radio_map.hpp"
 #include "dcem/core/parallel_for.hpp"
 #include "dcem/paths/obstruction.hpp"
@@ -104,7 +106,7 @@ class Simulator {
   Evaluator evaluator() const {
     const PropagationSettings& propagation = settings_.propagation;
     return Evaluator(scene_, surface_, propagation.path_loss, settings_.frequency_hz,
-                     {propagation.diffraction.lossy_wedge, propagation.max_transmissions});
+                     {propagation.diffraction.lossy_wedge, propagation.max_transmissions}, medium_);
   }
   PathSearchSettings search_settings() const;
   std::span<const std::optional<LinkEnd>> ends_beside(const Device& receiver, const TransmitterEnds& transmitters,
@@ -112,14 +114,19 @@ class Simulator {
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
   Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                         PathCache* cache) const;
-  LinkResult make_link(LinkPaths&& found, std::size_t transmitter, const RadioEnd& from, const RadioEnd& to,
-                       const Evaluator& evaluator) const;
+  /// What rough surfaces bring to one receiver, by transmitter; empty entries where it is not asked for.
+  std::vector<DiffusePower> diffuse_powers(const std::string& receiver, const LinkEnd& end, const RadioEnd& to,
+                                           const TransmitterEnds& transmitters,
+                                           std::span<const std::optional<LinkEnd>> ends, WorkCounters& work) const;
+  LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const RadioEnd& from,
+                       const RadioEnd& to, const Evaluator& evaluator) const;
   static RadioMapPoint map_point(const LinkResult& link, const Vec3& position_m);
 
   Scene scene_;
   SimulationSettings settings_;
   Surface surface_;
   Tree tree_;
+  MediumLoss medium_;
   MaintainerOf<Tree> maintainer_;
   Discovery discovery_;
   CacheMode cache_;
@@ -138,6 +145,7 @@ Simulator<Surface, Tree>::Simulator(Scene scene, SimulationSettings settings, Su
       surface_(std::move(surface)),
       maintainer_(settings_.upkeep) {
   validate(settings_);
+  medium_ = MediumLoss(settings_.propagation.atmosphere, scene_.materials(), settings_.frequency_hz);
   discovery_ = resolve_discovery(settings_.propagation, scene_);
   cache_ = resolve_cache(settings_.propagation, discovery_);
   if (cache_ == CacheMode::seed) {

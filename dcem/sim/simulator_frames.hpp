@@ -18,6 +18,14 @@ inline void add_search_work(const SearchCounters& counters, WorkCounters& work) 
   work.primitives_tested += counters.solver.traversal.primitives_tested;
 }
 
+inline void add_diffuse_work(const DiffusePower& diffuse, WorkCounters& work) {
+  work.legs += diffuse.legs;
+  work.nodes_visited += diffuse.traversal.nodes_visited;
+  work.primitives_tested += diffuse.traversal.primitives_tested;
+  work.diffuse_tiles += diffuse.tiles_evaluated;
+  work.diffuse_links_unfinished += diffuse.converged ? 0 : 1;
+}
+
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
@@ -211,10 +219,12 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiv
       find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached);
   const Evaluator field = evaluator();
   const RadioEnd to{state.position_m, state.velocity_mps, receiver.antenna};
+  std::vector<DiffusePower> diffuse = diffuse_powers(receiver.id, end, to, transmitters, ends, solved.work);
   for (std::size_t transmitter = 0; transmitter < found.size(); ++transmitter) {
     if (!ends[transmitter]) continue;
-    LinkResult& link = solved.links.emplace_back(
-        make_link(std::move(found[transmitter]), transmitter, transmitters.radio[transmitter], to, field));
+    LinkResult& link =
+        solved.links.emplace_back(make_link(std::move(found[transmitter]), std::move(diffuse[transmitter]), transmitter,
+                                            transmitters.radio[transmitter], to, field));
     link.receiver = index;
     link.complete = search.exhaustive || (search.max_reflections == 0 && search.max_diffractions == 0);
     solved.work.paths += link.paths.size();
@@ -225,19 +235,48 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiv
 }
 
 template <SurfaceModel Surface, typename Tree>
-LinkResult Simulator<Surface, Tree>::make_link(LinkPaths&& found, std::size_t transmitter, const RadioEnd& from,
-                                               const RadioEnd& to, const Evaluator& evaluator) const {
+std::vector<DiffusePower> Simulator<Surface, Tree>::diffuse_powers(const std::string& receiver, const LinkEnd& end,
+                                                                   const RadioEnd& to,
+                                                                   const TransmitterEnds& transmitters,
+                                                                   std::span<const std::optional<LinkEnd>> ends,
+                                                                   WorkCounters& work) const {
+  std::vector<DiffusePower> powers(ends.size());
+  const PropagationSettings& propagation = settings_.propagation;
+  if (!propagation.diffuse.enabled) return powers;
+  const Tracer tracer(scene_, tree_);
+  const ScatteredPower<Surface, AnyPathLoss> scattered(scene_, surface_, propagation.path_loss, medium_,
+                                                       settings_.frequency_hz);
+  DiffuseIntegral<Tree, Surface, AnyPathLoss> integral(tracer, scattered, propagation.diffuse,
+                                                       propagation.max_transmissions);
+  for (std::size_t index = 0; index < ends.size(); ++index) {
+    if (!ends[index]) continue;
+    const DiffuseKey key{propagation.seed, scene_.transmitters()[index].id, receiver};
+    powers[index] = integral.evaluate(*ends[index], transmitters.radio[index], end, to, key);
+    detail::add_diffuse_work(powers[index], work);
+  }
+  return powers;
+}
+
+template <SurfaceModel Surface, typename Tree>
+LinkResult Simulator<Surface, Tree>::make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter,
+                                               const RadioEnd& from, const RadioEnd& to,
+                                               const Evaluator& evaluator) const {
   const PropagationSettings& propagation = settings_.propagation;
   LinkResult link;
   link.transmitter = transmitter;
+  link.diffuse = std::move(diffuse);
+  bool line_of_sight = found.line_of_sight;
   for (Path& path : found.paths) {
-    if (path.interactions.empty() && !propagation.line_of_sight) continue;
+    const bool is_direct = path.interactions.empty();
+    if (is_direct && !path.foliage.empty()) line_of_sight = false;  // the segment is not free, though nothing stops it
+    if (is_direct && !propagation.line_of_sight) continue;
     PathContribution contribution = evaluator.evaluate(std::move(path), from, to);
     const bool too_weak =
         propagation.min_path_gain_db && !(power_ratio_to_db(contribution.power_ratio) >= *propagation.min_path_gain_db);
     if (!too_weak) link.paths.push_back(std::move(contribution));
   }
-  link.statistics = link_statistics(link.paths, scene_.transmitters()[transmitter].power_dbm, found.line_of_sight);
+  const double power_dbm = scene_.transmitters()[transmitter].power_dbm;
+  link.statistics = link_statistics(link.paths, power_dbm, line_of_sight, link.diffuse);
   return link;
 }
 

@@ -105,6 +105,10 @@ inline bool same_bits(const Vec3& a, const Vec3& b) {
 
 inline bool same_bits(const Path& a, const Path& b) {
   return same_sequence(a, b) && same_bits(a.length_m, b.length_m) &&
+         std::equal(a.foliage.begin(), a.foliage.end(), b.foliage.begin(), b.foliage.end(),
+                    [](const FoliageLength& x, const FoliageLength& y) {
+                      return x.material == y.material && same_bits(x.length_m, y.length_m);
+                    }) &&
          std::equal(a.interactions.begin(), a.interactions.end(), b.interactions.begin(),
                     [](const Interaction& x, const Interaction& y) { return same_bits(x.point_m, y.point_m); });
 }

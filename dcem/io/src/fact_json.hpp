@@ -40,12 +40,30 @@ inline nlohmann::ordered_json model_json(const Multilayer& model) {
   return {{"model", "multilayer"}, {"layers", std::move(layers)}};
 }
 
+inline nlohmann::ordered_json model_json(const Foliage& model) {
+  if (model.attenuation_db_per_m) return {{"foliage_db_per_m", *model.attenuation_db_per_m}};
+  return {{"foliage_db_per_m", "auto"}};
+}
+
+inline void add_scattering(const Scattering& scattering, nlohmann::ordered_json& json) {
+  json["scattering"] = scattering.coefficient;
+  const bool back = scattering.pattern == ScatteringPattern::backscattering;
+  const bool lambertian = scattering.pattern == ScatteringPattern::lambertian;
+  json["scattering_pattern"] = lambertian ? "lambertian" : back ? "backscattering" : "directive";
+  if (lambertian) return;
+  json["scattering_lobe"] = scattering.lobe;
+  if (!back) return;
+  json["scattering_back_lobe"] = scattering.back_lobe;
+  json["scattering_forward_share"] = scattering.forward_share;
+}
+
 }  // namespace detail
 
 /// The keys of the scenario file's `materials` entry, and whether paths may cross the surface.
 inline nlohmann::ordered_json material_json(const Material& material) {
   nlohmann::ordered_json json = std::visit([](const auto& model) { return detail::model_json(model); }, material.model);
   if (material.roughness_rms_m > 0.0) json["roughness_rms_m"] = material.roughness_rms_m;
+  if (scatters(material)) detail::add_scattering(material.scattering, json);
   json["opaque"] = !transmits(material);
   return json;
 }

@@ -58,7 +58,7 @@ std::string model_text(const InspectedMaterial& entry) {
     } else if (key == "opaque") {
       text += value.get<bool>() ? ", opaque" : "";
     } else {
-      text += ", " + key + " " + (value.is_string() ? value.get<std::string>() : value.dump());
+      text += (text.empty() ? "" : ", ") + key + " " + (value.is_string() ? value.get<std::string>() : value.dump());
     }
   }
   return text;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 
@@ -13,13 +14,15 @@ namespace dcem::io {
 namespace {
 
 constexpr std::string_view prefix = "em_";
+/// What a material with a loss per metre is; no word of the files.
+constexpr const char* foliage_model = "foliage";
 constexpr const char* known_models = "pec, constant, dielectric, itu or multilayer";
 
 /// What may stand under a key. The upper limits only keep out slips of units and of the keyboard.
 struct KeyRule {
   std::string_view name;
   std::optional<NumberRange> range = {};  ///< absent: text or layers
-  bool later_version = false;
+  std::string_view word = {};             ///< a word that may stand there instead of a number
 };
 
 constexpr std::array<KeyRule, 15> rules{{
@@ -30,19 +33,23 @@ constexpr std::array<KeyRule, 15> rules{{
     {"thickness_m", NumberRange{0.0, 1e3, true}},
     {"reflection", NumberRange{0.0, 1.0}},
     {"penetration_loss_db", NumberRange{0.0, 1e3}},
-    {"scattering", {}, true},
-    {"scattering_pattern", {}, true},
-    {"scattering_lobe", {}, true},
-    {"scattering_back_lobe", {}, true},
-    {"scattering_forward_share", {}, true},
+    {"scattering", NumberRange{0.0, 1.0}},
+    {"scattering_pattern"},
+    {"scattering_lobe", NumberRange{1.0, highest_scattering_lobe}},
+    {"scattering_back_lobe", NumberRange{1.0, highest_scattering_lobe}},
+    {"scattering_forward_share", NumberRange{0.0, 1.0}},
     {"roughness_rms_m", NumberRange{0.0, 1.0}},
-    {"foliage_db_per_m", {}, true},
+    {"foliage_db_per_m", NumberRange{0.0, 1e3}, "auto"},
     {"layers"},
 }};
 
 const KeyRule* find_rule(const std::string& name) {
   const auto rule = std::find_if(rules.begin(), rules.end(), [&](const KeyRule& other) { return other.name == name; });
   return rule == rules.end() ? nullptr : &*rule;
+}
+
+std::string alternative(const KeyRule& rule) {
+  return rule.word.empty() ? std::string() : " or '" + std::string(rule.word) + "'";
 }
 
 /// Makes one material out of its keys.
@@ -53,20 +60,14 @@ class MaterialMaker {
   std::optional<Material> make() const {
     if (find("roughness_rms_m") && find("scattering"))
       find("roughness_rms_m")->fail("does not go with 'scattering'; expected one of the two");
-    for (const auto& [name, key] : keys_.keys) refuse_later(name, key);
     const std::string model = model_name();
     if (model.empty()) return std::nullopt;
-    const Material material{name_, make_model(model), number("roughness_rms_m").value_or(0.0)};
+    const Material material{name_, make_model(model), number("roughness_rms_m").value_or(0.0), make_scattering()};
     check(material);
     return material;
   }
 
  private:
-  static void refuse_later(const std::string& name, const MaterialKey& key) {
-    const KeyRule* rule = find_rule(name);
-    if (rule && rule->later_version) key.fail("not in this version; expected no such key");
-  }
-
   const MaterialKey* find(const std::string& name) const {
     const auto key = keys_.keys.find(name);
     return key == keys_.keys.end() ? nullptr : &key->second;
@@ -83,6 +84,7 @@ class MaterialMaker {
     if (find("reflection")) return "constant";
     if (find("relative_permittivity")) return "dielectric";
     if (find("layers")) return "multilayer";
+    if (find("foliage_db_per_m")) return foliage_model;
     if (itu_name_from_material_name(name_)) return "itu";
     if (!keys_.keys.empty()) fail("has keys but no model; expected a key 'model' (em_model in an MTL file)");
     return {};
@@ -94,6 +96,7 @@ class MaterialMaker {
     if (model == "dielectric") return make_dielectric();
     if (model == "itu") return make_itu();
     if (model == "multilayer") return make_multilayer();
+    if (model == foliage_model && !find("model")) return make_foliage();
     find("model")->fail("unknown model " + in_quotes(model) + "; expected " + known_models);
   }
 
@@ -125,15 +128,71 @@ class MaterialMaker {
     return {layers};
   }
 
-  /// Refuses keys that would have no effect under this model. Any surface may be rough.
+  Foliage make_foliage() const {
+    allow_only({"foliage_db_per_m"});
+    const auto* value = std::get_if<double>(&find("foliage_db_per_m")->value);
+    return value ? Foliage{*value} : Foliage{};
+  }
+
+  Scattering make_scattering() const {
+    Scattering scattering;
+    scattering.coefficient = number("scattering").value_or(0.0);
+    scattering.pattern = scattering_pattern();
+    const bool back = scattering.pattern == ScatteringPattern::backscattering;
+    const bool lobes = scattering.pattern != ScatteringPattern::lambertian;
+    require(lobes, "scattering_lobe", "goes with scattering_pattern 'directive' or 'backscattering' only");
+    require(back, "scattering_back_lobe", "goes with scattering_pattern 'backscattering' only");
+    require(back, "scattering_forward_share", "goes with scattering_pattern 'backscattering' only");
+    scattering.lobe = lobe("scattering_lobe").value_or(scattering.lobe);
+    scattering.back_lobe = lobe("scattering_back_lobe").value_or(scattering.back_lobe);
+    scattering.forward_share = number("scattering_forward_share").value_or(scattering.forward_share);
+    return scattering;
+  }
+
+  ScatteringPattern scattering_pattern() const {
+    const MaterialKey* key = find("scattering_pattern");
+    if (!key) return ScatteringPattern::lambertian;
+    if (!find("scattering")) key->fail("goes with 'scattering' only; expected that key, too");
+    const std::string& name = std::get<std::string>(key->value);
+    if (name == "directive") return ScatteringPattern::directive;
+    if (name == "backscattering") return ScatteringPattern::backscattering;
+    if (name != "lambertian") {
+      key->fail("unknown pattern " + in_quotes(name) + "; expected lambertian, directive or backscattering");
+    }
+    return ScatteringPattern::lambertian;
+  }
+
+  /// Refuses a key that is there although the condition does not hold.
+  void require(bool condition, const std::string& name, const std::string& what) const {
+    if (const MaterialKey* key = find(name); key && !condition) key->fail(what + "; expected no such key");
+  }
+
+  std::optional<int> lobe(const std::string& name) const {
+    const std::optional<double> value = number(name);
+    if (!value) return std::nullopt;
+    if (*value != std::floor(*value)) find(name)->fail("expected a whole number from 1 to 100");
+    return static_cast<int>(*value);
+  }
+
+  /// Refuses keys that would have no effect under this model. Any surface may be rough, or scatter.
   void allow(std::vector<std::string_view> names) const {
-    names.push_back("roughness_rms_m");
+    names.insert(names.end(), {"roughness_rms_m", "scattering", "scattering_pattern", "scattering_lobe",
+                               "scattering_back_lobe", "scattering_forward_share"});
+    allow_only(names);
+  }
+
+  void allow_only(const std::vector<std::string_view>& names) const {
     for (const auto& [name, key] : keys_.keys) {
       if (name == "model" || std::find(names.begin(), names.end(), name) != names.end()) continue;
       std::string expected;
       for (const std::string_view other : names) expected += (expected.empty() ? "" : ", ") + std::string(other);
-      key.fail("does not go with model '" + model_name() + "'; expected " + expected);
+      key.fail("does not go with " + model_words() + "; expected " + expected);
     }
+  }
+
+  std::string model_words() const {
+    const std::string model = model_name();
+    return model == foliage_model ? "foliage" : "model '" + model + "'";
   }
 
   std::optional<double> number(const std::string& name) const {
@@ -175,6 +234,11 @@ const std::vector<std::string>& material_key_names() {
   return names;
 }
 
+std::string_view material_word(const std::string& name) {
+  const KeyRule* rule = find_rule(name);
+  return rule ? rule->word : std::string_view();
+}
+
 const NumberRange* material_number_range(const std::string& name) {
   const KeyRule* rule = find_rule(name);
   return rule && rule->range ? &*rule->range : nullptr;
@@ -201,10 +265,10 @@ MaterialKeys keys_from_mtl(const MtlMaterial& mtl) {
       key.fail("unknown key; the nearest known one is '" + std::string(prefix) +
                nearest_name(name, material_key_names()) + "'");
     }
-    if (rule->range) {
+    if (rule->range && entry.value != rule->word) {
       const std::optional<double> number = parse_number(entry.value);
       if (!number || !rule->range->holds(*number))
-        key.fail("found " + in_quotes(entry.value) + "; expected " + rule->range->text());
+        key.fail("found " + in_quotes(entry.value) + "; expected " + rule->range->text() + alternative(*rule));
       key.value = *number;
     }
     result.keys.emplace(name, std::move(key));

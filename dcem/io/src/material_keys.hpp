@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -29,10 +30,12 @@ struct MaterialKeys {
   std::map<std::string, MaterialKey> keys;
 };
 
-/// Names of the keys that may stand in a file, without `em_`; those of later versions included.
+/// Names of the keys that may stand in a file, without `em_`.
 const std::vector<std::string>& material_key_names();
-/// The numbers that may stand under a key; null where the value is text or where the key belongs to a later version.
+/// The numbers that may stand under a key; null where the value is text.
 const NumberRange* material_number_range(const std::string& name);
+/// The word that may stand there instead of a number; empty where there is none.
+std::string_view material_word(const std::string& name);
 
 /// The canonical name of the material of ITU-R P.2040 that a key names. Throws InputError with the nearest one.
 std::string itu_name(const MaterialKey& key);
@@ -49,7 +52,7 @@ MaterialKeys merged(const MaterialKeys& from_mtl, const MaterialKeys& from_scena
 bool same_definition(const MaterialKeys& a, const MaterialKeys& b);
 
 /// The material that keys and name define: the keys first, then an `itu_*` name; absent where neither says anything.
-/// Throws InputError on values out of range, on keys that do not go with the model and on what is not in this version.
+/// Throws InputError on values out of range, on keys that do not go with the model.
 std::optional<Material> make_material(const std::string& name, const MaterialKeys& keys);
 
 }  // namespace dcem::io

@@ -35,16 +35,29 @@ MaterialLayer read_layer(const JsonValue& value) {
 
 MaterialKey read_material_key(const std::string& name, const JsonValue& value) {
   MaterialKey key{0.0, value.place(), value.path()};
-  if (const NumberRange* range = material_number_range(name)) {
+  const std::string_view word = material_word(name);
+  if (!word.empty() && value.is_string()) {
+    key.value = value.one_of({std::string(word)});
+  } else if (const NumberRange* range = material_number_range(name)) {
     key.value = value.number(*range);
-  } else if (name == "model" || name == "itu") {
+  } else if (name != "layers") {
     key.value = value.text();
-  } else if (name == "layers") {
+  } else {
     std::vector<MaterialLayer> layers;
     for (const JsonValue& element : value.elements()) layers.push_back(read_layer(element));
     key.value = std::move(layers);
   }
   return key;
+}
+
+/// What objects with `"foliage": true` are made of.
+const std::string foliage_material = "foliage";
+
+/// A mesh whose surfaces are all the skin of foliage, whatever they were in its file.
+TriangleMesh all_of_foliage(TriangleMesh mesh) {
+  mesh.material_names = {foliage_material};
+  for (TriangleMesh::Triangle& triangle : mesh.triangles) triangle.material = 0;
+  return mesh;
 }
 
 }  // namespace
@@ -89,6 +102,12 @@ void BodyLoader::check_object_id(const JsonValue& id) const {
 }
 
 const ObjFile& BodyLoader::read_mesh(const JsonObject& owner) {
+  const ObjFile& read = read_file(owner);
+  collect_used_materials(read, existing_file(owner.at("obj"), folder_, "expected an OBJ file").string());
+  return read;
+}
+
+const ObjFile& BodyLoader::read_file(const JsonObject& owner) {
   const JsonValue name = owner.at("obj");
   const std::filesystem::path file = existing_file(name, folder_, "expected an OBJ file");
   const ObjSettings settings = read_obj_settings(owner);
@@ -97,15 +116,20 @@ const ObjFile& BodyLoader::read_mesh(const JsonObject& owner) {
   if (known != files_.end()) return known->second;
   const ObjFile& read = files_.emplace(key, read_obj(file, settings)).first->second;
   collect_mtl_materials(read);
-  collect_used_materials(read, file.string());
   result_.warnings.insert(result_.warnings.end(), read.warnings.begin(), read.warnings.end());
   return read;
 }
 
 TriangleMesh BodyLoader::read_object_mesh(const JsonObject& object) {
+  const bool foliage = object.boolean("foliage", false);
+  if (foliage) {
+    if (object.has("material")) object.at("material").fail("does not go with foliage; expected no such key");
+    foliage_objects_.push_back(object.at("foliage"));
+    used_materials_.try_emplace(foliage_material, object.at("foliage").place());
+  }
   if (object.exactly_one_of({"obj", "box_m"}) == "obj") {
     if (object.has("material")) object.at("material").fail("goes with box_m only; expected no such key");
-    return read_mesh(object).mesh;
+    return foliage ? all_of_foliage(read_file(object).mesh) : read_mesh(object).mesh;
   }
   for (const char* key : {"up", "unit_m"}) {
     if (object.has(key)) object.at(key).fail("goes with obj only; expected no such key");
@@ -115,6 +139,7 @@ TriangleMesh BodyLoader::read_object_mesh(const JsonObject& object) {
   for (int axis = 0; axis < 3; ++axis) {
     size_m[axis] = sizes[static_cast<std::size_t>(axis)].number({0.0, 1e6, true});
   }
+  if (foliage) return make_box(size_m, foliage_material);
   const JsonValue material = object.at("material");
   used_materials_.try_emplace(material.line(), material.place());
   return make_box(size_m, material.line());
@@ -125,7 +150,6 @@ void BodyLoader::read_objects() {
   if (!list) return;
   for (const JsonValue& element : list->elements()) {
     const JsonObject object = element.object({"id", "obj", "up", "unit_m", "box_m", "material", "motion", "foliage"});
-    if (object.boolean("foliage", false)) object.at("foliage").not_in_this_version("false");
     check_object_id(object.at("id"));
     const std::string id = object.at("id").text();
     const auto motion = object.find("motion");
@@ -185,7 +209,12 @@ MaterialKeys BodyLoader::definition(const std::string& name) const {
 void BodyLoader::add_materials() {
   for (const auto& [name, used_at] : used_materials_) {
     const MaterialKeys keys = definition(name);
-    const std::optional<Material> material = make_material(name, keys);
+    std::optional<Material> material = make_material(name, keys);
+    const bool of_objects = name == foliage_material && !foliage_objects_.empty();
+    if (of_objects && !material) material = Material{name, Foliage{}};
+    if (of_objects && !is_foliage(*material)) {
+      foliage_objects_.front().fail("material 'foliage' is defined as something else; expected foliage_db_per_m in it");
+    }
     if (!material) {
       throw InputError(used_at, "material " + in_quotes(name) +
                                     " is used but defined nowhere; expected em_* keys in the MTL file, an entry in "

@@ -102,7 +102,8 @@ class BodyLoader {
 
   using FileKey = std::tuple<std::string, UpAxis, double>;  ///< name, up axis, unit
 
-  const ObjFile& read_mesh(const JsonObject& owner);
+  const ObjFile& read_file(const JsonObject& owner);
+  const ObjFile& read_mesh(const JsonObject& owner);  ///< whose materials are used
   TriangleMesh read_object_mesh(const JsonObject& object);
   void read_objects();
   void check_object_id(const JsonValue& id) const;
@@ -120,6 +121,7 @@ class BodyLoader {
   Scenario& result_;
   std::map<FileKey, ObjFile> files_;
   std::vector<Object> objects_;
+  std::vector<JsonValue> foliage_objects_;                          ///< the keys `foliage` that are true
   std::map<std::string, std::string> used_materials_;               ///< FILE:LINE of the first use
   std::map<std::string, std::vector<MaterialKeys>> mtl_materials_;  ///< one entry per definition that differs
   std::map<std::string, MaterialKeys> scenario_materials_;

@@ -70,12 +70,40 @@ DiffractionSettings read_diffraction(const JsonValue& value) {
 }
 
 void refuse_later_propagation(const JsonObject& propagation) {
-  for (const char* key : {"atmosphere", "antenna_array"}) {
-    if (const auto value = propagation.find(key); value && !value->is_null()) value->not_in_this_version("null");
+  const auto value = propagation.find("antenna_array");
+  if (value && !value->is_null()) value->not_in_this_version("null");
+}
+
+DiffuseSettings read_diffuse(const JsonValue& value) {
+  const JsonObject object =
+      value.object({"enabled", "tile_max_m", "tolerance_db", "phases", "list_paths", "tile_budget"});
+  DiffuseSettings settings;
+  settings.enabled = object.boolean("enabled", true);
+  if (const auto longest = object.find("tile_max_m"); longest && !longest->is_null()) {
+    settings.tile_max_m = longest->number({1e-3, 1e6});
   }
-  const auto diffuse =
-      find_object(propagation, "diffuse", {"enabled", "tile_max_m", "tolerance_db", "phases", "list_paths"});
-  if (diffuse && diffuse->boolean("enabled", false)) diffuse->at("enabled").not_in_this_version("false");
+  settings.tolerance_db = object.number("tolerance_db", settings.tolerance_db, {1e-4, 10.0});
+  if (const auto phases = object.find("phases")) {
+    const bool seeded = phases->one_of({"incoherent", "seeded"}) == "seeded";
+    settings.phases = seeded ? DiffusePhases::seeded : DiffusePhases::incoherent;
+  }
+  settings.list_paths = object.boolean("list_paths", settings.list_paths);
+  settings.tile_budget = static_cast<std::size_t>(
+      object.integer("tile_budget", static_cast<long long>(settings.tile_budget), 1, 100'000'000));
+  return settings;
+}
+
+Atmosphere read_atmosphere(const JsonValue& value) {
+  const JsonObject object =
+      value.object({"gas", "temperature_k", "dry_pressure_hpa", "water_vapour_g_per_m3", "rain_mm_per_h"});
+  Atmosphere atmosphere;
+  const NumberRange any{-1e9, 1e9};
+  atmosphere.gas = object.boolean("gas", atmosphere.gas);
+  atmosphere.temperature_k = object.number("temperature_k", atmosphere.temperature_k, any);
+  atmosphere.dry_pressure_hpa = object.number("dry_pressure_hpa", atmosphere.dry_pressure_hpa, any);
+  atmosphere.water_vapour_g_per_m3 = object.number("water_vapour_g_per_m3", atmosphere.water_vapour_g_per_m3, any);
+  atmosphere.rain_mm_per_h = object.number("rain_mm_per_h", atmosphere.rain_mm_per_h, any);
+  return reported_at(value, [&] { return validate(atmosphere), atmosphere; });
 }
 
 void read_pdp(const JsonValue& value, OutputSettings& output) {
@@ -158,6 +186,10 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
     }
     if (const auto value = file->find("rays_steady")) {
       settings.rays_steady = static_cast<std::uint32_t>(value->integer(1, 100'000'000));
+    }
+    if (const auto value = file->find("diffuse")) settings.diffuse = read_diffuse(*value);
+    if (const auto value = file->find("atmosphere"); value && !value->is_null()) {
+      settings.atmosphere = read_atmosphere(*value);
     }
     if (const auto value = file->find("path_loss")) settings.path_loss = read_path_loss(*value);
     if (const auto value = file->find("min_path_gain_db"); value && !value->is_null()) {

@@ -130,6 +130,22 @@ Json diffraction_json(const DiffractionSettings& settings) {
           {"min_exterior_angle_deg", settings.min_exterior_angle_deg}};
 }
 
+Json diffuse_json(const DiffuseSettings& settings) {
+  const bool seeded = settings.phases == DiffusePhases::seeded;
+  return {{"enabled", settings.enabled},           {"tile_max_m", optional_json(settings.tile_max_m)},
+          {"tolerance_db", settings.tolerance_db}, {"phases", seeded ? "seeded" : "incoherent"},
+          {"list_paths", settings.list_paths},     {"tile_budget", settings.tile_budget}};
+}
+
+Json atmosphere_json(const std::optional<Atmosphere>& atmosphere) {
+  if (!atmosphere) return nullptr;
+  return {{"gas", atmosphere->gas},
+          {"temperature_k", atmosphere->temperature_k},
+          {"dry_pressure_hpa", atmosphere->dry_pressure_hpa},
+          {"water_vapour_g_per_m3", atmosphere->water_vapour_g_per_m3},
+          {"rain_mm_per_h", atmosphere->rain_mm_per_h}};
+}
+
 Json propagation_json(const RunFacts& facts) {
   const PropagationSettings& settings = facts.settings.propagation;
   const bool sampled = facts.discovery == Discovery::sampled;
@@ -146,7 +162,9 @@ Json propagation_json(const RunFacts& facts) {
           {"rays_steady", cached ? Json(steady_rays(settings)) : Json(nullptr)},
           {"seed", sampled ? Json(settings.seed) : Json(nullptr)},
           {"cache", name_of(facts.cache)},
+          {"diffuse", diffuse_json(settings.diffuse)},
           {"path_loss", path_loss_json(settings.path_loss)},
+          {"atmosphere", atmosphere_json(settings.atmosphere)},
           {"min_path_gain_db", optional_json(settings.min_path_gain_db)}};
 }
 
@@ -169,6 +187,8 @@ Json work_json(const WorkCounters& work) {
           {"legs", work.legs},
           {"sequences_proposed", work.sequences_proposed},
           {"sequences_solved", work.sequences_solved},
+          {"diffuse_tiles", work.diffuse_tiles},
+          {"diffuse_links_unfinished", work.diffuse_links_unfinished},
           {"nodes_visited", work.nodes_visited},
           {"primitives_tested", work.primitives_tested}};
 }
