@@ -70,8 +70,9 @@ DiffractionSettings read_diffraction(const JsonValue& value) {
 }
 
 void refuse_later_propagation(const JsonObject& propagation) {
-  for (const char* key : {"atmosphere", "antenna_array"}) {
-    if (const auto value = propagation.find(key); value && !value->is_null()) value->not_in_this_version("null");
+  if (const auto value = propagation.find("atmosphere"); value && !value->is_null()) value->not_in_this_version("null");
+  if (const auto value = propagation.find("antenna_array"); value && !value->is_null()) {
+    if (value->one_of({"plane_wave", "exact"}) == "exact") value->not_in_this_version("plane_wave");
   }
   const auto diffuse =
       find_object(propagation, "diffuse", {"enabled", "tile_max_m", "tolerance_db", "phases", "list_paths"});
