@@ -8,10 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/channel/array_channel.hpp"
 #include "dcem/channel/diffraction_chain.hpp"
 #include "dcem/channel/field_carrier.hpp"
 #include "dcem/channel/medium_loss.hpp"
 #include "dcem/channel/path_contribution.hpp"
+#include "dcem/channel/radio_end.hpp"
 #include "dcem/core/constants.hpp"
 #include "dcem/em/antenna.hpp"
 #include "dcem/em/path_loss.hpp"
@@ -20,13 +22,6 @@
 #include "dcem/scene/scene.hpp"
 
 namespace dcem {
-
-/// One end of a link with its antenna.
-struct RadioEnd {
-  Vec3 position_m{0.0};
-  Vec3 velocity_mps{0.0};
-  Antenna antenna;
-};
 
 /// exp(−jkL). The whole wavelengths are taken off before the angle is formed, so the phase keeps its digits at any
 /// length.
@@ -82,19 +77,32 @@ inline Direction direction_of(const Vec3& unit) {
   return {azimuth_rad(unit), zenith_rad(unit)};
 }
 
-/// Fills ports, amplitude and power from the transfer matrix and the two antennas.
-inline void apply_antennas(PathContribution& contribution, const Antenna& transmit, const Vec3& departure,
-                           const Antenna& receive, const Vec3& arrival) {
+/// The fields of an antenna's ports towards a direction; of an antenna with one port the first alone.
+inline std::array<JonesVector, 2> port_fields(const RadioEnd& end, const Vec3& direction) {
+  std::array<JonesVector, 2> fields{};
+  for (std::size_t port = 0; port < end.antenna.port_count(); ++port) {
+    fields[port] = end.antenna.port_jones(direction, port, end.rotation);
+  }
+  return fields;
+}
+
+/// Fills ports, amplitude, power and, where an end is an array, the channel from the transfer matrix and the two
+/// antennas, which are turned as the ends say.
+inline void apply_antennas(PathContribution& contribution, const RadioEnd& transmitter, const Vec3& departure,
+                           const RadioEnd& receiver, const Vec3& arrival) {
+  const Antenna &transmit = transmitter.antenna, &receive = receiver.antenna;
+  const std::array<JonesVector, 2> sent = port_fields(transmitter, departure), heard = port_fields(receiver, arrival);
   contribution.transmit_ports = static_cast<int>(transmit.port_count());
   for (std::size_t in = 0; in < transmit.port_count(); ++in) {
-    const JonesVector sent = transmit.port_jones(departure, in);
     for (std::size_t out = 0; out < receive.port_count(); ++out) {
-      contribution.ports(out, in) = port_coupling(receive.port_jones(arrival, out), contribution.transfer, sent);
+      contribution.ports(out, in) = port_coupling(heard[out], contribution.transfer, sent[in]);
     }
   }
   contribution.power_ratio = norm_squared(contribution.ports) / contribution.transmit_ports;
   contribution.has_amplitude = !transmit.is_dual() && !receive.is_dual();
   contribution.amplitude = contribution.has_amplitude ? contribution.ports(0, 0) : Complex{};
+  if (!has_array(transmitter, receiver)) return;
+  contribution.channel = plane_wave_channel(contribution.ports, transmitter, departure, receiver, arrival);
 }
 
 }  // namespace detail
@@ -175,7 +183,7 @@ PathContribution FieldEvaluator<Surface, Loss>::evaluate(Path path, const RadioE
   contribution.arrival = detail::direction_of(-legs.back());
   contribution.transfer = medium_.damped(transfer(path, legs, transmitter.position_m, receiver.position_m), path,
                                          contribution.departure, contribution.arrival);
-  detail::apply_antennas(contribution, transmitter.antenna, legs.front(), receiver.antenna, -legs.back());
+  detail::apply_antennas(contribution, transmitter, legs.front(), receiver, -legs.back());
   contribution.delay_s = path.length_m / speed_of_light_mps;
   contribution.doppler_hz = doppler_hz(path, legs, transmitter, receiver);
   contribution.path = std::move(path);

@@ -102,7 +102,8 @@ class ScatteredPower {
     const double amplitude_m = wavelength_m(frequency_hz_) / (4.0 * pi) * loss_.excess_amplitude(path.length_m);
     const double share = amplitude_m * scattering.coefficient / (geometry.from_m * geometry.to_m);
     return share * share * cos_incidence * density_per_sr * reflected_power(path, place, geometry, transmitter) *
-           passed_power(path, place, geometry) * norm_of(receiver.antenna.port_jones(-geometry.scattered, 0)) *
+           passed_power(path, place, geometry) *
+           norm_of(receiver.antenna.port_jones(-geometry.scattered, 0, receiver.rotation)) *
            medium_.unpolarized_power(path, sample.departure, sample.arrival);
   }
 
@@ -117,7 +118,7 @@ class ScatteredPower {
     const Vec3 theta = theta_hat(geometry.incident), phi = phi_hat(geometry.incident);
     double power = 0.0;
     for (std::size_t port = 0; port < transmitter.antenna.port_count(); ++port) {
-      const JonesVector jones = transmitter.antenna.port_jones(geometry.incident, port);
+      const JonesVector jones = transmitter.antenna.port_jones(geometry.incident, port, transmitter.rotation);
       const ComplexVector3 arriving = carrier.carry(scaled(theta, jones[0]) + scaled(phi, jones[1]), 0, place);
       power += norm_squared(reflect(arriving, geometry.incident, facet.plane.normal, gamma));
     }
@@ -146,7 +147,9 @@ class ScatteredPower {
     return std::cos(std::max(0.0, std::acos(std::clamp(cosine, -1.0, 1.0)) - turn_rad));
   }
 
-  static double highest_gain(const Antenna& antenna) { return db_to_power_ratio(antenna.gain_dbi); }
+  static double highest_gain(const Antenna& antenna) {
+    return db_to_power_ratio(antenna.gain_dbi) * peak_power_gain(antenna.pattern);
+  }
 
   static double norm_of(const JonesVector& jones) { return std::norm(jones[0]) + std::norm(jones[1]); }
 

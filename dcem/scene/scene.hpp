@@ -39,6 +39,9 @@ struct DeviceState {
   /// The object that does not exist for this device's links: the one it rides on.
   std::optional<BodyId> ignored_body;
   bool present = true;  ///< false while the object it rides on is not there
+  /// The axes of its antenna in the world, as columns: those of the object it rides on, or of its own pose, times the
+  /// antenna's orientation.
+  Mat3 rotation{1.0};
 };
 
 class Scene {
@@ -69,7 +72,7 @@ class Scene {
   /// Moves the bodies to where the frame says. Throws std::invalid_argument, having changed nothing, where a pose is
   /// not finite or the name of an object at a place is no good.
   ChangeSet apply(const Frame& frame);
-  /// Where a device is in a frame.
+  /// Where a device is in a frame, and how its antenna is turned.
   DeviceState device_state(const Device& device, const Frame& frame) const;
 
   // The world in the current frame.

@@ -80,19 +80,22 @@ inline std::optional<BodyId> Scene::find_in(const Frame& frame, const std::strin
 }
 
 inline DeviceState Scene::device_state(const Device& device, const Frame& frame) const {
+  const Mat3 mounting = rotation_matrix(device.antenna.orientation);
   if (!device.attachment) {
     const Placement placement = placement_at(device.motion, frame.time_s);
-    return {placement.pose.position_m, placement.velocity.linear_mps, std::nullopt, true};
+    return {placement.pose.position_m, placement.velocity.linear_mps, std::nullopt, true,
+            rotation_matrix(placement.pose) * mounting};
   }
   DCEM_ASSERT(frame.bodies.size() == bodies_.size());
   const std::optional<BodyId> body = find_in(frame, device.attachment->object);
   DCEM_ASSERT(body.has_value() || place_count_ > 0);
-  if (!body) return {Vec3(0.0), Vec3(0.0), std::nullopt, false};
+  if (!body) return {Vec3(0.0), Vec3(0.0), std::nullopt, false, mounting};
   const BodyState& state = frame.bodies[body->value];
   const Pose& pose = state.placement.pose;
-  const Vec3 position_m = pose.position_m + rotation_matrix(pose) * device.attachment->offset_m;
+  const Mat3 turned = rotation_matrix(pose);
+  const Vec3 position_m = pose.position_m + turned * device.attachment->offset_m;
   return {position_m, velocity_at(state.placement.velocity, pose.position_m, position_m),
-          device.attachment->sees_own_body ? std::nullopt : body, state.present};
+          device.attachment->sees_own_body ? std::nullopt : body, state.present, turned * mounting};
 }
 
 }  // namespace dcem

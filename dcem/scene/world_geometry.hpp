@@ -136,7 +136,8 @@ inline void WorldGeometry::append_facets(const SurfaceMesh& mesh, std::span<cons
   for (const Facet& local : mesh.facets) {
     const SurfaceMaterial& material = materials[local.material];
     facets_.push_back({local.plane, material.id, body, first.triangle + local.first_triangle, local.triangle_count,
-                       first.hull_point + local.first_hull_point, local.hull_point_count, material.transmits, !material.is_foliage, material.scatters, material.is_foliage});
+                       first.hull_point + local.first_hull_point, local.hull_point_count, material.transmits,
+                       !material.is_foliage, material.scatters, material.is_foliage});
   }
 }
 

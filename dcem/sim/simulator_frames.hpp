@@ -26,6 +26,11 @@ inline void add_diffuse_work(const DiffusePower& diffuse, WorkCounters& work) {
   work.diffuse_links_unfinished += diffuse.converged ? 0 : 1;
 }
 
+/// A device in a frame as fields see it.
+inline RadioEnd radio_end(const Device& device, const DeviceState& state) {
+  return {state.position_m, state.velocity_mps, device.antenna, state.rotation};
+}
+
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
@@ -76,8 +81,7 @@ std::optional<PathContribution> Simulator<Surface, Tree>::solve_path(std::size_t
   TraversalCounters counters;
   std::optional<Path> path = solver.solve(link_end(from_state, counters), link_end(to_state, counters), sequence);
   if (!path) return std::nullopt;
-  return evaluator().evaluate(std::move(*path), {from_state.position_m, from_state.velocity_mps, from.antenna},
-                              {to_state.position_m, to_state.velocity_mps, to.antenna});
+  return evaluator().evaluate(std::move(*path), detail::radio_end(from, from_state), detail::radio_end(to, to_state));
 }
 
 template <SurfaceModel Surface, typename Tree>
@@ -115,7 +119,7 @@ typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::tra
     const DeviceState state = scene_.device_state(device, frame_);
     TraversalCounters counters;
     ends.link.push_back(state.present ? std::optional(link_end(state, counters)) : std::nullopt);
-    ends.radio.push_back({state.position_m, state.velocity_mps, device.antenna});
+    ends.radio.push_back(detail::radio_end(device, state));
   }
   ends.reached.resize(ends.link.size());
   if (diffraction_order(settings_.propagation) > 0) find_transmitter_reach(ends, reach);
@@ -218,7 +222,7 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiv
   std::vector<LinkPaths> found =
       find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached);
   const Evaluator field = evaluator();
-  const RadioEnd to{state.position_m, state.velocity_mps, receiver.antenna};
+  const RadioEnd to = detail::radio_end(receiver, state);
   std::vector<DiffusePower> diffuse = diffuse_powers(receiver.id, end, to, transmitters, ends, solved.work);
   for (std::size_t transmitter = 0; transmitter < found.size(); ++transmitter) {
     if (!ends[transmitter]) continue;

@@ -126,9 +126,19 @@ inline bool same_bits(const Direction& a, const Direction& b) {
   return same_bits(a.azimuth_rad, b.azimuth_rad) && same_bits(a.zenith_rad, b.zenith_rad);
 }
 
+inline bool same_bits(const ChannelMatrix& a, const ChannelMatrix& b) {
+  if (a.rows() != b.rows() || a.columns() != b.columns()) return false;
+  for (std::size_t row = 0; row < a.rows(); ++row) {
+    for (std::size_t column = 0; column < a.columns(); ++column) {
+      if (!same_bits(a(row, column), b(row, column))) return false;
+    }
+  }
+  return true;
+}
+
 inline bool same_bits(const PathContribution& a, const PathContribution& b) {
   return same_bits(a.path, b.path) && same_bits(a.transfer, b.transfer) && same_bits(a.ports, b.ports) &&
-         same_bits(a.amplitude, b.amplitude) && a.has_amplitude == b.has_amplitude &&
+         same_bits(a.channel, b.channel) && same_bits(a.amplitude, b.amplitude) && a.has_amplitude == b.has_amplitude &&
          a.transmit_ports == b.transmit_ports && same_bits(a.power_ratio, b.power_ratio) &&
          same_bits(a.delay_s, b.delay_s) && same_bits(a.doppler_hz, b.doppler_hz) &&
          same_bits(a.departure, b.departure) && same_bits(a.arrival, b.arrival);

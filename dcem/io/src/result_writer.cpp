@@ -67,6 +67,16 @@ void append_transfer(JsonLine& line, const ComplexMatrix2& transfer) {
   line.close(']');
 }
 
+void append_channel(JsonLine& line, const ChannelMatrix& channel) {
+  line.key("channel").open('[');
+  for (std::size_t receive = 0; receive < channel.rows(); ++receive) {
+    line.open('[');
+    for (std::size_t transmit = 0; transmit < channel.columns(); ++transmit) line.complex(channel(receive, transmit));
+    line.close(']');
+  }
+  line.close(']');
+}
+
 void append_direction(JsonLine& line, std::string_view name, const Direction& direction) {
   line.key(name).open('{').key("azimuth_rad").number(direction.azimuth_rad);
   line.key("zenith_rad").number(direction.zenith_rad).close('}');
@@ -157,6 +167,7 @@ void ResultWriter::append_path(const LinkResult& link, const PathContribution& p
   append_transfer(line, path.transfer);
   line.key("amplitude");
   path.has_amplitude ? line.complex(path.amplitude) : line.prepared("null");
+  if (!path.channel.empty()) append_channel(line, path.channel);
   line.key("path_gain_db").number(gain_db);
   line.key("received_power_dbm").number(power_dbm_[link.transmitter] + gain_db);
   append_direction(line, "departure", path.departure);

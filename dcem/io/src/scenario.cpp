@@ -60,7 +60,8 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   read_mobility(root, file.parent_path(), result);
   MotionReader motions(file.parent_path(), result.time.start_s);
   BodyLoader(root, file.parent_path(), motions, result).load();
-  read_devices(root, motions, result);
+  AntennaReader antennas(file.parent_path());
+  read_devices(root, motions, antennas, result);
   motions.check_all_taken();
   reported_at(root.value(), [&] { validate(result.settings); });
   check_exact_discovery(result, root, command_line);

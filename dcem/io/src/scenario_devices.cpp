@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -12,51 +13,8 @@ namespace {
 
 /// Points of one grid; a map keeps what is written for each of them until it is done.
 constexpr double most_grid_points = 1e8;
-
-Polarization read_polarization(const JsonValue& value) {
-  if (value.is_object()) {
-    const double slant_deg = value.object({"slant_deg"}).at("slant_deg").number({-1e6, 1e6});
-    return {PolarizationKind::slant, degrees_to_radians(slant_deg)};
-  }
-  static const std::map<std::string, PolarizationKind> kinds{{"V", PolarizationKind::vertical},
-                                                             {"H", PolarizationKind::horizontal},
-                                                             {"RHC", PolarizationKind::right_circular},
-                                                             {"LHC", PolarizationKind::left_circular},
-                                                             {"VH", PolarizationKind::dual}};
-  const auto kind = value.is_string() ? kinds.find(value.text()) : kinds.end();
-  if (kind == kinds.end()) value.fail("unknown polarization; expected V, H, RHC, LHC, VH or {\"slant_deg\": angle}");
-  return {kind->second, 0.0};
-}
-
-void refuse_later_antennas(const JsonObject& antenna) {
-  if (const auto pattern = antenna.find("pattern")) {
-    if (pattern->is_object()) pattern->not_in_this_version("isotropic");
-    if (pattern->one_of({"isotropic", "half_wave_dipole", "tr38901"}) != "isotropic") {
-      pattern->not_in_this_version("isotropic");
-    }
-  }
-  if (const auto orientation = antenna.find("orientation_deg")) {
-    const Vec3 angles_deg = orientation->vector3(1e6);
-    if (angles_deg != Vec3(0.0)) orientation->not_in_this_version("[0, 0, 0]");
-  }
-  if (const auto array = antenna.find("array")) {
-    const JsonObject object = array->object({"rows", "columns", "spacing_wavelengths"});
-    const bool single = object.integer("rows", 1, 1, 100'000) == 1 && object.integer("columns", 1, 1, 100'000) == 1;
-    if (!single) array->not_in_this_version("one row and one column");
-    object.number("spacing_wavelengths", 0.5, {0.0, 1e6, true});
-  }
-}
-
-Antenna read_antenna(const JsonObject& device) {
-  const auto value = device.find("antenna");
-  if (!value) return {};
-  const JsonObject object = value->object({"pattern", "gain_dbi", "polarization", "orientation_deg", "array"});
-  refuse_later_antennas(object);
-  Antenna antenna;
-  antenna.gain_dbi = object.number("gain_dbi", 0.0, {-200.0, 200.0});
-  if (const auto polarization = object.find("polarization")) antenna.polarization = read_polarization(*polarization);
-  return antenna;
-}
+/// Numbers in the channel matrix of one path: 16 MB.
+constexpr std::size_t most_channel_entries = std::size_t{1} << 20;
 
 double read_power_dbm(const JsonObject& device) {
   if (device.exactly_one_of({"power_dbm", "power_w"}) == "power_dbm") {
@@ -95,16 +53,17 @@ ReceiverGrid read_grid(const JsonValue& value) {
 /// Reads one entry of `transmitters` or `receivers`.
 class DeviceReader {
  public:
-  DeviceReader(const JsonValue& value, bool transmits, MotionReader& motions, Scenario& result)
+  DeviceReader(const JsonValue& value, bool transmits, MotionReader& motions, AntennaReader& antennas, Scenario& result)
       : object_(value.object({"id", "position_m", "positions_m", "grid", "attach_to", "offset_m", "sees_own_body",
                               "velocity_mps", "motion", "power_dbm", "power_w", "antenna"})),
         transmits_(transmits),
         motions_(motions),
+        antennas_(antennas),
         result_(result) {}
 
   void read() {
     device_.id = object_.at("id").identifier();
-    device_.antenna = read_antenna(object_);
+    device_.antenna = antennas_.read(object_);
     read_power();
     const std::string form = object_.exactly_one_of({"position_m", "positions_m", "grid", "attach_to", "motion"});
     if (form != "attach_to") refuse({"offset_m", "sees_own_body"}, "attach_to");
@@ -198,26 +157,48 @@ class DeviceReader {
   JsonObject object_;
   bool transmits_;
   MotionReader& motions_;
+  AntennaReader& antennas_;
   Scenario& result_;
   Device device_;
 };
 
 /// One id per entry; those of a list or a grid get their numbers only after that.
-void read_list(const JsonValue& list, bool transmits, MotionReader& motions, Scenario& result) {
+void read_list(const JsonValue& list, bool transmits, MotionReader& motions, AntennaReader& antennas,
+               Scenario& result) {
   std::set<std::string> ids;
   for (const JsonValue& element : list.elements()) {
-    DeviceReader(element, transmits, motions, result).read();
+    DeviceReader(element, transmits, motions, antennas, result).read();
     const JsonValue id = element.member("id");
     if (!ids.insert(id.text()).second) id.fail(in_quotes(id.text()) + " is there twice; expected a new id");
   }
   if (ids.empty()) list.fail("empty; expected at least one device");
 }
 
+/// The largest number of ports, elements times polarizations, among devices and grids.
+template <typename Devices>
+std::size_t most_ports(const Devices& devices) {
+  std::size_t most = 0;
+  for (const auto& device : devices) {
+    most = std::max(most, device.antenna.array.size() * device.antenna.port_count());
+  }
+  return most;
+}
+
+/// A path keeps a number for each pair of ports.
+void check_channel_size(const JsonValue& receivers, const Scenario& result) {
+  const std::size_t sent = most_ports(result.scene.transmitters());
+  const std::size_t heard = std::max(most_ports(result.scene.receivers()), most_ports(result.grids));
+  if (sent * heard <= most_channel_entries) return;
+  receivers.fail("arrays with " + std::to_string(heard) + " ports hear arrays with " + std::to_string(sent) +
+                 "; expected at most " + std::to_string(most_channel_entries) + " pairs of ports");
+}
+
 }  // namespace
 
-void read_devices(const JsonObject& scenario, MotionReader& motions, Scenario& result) {
-  read_list(scenario.at("transmitters"), true, motions, result);
-  read_list(scenario.at("receivers"), false, motions, result);
+void read_devices(const JsonObject& scenario, MotionReader& motions, AntennaReader& antennas, Scenario& result) {
+  read_list(scenario.at("transmitters"), true, motions, antennas, result);
+  read_list(scenario.at("receivers"), false, motions, antennas, result);
+  check_channel_size(scenario.at("receivers"), result);
 }
 
 }  // namespace dcem::io

@@ -2,6 +2,7 @@
 /// The parts of a scenario file, each read by a function of its own. Private to dcem::io. All throw InputError.
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -76,10 +77,30 @@ std::filesystem::path existing_file(const JsonValue& name, const std::filesystem
 /// instants that `time` leaves open are those of the trace.
 void read_mobility(const JsonObject& scenario, const std::filesystem::path& folder, Scenario& result);
 
+// scenario_antenna.cpp
+
+/// Reads the antennas of a scenario; a file of a pattern is read once, and its table shared by all antennas that name
+/// it.
+class AntennaReader {
+ public:
+  /// Files are relative to `folder`.
+  explicit AntennaReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// The block `antenna` of a device; without one an isotropic antenna.
+  Antenna read(const JsonObject& owner);
+
+ private:
+  AntennaPattern read_pattern(const JsonValue& value);
+  std::shared_ptr<const PatternTable> read_table(const JsonObject& file);
+
+  std::filesystem::path folder_;
+  std::map<std::pair<std::string, std::string>, std::shared_ptr<const PatternTable>> tables_;  ///< by format and name
+};
+
 // scenario_devices.cpp
 
 /// Adds the transmitters and receivers to the scene, and the receiver grids beside it.
-void read_devices(const JsonObject& scenario, MotionReader& motions, Scenario& result);
+void read_devices(const JsonObject& scenario, MotionReader& motions, AntennaReader& antennas, Scenario& result);
 
 // scenario_bodies.cpp
 

@@ -71,7 +71,8 @@ DiffractionSettings read_diffraction(const JsonValue& value) {
 
 void refuse_later_propagation(const JsonObject& propagation) {
   const auto value = propagation.find("antenna_array");
-  if (value && !value->is_null()) value->not_in_this_version("null");
+  if (!value || value->is_null()) return;
+  if (value->one_of({"plane_wave", "exact"}) == "exact") value->not_in_this_version("plane_wave");
 }
 
 DiffuseSettings read_diffuse(const JsonValue& value) {
