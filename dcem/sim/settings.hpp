@@ -32,6 +32,12 @@ enum class CacheMode {
   seed        ///< goes with sampled: found sequences are solved again in each frame, few rays look for new ones
 };
 
+/// How the elements of antenna arrays differ from each other.
+enum class ArrayChannel {
+  plane_wave,  ///< in phase alone, by the path between the arrays' centres
+  exact        ///< each pair of elements has a path of its own
+};
+
 /// Exact discovery tries sequences of facets; this version offers it up to this many facets.
 inline constexpr std::size_t exact_discovery_facet_limit = 1000;
 
@@ -63,7 +69,8 @@ struct PropagationSettings {
   std::optional<double> min_path_gain_db;    ///< paths weaker than this are dropped after their field is known, dB
   AnyPathLoss path_loss{};                   ///< a real factor beside free-space spreading
   std::optional<Atmosphere> atmosphere{};    ///< gases and rain; default: none
-  DiffuseSettings diffuse{};                 ///< power that rough surfaces scatter
+  ArrayChannel antenna_array = ArrayChannel::plane_wave;  ///< how the elements of arrays differ from each other
+  DiffuseSettings diffuse{};                              ///< power that rough surfaces scatter
 };
 
 struct SimulationSettings {

@@ -20,6 +20,7 @@
 #include "dcem/paths/path_finder.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/discovery.hpp"
+#include "dcem/sim/element_paths.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/settings.hpp"
 
@@ -81,6 +82,12 @@ class Simulator {
     WorkCounters work;                  ///< what finding them took
   };
 
+  /// One end of a link, as paths and as fields see it.
+  struct DeviceEnd {
+    const LinkEnd& link;
+    const RadioEnd& radio;
+  };
+
   Simulator(Scene scene, SimulationSettings settings, std::nullptr_t) requires std::same_as<Surface, MaterialTable>
       : Simulator(scene, settings,
                   MaterialTable({scene.materials().begin(), scene.materials().end()}, settings.frequency_hz,
@@ -118,8 +125,11 @@ class Simulator {
   std::vector<DiffusePower> diffuse_powers(const std::string& receiver, const LinkEnd& end, const RadioEnd& to,
                                            const TransmitterEnds& transmitters,
                                            std::span<const std::optional<LinkEnd>> ends, WorkCounters& work) const;
-  LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const RadioEnd& from,
-                       const RadioEnd& to, const Evaluator& evaluator) const;
+  LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const DeviceEnd& from,
+                       const DeviceEnd& to, const Evaluator& evaluator) const;
+  /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
+  void trace_elements(std::span<PathContribution> paths, const DeviceEnd& from, const DeviceEnd& to,
+                      const Evaluator& evaluator) const;
   static RadioMapPoint map_point(const LinkResult& link, const Vec3& position_m);
 
   Scene scene_;

@@ -79,9 +79,29 @@ std::optional<PathContribution> Simulator<Surface, Tree>::solve_path(std::size_t
   const PathSearchSettings search = search_settings();
   PathSolver<Tree> solver(tracer, search.max_transmissions, search.edges);
   TraversalCounters counters;
-  std::optional<Path> path = solver.solve(link_end(from_state, counters), link_end(to_state, counters), sequence);
+  const LinkEnd from_link = link_end(from_state, counters), to_link = link_end(to_state, counters);
+  const RadioEnd from_radio = detail::radio_end(from, from_state), to_radio = detail::radio_end(to, to_state);
+  std::optional<Path> path = solver.solve(from_link, to_link, sequence);
   if (!path) return std::nullopt;
-  return evaluator().evaluate(std::move(*path), detail::radio_end(from, from_state), detail::radio_end(to, to_state));
+  const Evaluator field = evaluator();
+  PathContribution contribution = field.evaluate(std::move(*path), from_radio, to_radio);
+  trace_elements({&contribution, 1}, {from_link, from_radio}, {to_link, to_radio}, field);
+  return contribution;
+}
+
+template <SurfaceModel Surface, typename Tree>
+void Simulator<Surface, Tree>::trace_elements(std::span<PathContribution> paths, const DeviceEnd& from,
+                                              const DeviceEnd& to, const Evaluator& evaluator) const {
+  if (settings_.propagation.antenna_array != ArrayChannel::exact || !has_array(from.radio, to.radio)) return;
+  const Tracer tracer(scene_, tree_);
+  const PathSearchSettings search = search_settings();
+  PathSolver<Tree> solver(tracer, search.max_transmissions, search.edges);
+  TraversalCounters counters;
+  const double length_m = wavelength_m(settings_.frequency_hz);
+  const ElementEnds from_elements = element_ends(tracer, from.link, from.radio, length_m, counters);
+  const ElementEnds to_elements = element_ends(tracer, to.link, to.radio, length_m, counters);
+  ElementPaths<Tree, Surface, AnyPathLoss> elements(solver, evaluator, from_elements, to_elements);
+  for (PathContribution& path : paths) path.channel = elements.channel(path.path);
 }
 
 template <SurfaceModel Surface, typename Tree>
@@ -228,7 +248,7 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiv
     if (!ends[transmitter]) continue;
     LinkResult& link =
         solved.links.emplace_back(make_link(std::move(found[transmitter]), std::move(diffuse[transmitter]), transmitter,
-                                            transmitters.radio[transmitter], to, field));
+                                            {*ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field));
     link.receiver = index;
     link.complete = search.exhaustive || (search.max_reflections == 0 && search.max_diffractions == 0);
     solved.work.paths += link.paths.size();
@@ -263,7 +283,7 @@ std::vector<DiffusePower> Simulator<Surface, Tree>::diffuse_powers(const std::st
 
 template <SurfaceModel Surface, typename Tree>
 LinkResult Simulator<Surface, Tree>::make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter,
-                                               const RadioEnd& from, const RadioEnd& to,
+                                               const DeviceEnd& from, const DeviceEnd& to,
                                                const Evaluator& evaluator) const {
   const PropagationSettings& propagation = settings_.propagation;
   LinkResult link;
@@ -274,11 +294,12 @@ LinkResult Simulator<Surface, Tree>::make_link(LinkPaths&& found, DiffusePower&&
     const bool is_direct = path.interactions.empty();
     if (is_direct && !path.foliage.empty()) line_of_sight = false;  // the segment is not free, though nothing stops it
     if (is_direct && !propagation.line_of_sight) continue;
-    PathContribution contribution = evaluator.evaluate(std::move(path), from, to);
+    PathContribution contribution = evaluator.evaluate(std::move(path), from.radio, to.radio);
     const bool too_weak =
         propagation.min_path_gain_db && !(power_ratio_to_db(contribution.power_ratio) >= *propagation.min_path_gain_db);
     if (!too_weak) link.paths.push_back(std::move(contribution));
   }
+  trace_elements(link.paths, from, to, evaluator);
   const double power_dbm = scene_.transmitters()[transmitter].power_dbm;
   link.statistics = link_statistics(link.paths, power_dbm, line_of_sight, link.diffuse);
   return link;

@@ -69,12 +69,6 @@ DiffractionSettings read_diffraction(const JsonValue& value) {
   return settings;
 }
 
-void refuse_later_propagation(const JsonObject& propagation) {
-  const auto value = propagation.find("antenna_array");
-  if (!value || value->is_null()) return;
-  if (value->one_of({"plane_wave", "exact"}) == "exact") value->not_in_this_version("plane_wave");
-}
-
 DiffuseSettings read_diffuse(const JsonValue& value) {
   const JsonObject object =
       value.object({"enabled", "tile_max_m", "tolerance_db", "phases", "list_paths", "tile_budget"});
@@ -173,7 +167,6 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
                                  "max_interactions", "discovery", "rays", "rays_steady", "seed", "cache", "diffraction",
                                  "diffuse", "path_loss", "atmosphere", "antenna_array", "min_path_gain_db"});
   if (file) {
-    refuse_later_propagation(*file);
     settings.line_of_sight = file->boolean("line_of_sight", settings.line_of_sight);
     settings.max_reflections =
         static_cast<int>(file->integer("max_reflections", settings.max_reflections, 0, highest_order));
@@ -187,6 +180,10 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
     }
     if (const auto value = file->find("rays_steady")) {
       settings.rays_steady = static_cast<std::uint32_t>(value->integer(1, 100'000'000));
+    }
+    if (const auto value = file->find("antenna_array"); value && !value->is_null()) {
+      const bool exact = value->one_of({"plane_wave", "exact"}) == "exact";
+      settings.antenna_array = exact ? ArrayChannel::exact : ArrayChannel::plane_wave;
     }
     if (const auto value = file->find("diffuse")) settings.diffuse = read_diffuse(*value);
     if (const auto value = file->find("atmosphere"); value && !value->is_null()) {

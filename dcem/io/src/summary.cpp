@@ -162,6 +162,7 @@ Json propagation_json(const RunFacts& facts) {
           {"rays_steady", cached ? Json(steady_rays(settings)) : Json(nullptr)},
           {"seed", sampled ? Json(settings.seed) : Json(nullptr)},
           {"cache", name_of(facts.cache)},
+          {"antenna_array", settings.antenna_array == ArrayChannel::exact ? "exact" : "plane_wave"},
           {"diffuse", diffuse_json(settings.diffuse)},
           {"path_loss", path_loss_json(settings.path_loss)},
           {"atmosphere", atmosphere_json(settings.atmosphere)},
