@@ -20,6 +20,8 @@ if(DCEM_BUILD_IO)
   # CMake's own modules: the targets that they define have the same names everywhere.
   dcem_find_library(EXPAT EXPAT::EXPAT libexpat1-dev MODULE)
   dcem_find_library(ZLIB ZLIB::ZLIB zlib1g-dev MODULE)
+  list(APPEND CMAKE_MODULE_PATH "${CMAKE_CURRENT_LIST_DIR}")  # FindLibZip.cmake
+  dcem_find_library(LibZip libzip::zip libzip-dev MODULE)
   find_path(DCEM_STB_INCLUDE_DIR stb/stb_image_write.h)
   mark_as_advanced(DCEM_STB_INCLUDE_DIR)
   if(NOT DCEM_STB_INCLUDE_DIR)

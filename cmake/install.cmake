@@ -26,4 +26,7 @@ configure_package_config_file(cmake/dcemConfig.cmake.in "${PROJECT_BINARY_DIR}/d
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/dcemConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/dcemConfig.cmake" "${PROJECT_BINARY_DIR}/dcemConfigVersion.cmake"
         DESTINATION "${package_dir}")
+if(DCEM_BUILD_IO)
+  install(FILES cmake/FindLibZip.cmake DESTINATION "${package_dir}")
+endif()
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")

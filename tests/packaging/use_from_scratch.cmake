@@ -18,7 +18,7 @@ endfunction()
 set(configure "${CMAKE_COMMAND}" -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${CXX_COMPILER}" "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
               "-DCMAKE_BUILD_TYPE=${BUILD_TYPE}" -B "${WORK_DIR}/build")
 set(consumer -S "${CMAKE_CURRENT_LIST_DIR}/consumer")
-foreach(library IN ITEMS tinyobjloader nlohmann_json EXPAT ZLIB CLI11 doctest Python3)
+foreach(library IN ITEMS tinyobjloader nlohmann_json EXPAT ZLIB LibZip CLI11 doctest Python3)
   list(APPEND hide_all_but_glm "-DCMAKE_DISABLE_FIND_PACKAGE_${library}=ON")
 endforeach()
 
@@ -29,7 +29,7 @@ if(MODE STREQUAL "missing_library")
   if(status EQUAL 0)
     message(FATAL_ERROR "configuring succeeded without any library")
   endif()
-  foreach(debian_package IN ITEMS libglm-dev libtinyobjloader-dev nlohmann-json3-dev libexpat1-dev zlib1g-dev libcli11-dev
+  foreach(debian_package IN ITEMS libglm-dev libtinyobjloader-dev nlohmann-json3-dev libexpat1-dev zlib1g-dev libzip-dev libcli11-dev
                                   doctest-dev python3)
     if(NOT output MATCHES "apt install ${debian_package}")
       message(FATAL_ERROR "the message does not name ${debian_package}")
