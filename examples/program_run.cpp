@@ -1,7 +1,9 @@
 /// `dcem run`: every frame of a scenario, all links.
 #include <iostream>
+#include <stdexcept>
 
 #include "dcem/io/frame_source.hpp"
+#include "dcem/io/input_error.hpp"
 #include "dcem/io/result_writer.hpp"
 #include "program_job.hpp"
 
@@ -19,6 +21,18 @@ void solve_frames(Simulator<>& simulator, const Job& job, io::ProgressMode progr
   }
 }
 
+io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator,
+                             const ScenarioOptions& options) {
+  const DiffuseSettings& diffuse = simulator.settings().propagation.diffuse;
+  const io::ResultFacts facts{simulator.discovery(), simulator.settings().frequency_hz, diffuse.enabled,
+                              diffuse.enabled && diffuse.list_paths, job.frames.count()};
+  try {
+    return {folder, simulator.scene(), simulator.scene().receivers(), facts, job.scenario.output};
+  } catch (const std::invalid_argument& error) {
+    throw io::InputError(options.scenario, error.what());
+  }
+}
+
 }  // namespace
 
 void run_scenario(const ScenarioOptions& options) {
@@ -28,10 +42,11 @@ void run_scenario(const ScenarioOptions& options) {
   Simulator<> simulator = make_simulator(job, options);
   const auto receivers = simulator.scene().receivers();
   io::OutputFolder folder(job.folder);
-  io::ResultWriter writer(folder, simulator.scene(), receivers, simulator.discovery(), job.scenario.output);
+  io::ResultWriter writer = make_writer(folder, job, simulator, options);
   io::RunSummary summary(run_facts(job, simulator, receivers.size()), simulator.scene());
   print_warnings(job, options);
   solve_frames(simulator, job, progress_mode(options), frames, writer, summary);
+  writer.finish();
   folder.open("summary.json").write(summary.json());
   folder.commit();
   if (!options.quiet) std::cout << summary.table(folder.path());

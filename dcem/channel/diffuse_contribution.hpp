@@ -13,8 +13,10 @@ namespace dcem {
 /// What one tile brings.
 struct DiffuseContribution {
   PowerSample sample;
-  Complex amplitude{};  ///< with seeded phases; otherwise 0
-  Path path;            ///< one scattering at the tile's centroid; empty unless `DiffuseSettings::list_paths`
+  Complex amplitude{};         ///< with seeded phases; otherwise 0
+  std::uint32_t triangle = 0;  ///< of the scene; it keeps its number while the scene lives
+  std::uint64_t place = 1;     ///< which part of the triangle: 1 is the whole, 2p and 2p + 1 are the halves of p
+  Path path;                   ///< one scattering at the tile's centroid; empty unless `DiffuseSettings::list_paths`
 };
 
 struct DiffusePower {
@@ -26,5 +28,13 @@ struct DiffusePower {
   TraversalCounters traversal;
   bool converged = true;  ///< within the tolerance; false where the budget was spent before
 };
+
+/// The samples of all tiles.
+inline std::vector<PowerSample> power_samples(const DiffusePower& diffuse) {
+  std::vector<PowerSample> samples;
+  samples.reserve(diffuse.tiles.size());
+  for (const DiffuseContribution& tile : diffuse.tiles) samples.push_back(tile.sample);
+  return samples;
+}
 
 }  // namespace dcem

@@ -126,6 +126,8 @@ class DiffuseIntegral {
       const Tile& tile = tiles.tiles()[index];
       if (tile.is_halved) continue;
       if (settings_.phases == DiffusePhases::seeded) one.amplitude = random_amplitude(one, tile, key);
+      one.triangle = tile.source;
+      one.place = tile.place;
       if (!settings_.list_paths) one.path = {};
       result.tiles.push_back(std::move(one));
     }

@@ -1,8 +1,9 @@
 #pragma once
-/// Results of a run as text, frame by frame: `paths.jsonl`, `links.csv` and `pdp.csv`.
+/// Results of a run, frame by frame: `paths.jsonl`, `links.csv`, `pdp.csv`, `doppler.csv` and `cfr.npz`.
 ///
 /// Numbers have the fewest digits that read back as the same double. What is not defined is an empty field in CSV and
 /// `null` in JSON, never NaN or infinity. The same results give the same bytes. docs/results.md names every column.
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,20 +22,41 @@ inline constexpr std::string_view links_csv_header =
     "frame,time_s,tx,rx,line_of_sight,path_count,complete,valid_until_m,power_dbm,power_incoherent_dbm,power_los_dbm,"
     "power_reflected_dbm,power_transmitted_dbm,power_diffracted_dbm,power_diffuse_dbm,path_gain_db,first_delay_s,"
     "mean_delay_s,rms_delay_spread_s,k_factor_db,azimuth_spread_arrival_rad,azimuth_spread_departure_rad,"
-    "mean_doppler_hz,rms_doppler_spread_hz";
+    "mean_doppler_hz,rms_doppler_spread_hz,zenith_spread_arrival_rad,zenith_spread_departure_rad,"
+    "coherence_bandwidth_hz,coherence_time_s";
 
 inline constexpr std::string_view pdp_csv_header = "frame,tx,rx,delay_s,power_dbm";
+/// Where diffuse power is computed, its share of `power_dbm` follows.
+inline constexpr std::string_view diffuse_pdp_csv_header = "frame,tx,rx,delay_s,power_dbm,power_diffuse_dbm";
+inline constexpr std::string_view doppler_csv_header = "frame,tx,rx,doppler_hz,power_dbm";
+
+/// What a writer must know of a run beside its scene.
+struct ResultFacts {
+  Discovery discovery = Discovery::exact;  ///< how paths were found
+  double frequency_hz = 0.0;
+  bool diffuse = false;        ///< diffuse power is computed
+  bool diffuse_paths = false;  ///< and its tiles are listed among the paths
+  std::size_t frames = 1;
+};
+
+class CsvLine;
+class PathLines;
+class ResponseCollector;
 
 /// Writes the files that `output` asks for into a folder; the caller commits the folder after the last frame.
 class ResultWriter {
  public:
-  /// `receivers` are those that `LinkResult::receiver` indexes; `discovery` is how paths were found. The folder and the
-  /// scene must outlive the writer, and the scene may move between the frames. Throws `OutputError`.
-  ResultWriter(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers, Discovery discovery,
+  /// `receivers` are those that `LinkResult::receiver` indexes. The folder and the scene must outlive the writer, and
+  /// the scene may move between the frames. Throws `OutputError`, and std::invalid_argument where a response over the
+  /// band would need more memory than 16 GB.
+  ResultWriter(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts,
                const OutputSettings& output);
+  ~ResultWriter();
 
   /// Appends a frame. Lines are in the order of the frame's links. Throws `OutputError`.
   void write(const FrameResult& frame);
+  /// After the last frame: writes what is complete only now. Throws `OutputError`.
+  void finish();
 
  private:
   /// A file with the lines that are not yet handed to the operating system.
@@ -45,18 +67,17 @@ class ResultWriter {
     void flush(std::size_t limit);
   };
 
-  void append_paths(const FrameResult& frame, const LinkResult& link);
-  void append_path(const LinkResult& link, const PathContribution& path);
+  CsvLine begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const;
   void append_link(const FrameResult& frame, const LinkResult& link);
   void append_profile(const FrameResult& frame, const LinkResult& link);
-  std::string object_json(BodyId id) const;
+  void append_doppler(const FrameResult& frame, const LinkResult& link);
 
-  const Scene& scene_;
   OutputSettings output_;
-  std::string_view found_by_;
-  Sheet paths_, links_, profile_;
-  // Names as they stand in the files, prepared once: the transmitters', the receivers', bodies' and materials'.
-  std::vector<std::string> json_transmitters_, json_receivers_, json_bodies_, json_materials_;
+  ResultFacts facts_;
+  Sheet paths_, links_, profile_, doppler_;
+  std::unique_ptr<PathLines> lines_;
+  std::unique_ptr<ResponseCollector> responses_;  // absent: not asked for
+  // Names as they stand in the files, prepared once.
   std::vector<std::string> csv_transmitters_, csv_receivers_;
   std::vector<double> power_dbm_;  // of each transmitter
 };

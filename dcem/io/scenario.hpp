@@ -33,6 +33,11 @@ struct OutputSettings {
   bool pdp = false;
   double pdp_bin_s = 1e-9;
   PdpMode pdp_mode = PdpMode::incoherent;
+  bool cfr = false;
+  double cfr_bandwidth_hz = 100e6;
+  std::size_t cfr_points = 256;
+  bool doppler = false;
+  double doppler_bin_hz = 10.0;
 };
 
 /// What the command line may override. Absent: the scenario file decides.

@@ -89,7 +89,7 @@ Written written(const FrameResult& frame, const io::OutputSettings& output) {
   const test::TemporaryFolder folder;
   const Scene scene = small_scene();
   io::OutputFolder out(folder.path());
-  io::ResultWriter writer(out, scene, scene.receivers(), Discovery::exact, output);
+  io::ResultWriter writer(out, scene, scene.receivers(), io::ResultFacts{Discovery::exact}, output);
   writer.write(frame);
   out.commit();
   return {folder.names(), test::file_bytes(folder / "paths.jsonl"), test::file_bytes(folder / "links.csv"),
@@ -208,7 +208,8 @@ TEST_CASE("an id that is not UTF-8 still gives JSON") {
   scene.add_receiver(device_at("ue", {3, 0, 10}));
   const test::TemporaryFolder folder;
   io::OutputFolder out(folder.path());
-  io::ResultWriter writer(out, scene, scene.receivers(), Discovery::sampled, {true, false, false, 1e-9, {}});
+  io::ResultWriter writer(out, scene, scene.receivers(), io::ResultFacts{Discovery::sampled},
+                          {true, false, false, 1e-9, {}});
   FrameResult frame;
   frame.links.emplace_back();
   writer.write(frame);

@@ -10,8 +10,7 @@ namespace {
 constexpr long long highest_order = 10, highest_diffraction_order = 3;
 
 /// The keys of `output` that this version does not write.
-const std::vector<std::string> later_outputs{"cfr",      "doppler", "npz",  "mat",  "qd",   "p2m",
-                                             "deepmimo", "kml",     "gltf", "html", "plots"};
+const std::vector<std::string> later_outputs{"npz", "mat", "qd", "p2m", "deepmimo", "kml", "gltf", "html", "plots"};
 
 /// The value from the command line, or else the one from the file.
 std::optional<JsonValue> chosen(const JsonObject& command_line, const std::string& option,
@@ -102,22 +101,34 @@ Atmosphere read_atmosphere(const JsonValue& value) {
 }
 
 void read_pdp(const JsonValue& value, OutputSettings& output) {
-  if (value.is_boolean()) {
-    output.pdp = value.boolean();
-    return;
-  }
+  output.pdp = value.is_boolean() ? value.boolean() : true;
+  if (value.is_boolean()) return;
   const JsonObject object = value.object({"bin_s", "mode"});
-  output.pdp = true;
   output.pdp_bin_s = object.number("bin_s", output.pdp_bin_s, {1e-15, 1.0});
   const auto mode = object.find("mode");
   if (!mode) return;
   const std::string name = mode->one_of({"incoherent", "coherent", "band_limited"});
-  if (name == "band_limited") mode->not_in_this_version("incoherent or coherent");
-  output.pdp_mode = name == "coherent" ? PdpMode::coherent : PdpMode::incoherent;
+  output.pdp_mode = name == "coherent"       ? PdpMode::coherent
+                    : name == "band_limited" ? PdpMode::band_limited
+                                             : PdpMode::incoherent;
+}
+
+void read_cfr(const JsonValue& value, OutputSettings& output) {
+  output.cfr = value.is_boolean() ? value.boolean() : true;
+  if (value.is_boolean()) return;
+  const JsonObject object = value.object({"bandwidth_hz", "points"});
+  output.cfr_bandwidth_hz = object.at("bandwidth_hz").number({0.0, 1e12});
+  output.cfr_points = static_cast<std::size_t>(object.at("points").integer(1, 1'000'000));
+}
+
+void read_doppler(const JsonValue& value, OutputSettings& output) {
+  output.doppler = value.is_boolean() ? value.boolean() : true;
+  if (value.is_boolean()) return;
+  output.doppler_bin_hz = value.object({"bin_hz"}).at("bin_hz").number({1e-6, 1e9});
 }
 
 OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) {
-  std::vector<std::string> known{"paths", "links", "pdp"};
+  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler"};
   known.insert(known.end(), later_outputs.begin(), later_outputs.end());
   const JsonObject object = value.object(known);
   for (const std::string& key : later_outputs) {
@@ -128,6 +139,8 @@ OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) 
   output.paths = object.boolean("paths", false);
   output.links = object.boolean("links", links_unless_said);
   if (const auto pdp = object.find("pdp")) read_pdp(*pdp, output);
+  if (const auto cfr = object.find("cfr")) read_cfr(*cfr, output);
+  if (const auto doppler = object.find("doppler")) read_doppler(*doppler, output);
   return output;
 }
 

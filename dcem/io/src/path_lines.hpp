@@ -1,0 +1,35 @@
+#pragma once
+/// The lines of `paths.jsonl`. Private to dcem::io.
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dcem/io/result_writer.hpp"
+
+namespace dcem::io {
+
+class PathLines {
+ public:
+  /// The scene must outlive it, and may move between the frames.
+  PathLines(const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts);
+
+  /// Appends the line of a link.
+  void append(std::string& text, const FrameResult& frame, const LinkResult& link) const;
+
+ private:
+  void append_path(std::string& text, const LinkResult& link, const PathContribution& path) const;
+  void append_tile(std::string& text, const LinkResult& link, const DiffuseContribution& tile) const;
+  void append_geometry(std::string& text, const Path& path, const std::string& id, double delay_s,
+                       std::string_view found_by) const;
+  void append_power(std::string& text, const LinkResult& link, const PowerSample& sample) const;
+  std::string object_json(BodyId id) const;
+
+  const Scene& scene_;
+  ResultFacts facts_;
+  // Names as they stand in the file, prepared once.
+  std::vector<std::string> transmitters_, receivers_, bodies_, materials_;
+  std::vector<double> power_dbm_;  // of each transmitter
+};
+
+}  // namespace dcem::io
