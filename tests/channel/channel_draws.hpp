@@ -12,11 +12,17 @@ inline Direction drawn_direction(Draw& draw) {
   return {draw.between(-pi, pi), draw.between(0.0, pi)};
 }
 
+/// One draw after the other: the operands of a product have no order of their own.
+inline Complex drawn_amplitude(Draw& draw) {
+  const double length = draw.magnitude(1e-6, 3e-5);
+  return length * unit_phasor(draw.between(-pi, pi));
+}
+
 /// Delays between `first_s` and `first_s + span_s`.
 inline std::vector<PathContribution> drawn_paths(Draw& draw, std::size_t count, double first_s, double span_s) {
   std::vector<PathContribution> paths(count);
   for (PathContribution& path : paths) {
-    path.amplitude = draw.magnitude(1e-6, 3e-5) * unit_phasor(draw.between(-pi, pi));
+    path.amplitude = drawn_amplitude(draw);
     path.ports(0, 0) = path.amplitude;
     path.power_ratio = std::norm(path.amplitude);
     path.delay_s = first_s + draw.between(0.0, span_s);
@@ -35,9 +41,7 @@ inline std::vector<PathContribution> drawn_dual_paths(Draw& draw, std::size_t co
     path.has_amplitude = false;
     path.transmit_ports = 2;
     for (std::size_t out = 0; out < 2; ++out) {
-      for (std::size_t in = 0; in < 2; ++in) {
-        path.ports(out, in) = draw.magnitude(1e-6, 3e-5) * unit_phasor(draw.between(-pi, pi));
-      }
+      for (std::size_t in = 0; in < 2; ++in) path.ports(out, in) = drawn_amplitude(draw);
     }
     path.power_ratio = norm_squared(path.ports) / 2.0;
   }

@@ -17,7 +17,6 @@ namespace {
 
 using LongComplex = std::complex<long double>;
 
-constexpr double two_pi = 2.0 * pi;
 constexpr double bin_s = 0x1.0p-30;  // about a nanosecond; 1/bin_s is exact
 
 double specular_power(const std::vector<BandLimitedTap>& taps) {
