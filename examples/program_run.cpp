@@ -10,12 +10,21 @@
 namespace dcem::program {
 namespace {
 
-void solve_frames(Simulator<>& simulator, const Job& job, io::ProgressMode progress, io::FrameSource& frames,
+/// Writes a frame; what the settings of an output cannot do with its delays is an error of the scenario.
+void write_frame(io::ResultWriter& writer, const FrameResult& result, const ScenarioOptions& options) {
+  try {
+    writer.write(result);
+  } catch (const std::invalid_argument& error) {
+    throw io::InputError(options.scenario, std::string("output: ") + error.what() + "; expected wider bins");
+  }
+}
+
+void solve_frames(Simulator<>& simulator, const Job& job, const ScenarioOptions& options, io::FrameSource& frames,
                   io::ResultWriter& writer, io::RunSummary& summary) {
-  io::ProgressBar bar("frames", job.frames.count(), progress);
+  io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
   for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
     const FrameResult result = simulator.advance(frames.frame(simulator.scene(), frame));
-    writer.write(result);
+    write_frame(writer, result, options);
     summary.add(io::figures_of(result));
     bar.advance();
   }
@@ -45,7 +54,7 @@ void run_scenario(const ScenarioOptions& options) {
   io::ResultWriter writer = make_writer(folder, job, simulator, options);
   io::RunSummary summary(run_facts(job, simulator, receivers.size()), simulator.scene());
   print_warnings(job, options);
-  solve_frames(simulator, job, progress_mode(options), frames, writer, summary);
+  solve_frames(simulator, job, options, frames, writer, summary);
   writer.finish();
   folder.open("summary.json").write(summary.json());
   folder.commit();

@@ -170,4 +170,5 @@ Simulator<Surface, Tree>::Simulator(Scene scene, SimulationSettings settings, Su
 }  // namespace dcem
 
 #include "dcem/sim/simulator_frames.hpp"
+#include "dcem/sim/simulator_links.hpp"
 #include "dcem/sim/simulator_maps.hpp"
