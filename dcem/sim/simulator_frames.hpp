@@ -3,25 +3,12 @@
 #include <algorithm>
 #include <chrono>
 
+#include "dcem/sim/link_work.hpp"
 #include "dcem/sim/simulator.hpp"
 
 namespace dcem {
 
 namespace detail {
-
-inline void add_search_work(const SearchCounters& counters, WorkCounters& work) {
-  work.rays += counters.rays;
-  work.legs += counters.solver.legs;
-  work.sequences_proposed += counters.sequences_proposed;
-  work.sequences_solved += counters.solver.sequences_solved;
-  work.nodes_visited += counters.solver.traversal.nodes_visited;
-  work.primitives_tested += counters.solver.traversal.primitives_tested;
-}
-
-/// A device in a frame as fields see it.
-inline RadioEnd radio_end(const Device& device, const DeviceState& state) {
-  return {state.position_m, state.velocity_mps, device.antenna, state.rotation};
-}
 
 class Stopwatch {
  public:

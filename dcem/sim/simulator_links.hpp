@@ -3,21 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "dcem/sim/link_work.hpp"
 #include "dcem/sim/simulator.hpp"
 
 namespace dcem {
-
-namespace detail {
-
-inline void add_diffuse_work(const DiffusePower& diffuse, WorkCounters& work) {
-  work.legs += diffuse.legs;
-  work.nodes_visited += diffuse.traversal.nodes_visited;
-  work.primitives_tested += diffuse.traversal.primitives_tested;
-  work.diffuse_tiles += diffuse.tiles_evaluated;
-  work.diffuse_links_unfinished += diffuse.converged ? 0 : 1;
-}
-
-}  // namespace detail
 
 template <SurfaceModel Surface, typename Tree>
 std::vector<LinkResult> Simulator<Surface, Tree>::solve(std::span<const Device> receivers, WorkCounters* work) const {
