@@ -86,4 +86,5 @@ TEST_CASE("every folder of a case is in the list") {
 TEST_CASE("the scenarios that the cases are made from are good") {
   CHECK_NOTHROW(io::load_scenario(folder / "good/scenario.json"));
   CHECK_NOTHROW(io::load_scenario(folder / "good_traffic/scenario.json"));
+  CHECK_NOTHROW(io::load_scenario(folder / "good_antenna/scenario.json"));
 }

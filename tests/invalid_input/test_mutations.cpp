@@ -77,7 +77,7 @@ struct Outcomes {
 Outcomes damage_file(const std::string& scenario, const std::string& name, std::uint32_t rounds) {
   const auto root = std::filesystem::path(DCEM_SOURCE_DIR) / "tests/invalid_input";
   const test::TemporaryFolder both;
-  for (const char* part : {"good", "good_traffic"}) std::filesystem::copy(root / part, both / part);
+  for (const char* part : {"good", "good_traffic", "good_antenna"}) std::filesystem::copy(root / part, both / part);
   const std::filesystem::path folder = both / scenario;
   const std::string text = test::file_bytes(folder / name);
   Outcomes outcomes;
@@ -115,6 +115,15 @@ TEST_CASE("damaged files of traffic never do worse than an InputError") {
     CAPTURE(file);
     const Outcomes outcomes = damage_file("good_traffic", file, 1000);
     CHECK(outcomes.read > 50);
+    CHECK(outcomes.refused > 300);
+  }
+}
+
+TEST_CASE("damaged antennas never do worse than an InputError") {
+  for (const std::string file : {"scenario.json", "pattern.csv", "pattern.msi", "pattern.nsm"}) {
+    CAPTURE(file);
+    const Outcomes outcomes = damage_file("good_antenna", file, 1000);
+    CHECK(outcomes.read > 20);  // a table of twelve lines forgives little
     CHECK(outcomes.refused > 300);
   }
 }

@@ -135,6 +135,18 @@ TEST_CASE("a path's line holds what the contract names, in its order") {
   CHECK(files.paths == expected);
 }
 
+TEST_CASE("a path between arrays has its channel beside the amplitude: receiving element, then transmitting one") {
+  FrameResult frame = small_frame();
+  ChannelMatrix& channel = frame.links[0].paths[0].channel;
+  channel = ChannelMatrix(2, 3);
+  for (std::size_t entry = 0; entry < 6; ++entry) channel(entry / 3, entry % 3) = {double(entry), -0.5};
+  const Written files = written(frame, {true, false, false, 1e-9, PdpMode::incoherent});
+  const std::string expected =
+      R"("amplitude":[0.25,0],"channel":[[[0,-0.5],[1,-0.5],[2,-0.5]],[[3,-0.5],[4,-0.5],[5,-0.5]]],"path_gain_db":-20,)";
+  CHECK(files.paths.find(expected) != std::string::npos);
+  CHECK(files.paths.find(R"("amplitude":null,"path_gain_db")") != std::string::npos);  // the other path has none
+}
+
 TEST_CASE("links.csv has the contract's columns, and empty fields where nothing is defined") {
   const Written files = written(small_frame(), {false, true, false, 1e-9, PdpMode::incoherent});
   const std::vector<std::string> lines = split(files.links, '\n');
