@@ -156,9 +156,10 @@ TEST_CASE("links.csv has the contract's columns, and empty fields where nothing 
         "frame,time_s,tx,rx,line_of_sight,path_count,complete,valid_until_m,power_dbm,power_incoherent_dbm,"
         "power_los_dbm,power_reflected_dbm,power_transmitted_dbm,power_diffracted_dbm,power_diffuse_dbm,path_gain_db,"
         "first_delay_s,mean_delay_s,rms_delay_spread_s,k_factor_db,azimuth_spread_arrival_rad,"
-        "azimuth_spread_departure_rad,mean_doppler_hz,rms_doppler_spread_hz");
-  CHECK(lines[1] == "7,0.7,\"mast, west\",ue,1,2,1,,0.5,,,,,,,,1e-08,,,,,,,0");
-  CHECK(lines[2] == "7,0.7,\"mast, west\",far,0,0,0,,,,,,,,,,,,,,,,,");
+        "azimuth_spread_departure_rad,mean_doppler_hz,rms_doppler_spread_hz,zenith_spread_arrival_rad,"
+        "zenith_spread_departure_rad,coherence_bandwidth_hz,coherence_time_s");
+  CHECK(lines[1] == "7,0.7,\"mast, west\",ue,1,2,1,,0.5,,,,,,,,1e-08,,,,,,,0,,,,");
+  CHECK(lines[2] == "7,0.7,\"mast, west\",far,0,0,0,,,,,,,,,,,,,,,,,,,,,");
   // As many fields as columns, for a line whose ids need no quotes.
   CHECK(split(lines[2], ',').size() == split(lines[0], ',').size() + 1);  // one comma stands inside the quotes
   CHECK(files.names == std::vector<std::string>{"links.csv"});
