@@ -57,6 +57,7 @@ class RunSummary {
  private:
   [[nodiscard]] std::vector<double> frame_times_s() const;
   [[nodiscard]] std::string cache_text(const CacheCounters& cache) const;
+  [[nodiscard]] std::string diffuse_text(const FrameFigures& sum) const;
 
   RunFacts facts_;
   const Scene& scene_;

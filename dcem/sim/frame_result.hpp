@@ -1,5 +1,6 @@
 #pragma once
 /// What a frame brings forth.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,6 +32,7 @@ struct WorkCounters {
   std::uint64_t paths = 0;
   std::uint64_t diffuse_tiles = 0;             ///< points of rough surfaces that were looked at
   std::uint64_t diffuse_links_unfinished = 0;  ///< links whose diffuse power has not converged within its budget
+  double diffuse_residual_db = 0.0;            ///< largest estimate of what may be missing of a link's diffuse power
   std::uint64_t nodes_visited = 0;
   std::uint64_t primitives_tested = 0;
 
@@ -42,6 +44,7 @@ struct WorkCounters {
     paths += other.paths;
     diffuse_tiles += other.diffuse_tiles;
     diffuse_links_unfinished += other.diffuse_links_unfinished;
+    diffuse_residual_db = std::max(diffuse_residual_db, other.diffuse_residual_db);
     nodes_visited += other.nodes_visited;
     primitives_tested += other.primitives_tested;
     return *this;

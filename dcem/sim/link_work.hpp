@@ -1,7 +1,10 @@
 #pragma once
 /// What solving links took, and a device as fields see it: shared by the parts of `Simulator`.
+#include <algorithm>
+
 #include "dcem/channel/diffuse_contribution.hpp"
 #include "dcem/channel/radio_end.hpp"
+#include "dcem/core/units.hpp"
 #include "dcem/paths/path_search.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
@@ -28,6 +31,9 @@ inline void add_diffuse_work(const DiffusePower& diffuse, WorkCounters& work) {
   work.primitives_tested += diffuse.traversal.primitives_tested;
   work.diffuse_tiles += diffuse.tiles_evaluated;
   work.diffuse_links_unfinished += diffuse.converged ? 0 : 1;
+  if (!(diffuse.power_ratio > 0.0)) return;  // of nothing there is no share
+  const double residual_db = power_ratio_to_db(1.0 + diffuse.residual_ratio / diffuse.power_ratio);
+  work.diffuse_residual_db = std::max(work.diffuse_residual_db, residual_db);
 }
 
 }  // namespace dcem::detail

@@ -8,6 +8,7 @@
 #include "dcem/core/parallel_for.hpp"
 #include "dcem/core/statistics.hpp"
 #include "dcem/io/src/fact_json.hpp"
+#include "dcem/io/src/settings_json.hpp"
 #include "dcem/io/text_table.hpp"
 #include "dcem/sim/discovery.hpp"
 
@@ -15,42 +16,6 @@ namespace dcem::io {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-const char* name_of(Discovery discovery) {
-  switch (discovery) {
-    case Discovery::exact:
-      return "exact";
-    case Discovery::sampled:
-      return "sampled";
-    case Discovery::automatic:
-      break;
-  }
-  return "automatic";
-}
-
-const char* name_of(CacheMode cache) {
-  switch (cache) {
-    case CacheMode::off:
-      return "off";
-    case CacheMode::seed:
-      return "seed";
-    case CacheMode::automatic:
-      break;
-  }
-  return "automatic";
-}
-
-const char* name_of(TreePolicy policy) {
-  switch (policy) {
-    case TreePolicy::rebuild_always:
-      return "rebuild_always";
-    case TreePolicy::refit_only:
-      return "refit_only";
-    case TreePolicy::adaptive:
-      break;
-  }
-  return "adaptive";
-}
 
 template <typename Value>
 Json optional_json(const std::optional<Value>& value) {
@@ -103,86 +68,6 @@ Json scene_json(const Scene& scene, std::size_t receivers) {
           {"materials", materials}};
 }
 
-Json path_loss_json(const AnyPathLoss& path_loss) {
-  const auto* close_in = std::get_if<CloseIn>(&path_loss.model);
-  if (close_in == nullptr) return {{"model", "free_space"}};
-  return {{"model", "close_in"},
-          {"exponent", close_in->exponent},
-          {"attenuation_db_per_m", close_in->attenuation_db_per_m}};
-}
-
-const char* name_of(LossyWedge variant) {
-  switch (variant) {
-    case LossyWedge::reciprocal:
-      return "reciprocal";
-    case LossyWedge::luebbers84:
-      return "luebbers84";
-    case LossyWedge::holm_reciprocal:
-      break;
-  }
-  return "holm_reciprocal";
-}
-
-Json diffraction_json(const DiffractionSettings& settings) {
-  return {{"lossy_wedge", name_of(settings.lossy_wedge)},
-          {"region", settings.region == DiffractionRegion::shadow ? "shadow" : "everywhere"},
-          {"free_edges", settings.free_edges},
-          {"min_exterior_angle_deg", settings.min_exterior_angle_deg}};
-}
-
-Json diffuse_json(const DiffuseSettings& settings) {
-  const bool seeded = settings.phases == DiffusePhases::seeded;
-  return {{"enabled", settings.enabled},           {"tile_max_m", optional_json(settings.tile_max_m)},
-          {"tolerance_db", settings.tolerance_db}, {"phases", seeded ? "seeded" : "incoherent"},
-          {"list_paths", settings.list_paths},     {"tile_budget", settings.tile_budget}};
-}
-
-Json atmosphere_json(const std::optional<Atmosphere>& atmosphere) {
-  if (!atmosphere) return nullptr;
-  return {{"gas", atmosphere->gas},
-          {"temperature_k", atmosphere->temperature_k},
-          {"dry_pressure_hpa", atmosphere->dry_pressure_hpa},
-          {"water_vapour_g_per_m3", atmosphere->water_vapour_g_per_m3},
-          {"rain_mm_per_h", atmosphere->rain_mm_per_h}};
-}
-
-Json propagation_json(const RunFacts& facts) {
-  const PropagationSettings& settings = facts.settings.propagation;
-  const bool sampled = facts.discovery == Discovery::sampled;
-  const bool cached = facts.cache == CacheMode::seed;
-  return {{"line_of_sight", settings.line_of_sight},
-          {"max_reflections", settings.max_reflections},
-          {"max_transmissions", settings.max_transmissions},
-          {"max_diffractions", settings.max_diffractions},
-          {"max_interactions", interaction_order(settings)},
-          {"diffraction", diffraction_json(settings.diffraction)},
-          {"discovery", name_of(facts.discovery)},
-          {"discovery_asked_for", name_of(settings.discovery)},
-          {"rays", sampled ? Json(settings.rays) : Json(nullptr)},
-          {"rays_steady", cached ? Json(steady_rays(settings)) : Json(nullptr)},
-          {"seed", sampled ? Json(settings.seed) : Json(nullptr)},
-          {"cache", name_of(facts.cache)},
-          {"antenna_array", settings.antenna_array == ArrayChannel::exact ? "exact" : "plane_wave"},
-          {"diffuse", diffuse_json(settings.diffuse)},
-          {"path_loss", path_loss_json(settings.path_loss)},
-          {"atmosphere", atmosphere_json(settings.atmosphere)},
-          {"min_path_gain_db", optional_json(settings.min_path_gain_db)}};
-}
-
-Json settings_json(const RunFacts& facts) {
-  const SimulationSettings& settings = facts.settings;
-  const std::size_t exact_limit = automatic_exact_facet_limit(settings.propagation);
-  return {{"frequency_hz", settings.frequency_hz},
-          {"itu", {{"revision", settings.itu.revision}, {"allow_extrapolation", settings.itu.allow_extrapolation}}},
-          {"threads", resolve_thread_count(settings.threads)},
-          {"tree_policy", name_of(settings.upkeep.policy)},
-          {"time", {{"start_s", facts.time.start_s}, {"step_s", facts.time.step_s}, {"frames", facts.time.frames}}},
-          {"propagation", propagation_json(facts)},
-          {"defaults_of_this_version",
-           {{"cache", "seed with sampled discovery, else off"},
-            {"discovery", "exact up to " + std::to_string(exact_limit) + " facets, else sampled"}}}};
-}
-
 Json work_json(const WorkCounters& work) {
   return {{"rays", work.rays},
           {"legs", work.legs},
@@ -190,6 +75,7 @@ Json work_json(const WorkCounters& work) {
           {"sequences_solved", work.sequences_solved},
           {"diffuse_tiles", work.diffuse_tiles},
           {"diffuse_links_unfinished", work.diffuse_links_unfinished},
+          {"diffuse_residual_db", work.diffuse_residual_db},
           {"nodes_visited", work.nodes_visited},
           {"primitives_tested", work.primitives_tested}};
 }
@@ -287,6 +173,17 @@ std::string RunSummary::cache_text(const CacheCounters& cache) const {
          std::to_string(cache.born) + " born, " + std::to_string(cache.died) + " died";
 }
 
+/// How many tiles the sums took, and what they may lack.
+std::string RunSummary::diffuse_text(const FrameFigures& sum) const {
+  const DiffuseSettings& settings = facts_.settings.propagation.diffuse;
+  const std::string tiles = mean_text(sum.work.diffuse_tiles, sum.links) + " tiles per link";
+  const std::string tolerance = format_fixed(settings.tolerance_db, settings.tolerance_db < 0.1 ? 4 : 2) + " dB";
+  if (sum.work.diffuse_links_unfinished == 0) return tiles + ", all sums within " + tolerance;
+  return tiles + "; " + std::to_string(sum.work.diffuse_links_unfinished) + " links not within " + tolerance +
+         " after " + std::to_string(settings.tile_budget) + " tiles (residual up to " +
+         format_fixed(sum.work.diffuse_residual_db, 2) + " dB)";
+}
+
 std::string RunSummary::json() const {
   const FrameFigures sum = sum_of(frames_);
   const std::vector<double> times_s = frame_times_s();
@@ -341,6 +238,7 @@ std::string RunSummary::table(const std::filesystem::path& folder) const {
   table.add_row({"real-time factor", factor ? format_fixed(*factor, *factor < 10.0 ? 3 : 1) : "-"});
   table.add_row({"discovery", name_of(facts_.discovery)});
   table.add_row({"cache", cache_text(sum.cache)});
+  if (facts_.settings.propagation.diffuse.enabled) table.add_row({"diffuse", diffuse_text(sum)});
   table.add_row({"tree", std::to_string(sum.tree.nodes_refit) + " nodes refit, " +
                              std::to_string(sum.tree.nodes_rebuilt) + " rebuilt in " +
                              std::to_string(sum.tree.subtrees_rebuilt) + " subtrees"});
