@@ -55,8 +55,7 @@ std::vector<Contender> contenders(bool sweep) {
   return all;
 }
 
-void follow(Contender& contender, const dcem::Scene& scene, const std::vector<std::uint32_t>& moved,
-            const std::vector<std::uint32_t>& groups) {
+void follow(Contender& contender, const dcem::Scene& scene, const std::vector<std::uint32_t>& moved) {
   const Stopwatch watch;
   const dcem::UpkeepReport report = contender.maintainer.update(contender.tree, moved, scene.triangle_boxes());
   contender.update_ms.push_back(watch.elapsed_ms());
@@ -119,8 +118,7 @@ std::vector<std::uint32_t> moved_triangles(const dcem::Scene& scene, const dcem:
 
 /// False in a frame in which policies hit different things.
 bool drive(dcem::Scene& scene, std::size_t frames, std::size_t ray_count, std::vector<Contender>& all) {
-  const std::vector<std::uint32_t> groups = scene.first_triangles();
-  for (Contender& each : all) each.tree.build_grouped(scene.triangle_boxes(), groups);
+  for (Contender& each : all) each.tree.build_grouped(scene.triangle_boxes(), scene.first_triangles());
   const RaySet rays = dcem::bench::random_rays(all.front().tree.bounds(), ray_count, 7);
   for (std::size_t frame = 1; frame <= frames; ++frame) {
     const dcem::ChangeSet changes =
@@ -128,7 +126,7 @@ bool drive(dcem::Scene& scene, std::size_t frames, std::size_t ray_count, std::v
     const std::vector<std::uint32_t> moved = moved_triangles(scene, changes);
     for (std::size_t turn = 0; turn < all.size(); ++turn) {
       Contender& each = all[(frame + turn) % all.size()];  // nobody always comes first
-      follow(each, scene, moved, groups);
+      follow(each, scene, moved);
       trace(each, scene, rays);
     }
     for (const Contender& each : all) {

@@ -18,13 +18,15 @@ struct AntennaCase {
   test::TemporaryFolder folder;
   std::string transmit = "{}";
   std::string receive = "{}";
+  std::string propagation = "{}";
 
   io::Scenario load() const {
     std::ofstream(folder / "ground.mtl") << "newmtl ground\nem_model pec\n";
     std::ofstream(folder / "ground.obj")
         << "mtllib ground.mtl\nv -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nusemtl ground\nf 1 2 3 4\n";
     std::ofstream(folder / "case.json")
-        << R"({"format": "dcem-scenario/1", "frequency_hz": 30e9, "scene": {"obj": "ground.obj"},)"
+        << R"({"format": "dcem-scenario/1", "frequency_hz": 30e9, "scene": {"obj": "ground.obj"}, "propagation": )"
+        << propagation << ","
         << R"("transmitters": [{"id": "tx", "position_m": [0, 0, 5], "power_dbm": 30, "antenna": )" << transmit
         << R"(}], "receivers": [{"id": "rx", "positions_m": [[5, 0, 1], [6, 0, 1]], "antenna": )" << receive
         << R"(}, {"id": "area", "grid": {"origin_m": [1, 1, 1], "spacing_m": [1, 1], "count": [2, 2]}, "antenna": )"
@@ -75,4 +77,12 @@ TEST_CASE("pattern files are relative to the scenario, and all antennas that nam
   CHECK(panel->gain_dbi(0.0, std::acos(0.0)) == doctest::Approx(9.15).epsilon(1e-12));
   CHECK(shared(scenario.scene.receivers()[1].antenna) == panel);
   CHECK(shared(scenario.grids[0].antenna) == panel);
+}
+
+TEST_CASE("plane waves over an array may be asked for by name") {
+  AntennaCase files;
+  files.propagation = R"({"antenna_array": "plane_wave"})";
+  CHECK_NOTHROW(files.load());
+  files.propagation = R"({"antenna_array": null})";
+  CHECK_NOTHROW(files.load());
 }
