@@ -17,6 +17,7 @@
 #include "dcem/core/units.hpp"
 #include "dcem/geometry/adaptive_tiles.hpp"
 #include "dcem/paths/scatter_solver.hpp"
+#include "dcem/paths/tile_sight.hpp"
 
 namespace dcem {
 
@@ -32,11 +33,16 @@ class DiffuseIntegral {
  public:
   DiffuseIntegral(const SceneTracer<Tree>& tracer, const ScatteredPower<Surface, Loss>& scattered,
                   const DiffuseSettings& settings, int max_transmissions)
-      : scene_(tracer.scene()), scattered_(scattered), settings_(settings), solver_(tracer, max_transmissions) {}
+      : tracer_(tracer),
+        scene_(tracer.scene()),
+        scattered_(scattered),
+        settings_(settings),
+        max_transmissions_(static_cast<std::size_t>(max_transmissions)),
+        solver_(tracer, max_transmissions) {}
 
   DiffusePower evaluate(const LinkEnd& transmitter, const RadioEnd& from, const LinkEnd& receiver, const RadioEnd& to,
                         const DiffuseKey& key) {
-    Integrand integrand{*this, transmitter, from, receiver, to, {}};
+    Integrand integrand{*this, transmitter, from, receiver, to, TileSight<Tree>(tracer_, transmitter, receiver)};
     AdaptiveTiles<Integrand> tiles(
         {db_to_power_ratio(settings_.tolerance_db) - 1.0,
          settings_.tile_max_m.value_or(std::numeric_limits<double>::infinity()), settings_.tile_budget},
@@ -48,8 +54,9 @@ class DiffuseIntegral {
     tiles.refine();
     DiffusePower result = collect(tiles, integrand, key);
     result.legs = solver_.counters().legs - before.legs;
-    result.traversal.nodes_visited = solver_.counters().traversal.nodes_visited - before.traversal.nodes_visited;
-    result.traversal.primitives_tested =
+    result.traversal = integrand.traversal;
+    result.traversal.nodes_visited += solver_.counters().traversal.nodes_visited - before.traversal.nodes_visited;
+    result.traversal.primitives_tested +=
         solver_.counters().traversal.primitives_tested - before.traversal.primitives_tested;
     return result;
   }
@@ -62,13 +69,24 @@ class DiffuseIntegral {
     const RadioEnd& from;
     const LinkEnd& receiver;
     const RadioEnd& to;
-    std::vector<std::pair<std::size_t, DiffuseContribution>> seen;  ///< by tile; only those that bring power
+    TileSight<Tree> sight;
+    std::vector<std::pair<std::size_t, DiffuseContribution>> seen{};  ///< by tile; only those that bring power
+    std::vector<FacetId> sheets{};
+    TraversalCounters traversal{};
 
     double bound(const Tile& tile) const {
       const double from_m = least_distance_m(tile, from.position_m), to_m = least_distance_m(tile, to.position_m);
       return integral.scattered_.limit_per_m2(integral.facet_of(tile), tile.centroid_m(), tile.radius_m(), from_m, to_m,
                                               from, to) *
              tile.area_m2();
+    }
+
+    /// With what certainly stands in the way of the whole tile.
+    double tight_bound(const Tile& tile) {
+      if (!sight.crossed_by_all(tile, sheets, traversal) || sheets.size() > integral.max_transmissions_) return 0.0;
+      double passed = 1.0;
+      for (const FacetId sheet : sheets) passed *= integral.scattered_.transmission_limit(integral.scene_.facet(sheet));
+      return passed * bound(tile);
     }
 
     /// Power density changes over a distance, a lobe within its width.
@@ -140,9 +158,11 @@ class DiffuseIntegral {
     return result;
   }
 
+  const SceneTracer<Tree>& tracer_;
   const Scene& scene_;
   const ScatteredPower<Surface, Loss>& scattered_;
   DiffuseSettings settings_;
+  std::size_t max_transmissions_;
   ScatterSolver<Tree> solver_;
 };
 

@@ -63,6 +63,21 @@ class ScatteredPower {
     return 0.0;
   }
 
+  /// No less than the power that a sheet lets pass, at any angle: the largest of many angles, and a little more.
+  double transmission_limit(const WorldFacet& sheet) const {
+    std::vector<double>& limits = transmission_limits_;
+    if (limits.size() <= sheet.material.value) limits.resize(sheet.material.value + 1, -1.0);
+    double& limit = limits[sheet.material.value];
+    if (limit >= 0.0) return limit;
+    constexpr int angles = 256;
+    for (int index = 0; index <= angles; ++index) {
+      const PolarizedCoefficients through =
+          surface_.response(sheet.material, static_cast<double>(index) / angles).transmission;
+      limit = std::max({limit, std::norm(through.te), std::norm(through.tm)});
+    }
+    return limit *= 1.05;
+  }
+
   /// The angle within which the pattern of a surface changes; at most 1.
   double pattern_width_rad(MaterialId material) const {
     if constexpr (ScatteringModel<Surface>) return scattering_width_rad(surface_.scattering(material));
@@ -169,6 +184,7 @@ class ScatteredPower {
   const Loss& loss_;
   const MediumLoss& medium_;
   double frequency_hz_;
+  mutable std::vector<double> transmission_limits_;  ///< by material, asked for once; not for several threads at once
 };
 
 }  // namespace dcem

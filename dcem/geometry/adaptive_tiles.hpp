@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -35,7 +36,8 @@ struct Tile {
   std::uint64_t place = 1;   ///< which part of it: 1 is the whole, 2p and 2p + 1 are the halves of p, modulo 2^64
   double bound = 0.0;        ///< no less than the value can be
   double value = 0.0;
-  double error = 0.0;  ///< estimate
+  double error = 0.0;     ///< estimate
+  bool is_tight = false;  ///< the bound is the tight one
   bool is_evaluated = false;
   bool is_halved = false;  ///< its halves stand for it
 
@@ -54,7 +56,9 @@ struct Tile {
 /// `Integrand` has `double bound(const Tile&)`, an upper bound of the tile's integral; `double resolution_m(const
 /// Tile&)`, the longest edge of a tile that shows what the integrand does there; and `double evaluate(const Tile&,
 /// std::size_t index)`, its integrand at the centroid times its area, where `index` is the tile's place in `tiles()`.
-/// None is negative. The same domain in the same order gives the same bits.
+/// None is negative. It may have `double tight_bound(const Tile&)`, a lower bound from above that costs more: it is
+/// asked for before a tile is evaluated, and a tile that has 0 there is not. The same domain in the same order gives
+/// the same bits.
 template <typename Integrand>
 class AdaptiveTiles {
  public:
@@ -108,6 +112,11 @@ class AdaptiveTiles {
   void improve(std::size_t index) {
     error_ -= tiles_[index].error;
     if (longest_edge_m(tiles_[index]) > settings_.longest_edge_m) return halve_unseen(index);
+    if (!tiles_[index].is_tight && has_tight_bound) {
+      tighten(tiles_[index]);
+      tiles_[index].error = tiles_[index].bound;
+      return enter(index);
+    }
     if (tiles_[index].is_evaluated) return halve(index);
     evaluate(index);
     tiles_[index].error = std::max(tiles_[index].value, tiles_[index].bound / slowest_decay);
@@ -115,15 +124,22 @@ class AdaptiveTiles {
     enter(index);
   }
 
+  void tighten(Tile& tile) const {
+    if constexpr (has_tight_bound) tile.bound = std::min(tile.bound, integrand_.tight_bound(tile));
+    tile.is_tight = true;
+  }
+
   void doubt_if_coarse(Tile& tile) const {
     const bool coarse = longest_edge_m(tile) > integrand_.resolution_m(tile);
     if (coarse) tile.error = std::max(tile.error, tile.bound);
+    tile.error = std::min(tile.error, tile.bound);
   }
 
   void evaluate(std::size_t index) {
+    tiles_[index].is_evaluated = true;
+    if (tiles_[index].bound == 0.0) return;
     ++evaluated_;
     tiles_[index].value = integrand_.evaluate(tiles_[index], index);
-    tiles_[index].is_evaluated = true;
     total_ += tiles_[index].value;
   }
 
@@ -140,6 +156,7 @@ class AdaptiveTiles {
     double bounds = 0.0, values = 0.0;
     for (Tile half : halves(whole)) {
       half.bound = integrand_.bound(half);
+      tighten(half);
       bounds += half.bound;
       tiles_.push_back(half);
       evaluate(tiles_.size() - 1);
@@ -174,6 +191,9 @@ class AdaptiveTiles {
   }
 
   static constexpr double slowest_decay = 16.0;
+  static constexpr bool has_tight_bound = requires(Integrand & integrand, const Tile& tile) {
+    { integrand.tight_bound(tile) } -> std::convertible_to<double>;
+  };
 
   TileSettings settings_;
   Integrand& integrand_;
