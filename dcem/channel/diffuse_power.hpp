@@ -117,7 +117,7 @@ class DiffuseIntegral {
     }
   };
 
-  /// Half of what is promised: errors are estimates, and half is what they were seen to fall short by.
+  /// Half of what is promised: errors are estimates, and half as much again is what they were seen to lack.
   double relative_tolerance() const { return 0.5 * (db_to_power_ratio(settings_.tolerance_db) - 1.0); }
 
   const WorldFacet& facet_of(const Tile& tile) const { return scene_.facet(scene_.facet_of_triangle(tile.source)); }
@@ -153,10 +153,10 @@ class DiffuseIntegral {
       result.tiles.push_back(std::move(one));
     }
     result.power_ratio = tiles.total();
-    result.residual_ratio = tiles.error();
+    result.residual_ratio = 2.0 * tiles.error();
     result.tiles_evaluated = tiles.evaluated();
     // The running sums of the refinement differ from these by rounding.
-    result.converged = result.residual_ratio <= relative_tolerance() * result.power_ratio * (1.0 + 1e-9);
+    result.converged = result.residual_ratio <= 2.0 * relative_tolerance() * result.power_ratio * (1.0 + 1e-9);
     return result;
   }
 
