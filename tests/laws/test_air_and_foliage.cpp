@@ -279,7 +279,8 @@ TEST_CASE("foliage by frequency takes 0.79·f^0.61 dB per metre, f in GHz") {
   // 10^0.61 = 4.073803, 100^0.61 = 16.59587, 28^0.61 = 7.634250, 60^0.61 = 12.152686 by tables of logarithms.
   const std::map<double, double> expected_db_per_m{
       {1e9, 0.79}, {10e9, 3.218304}, {28e9, 6.031058}, {60e9, 9.600622}, {100e9, 13.110737}};
-  for (const auto& [frequency_hz, db_per_m] : expected_db_per_m) {
+  for (const auto& row : expected_db_per_m) {
+    const double frequency_hz = row.first, db_per_m = row.second;
     CAPTURE(frequency_hz);
     Scene scene = scene_of({});
     add_crown(scene, "crown", Vec3(0, -1, 0), Vec3(2, 1, 6), "auto");

@@ -749,6 +749,17 @@ TEST_CASE("rays and the exact search find the same paths where foliage stands") 
   CHECK(static_cast<double>(recall.paths_found) >= 0.95 * static_cast<double>(recall.paths_there));
 }
 
+TEST_CASE("a crown of many triangles leaves the exact search as cheap, and as much offered, as it is without it") {
+  PropagationSettings by_name, automatic;
+  by_name.discovery = Discovery::exact;
+  Scene scene = scene_with_foliage();
+  scene.set_scenery(street());
+  CHECK(resolve_discovery(automatic, scene) == Discovery::exact);
+  scene.add_object("crown", ball(2.0, 4), standing({Vec3(-15, 1, 4)}));  // 2048 triangles, none of them a mirror
+  CHECK(resolve_discovery(automatic, scene) == Discovery::exact);
+  CHECK_NOTHROW(resolve_discovery(by_name, scene));
+}
+
 TEST_CASE("a ray goes through foliage as if it were not there") {
   const auto sequences = [](bool with_crowns) {
     Scene scene = scene_with_foliage();
