@@ -88,7 +88,7 @@ void map_scenario(const ScenarioOptions& options) {
   io::OutputFolder folder(job.folder);
   const std::size_t points = point_count(job.scenario);
   io::RunSummary summary(run_facts(job, simulator, points), simulator.scene());
-  print_warnings(job, options);
+  print_warnings(job.scenario.warnings, options);
   {
     io::ProgressBar bar("points", points * job.frames.count(), progress_mode(options));
     for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
@@ -97,6 +97,7 @@ void map_scenario(const ScenarioOptions& options) {
   }
   folder.open("map_summary.json").write(summary.json());
   folder.commit();
+  print_warnings(summary.late_warnings(), options);
   if (!options.quiet) std::cout << summary.table(folder.path());
 }
 

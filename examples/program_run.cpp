@@ -15,7 +15,7 @@ void write_frame(io::ResultWriter& writer, const FrameResult& result, const Scen
   try {
     writer.write(result);
   } catch (const std::invalid_argument& error) {
-    throw io::InputError(options.scenario, std::string("output: ") + error.what() + "; expected wider bins");
+    throw io::InputError(options.scenario, std::string(error.what()) + "; expected wider bins");
   }
 }
 
@@ -53,11 +53,12 @@ void run_scenario(const ScenarioOptions& options) {
   io::OutputFolder folder(job.folder);
   io::ResultWriter writer = make_writer(folder, job, simulator, options);
   io::RunSummary summary(run_facts(job, simulator, receivers.size()), simulator.scene());
-  print_warnings(job, options);
+  print_warnings(job.scenario.warnings, options);
   solve_frames(simulator, job, options, frames, writer, summary);
   writer.finish();
   folder.open("summary.json").write(summary.json());
   folder.commit();
+  print_warnings(summary.late_warnings(), options);
   if (!options.quiet) std::cout << summary.table(folder.path());
 }
 

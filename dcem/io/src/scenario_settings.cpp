@@ -124,7 +124,7 @@ void read_cfr(const JsonValue& value, OutputSettings& output) {
 void read_doppler(const JsonValue& value, OutputSettings& output) {
   output.doppler = value.is_boolean() ? value.boolean() : true;
   if (value.is_boolean()) return;
-  output.doppler_bin_hz = value.object({"bin_hz"}).at("bin_hz").number({1e-6, 1e9});
+  output.doppler_bin_hz = value.object({"bin_hz"}).number("bin_hz", output.doppler_bin_hz, {1e-6, 1e9});
 }
 
 OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) {
