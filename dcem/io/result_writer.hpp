@@ -41,6 +41,9 @@ struct ResultFacts {
   std::size_t first_frame = 0;  ///< `FrameResult::index` of the first of them
 };
 
+/// The links that `output.plots` counts: transmitters times receivers, without those of a device to itself.
+std::size_t plotted_links(const Scene& scene, std::span<const Device> receivers);
+
 class CsvLine;
 class PathCollector;
 class PathLines;
