@@ -4,8 +4,8 @@
 /// A dot has one colour per trace, so that a trace can be followed, and a size that says how large its value is. The
 /// bytes depend on the chart alone.
 #include <cstdint>
+#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "dcem/io/atomic_file.hpp"
@@ -42,7 +42,9 @@ Colour trace_colour(std::uint64_t trace);
 /// for a number that is not finite or beyond ±1e100.
 Image draw_scatter_chart(const ScatterChart& chart);
 
-/// `draw_scatter_chart` into an open file; committing it is up to the caller. Throws as that does, and `OutputError`.
+/// `draw_scatter_chart` into a file that appears only when complete. Throws as that does, and `OutputError`.
+void write_scatter_chart_png(const ScatterChart& chart, const std::filesystem::path& path);
+/// The same into a file of an `OutputFolder`; the caller commits.
 void write_scatter_chart_png(const ScatterChart& chart, AtomicFile& file);
 
 }  // namespace dcem::io

@@ -183,6 +183,10 @@ Image draw_scatter_chart(const ScatterChart& chart) {
   return image;
 }
 
+void write_scatter_chart_png(const ScatterChart& chart, const std::filesystem::path& path) {
+  draw_scatter_chart(chart).write_png(path);
+}
+
 void write_scatter_chart_png(const ScatterChart& chart, AtomicFile& file) {
   draw_scatter_chart(chart).write_png(file.stream());
 }
