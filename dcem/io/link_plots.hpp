@@ -26,7 +26,7 @@ struct LinkNames {
 };
 
 /// The power delay profile of one instant as bars over delay in ns: specular paths, and where there is any, diffuse
-/// power beside it. `bin_s` is the width of the bins of `taps`. Bars end at a multiple of 10 dB, 60 to 70 dB below the
+/// power beside it. `bin_s` is the width of the bins of `taps`. Bars end at a multiple of 20 dB, 60 to 80 dB below the
 /// highest; weaker taps are left out. Throws std::invalid_argument unless bin_s > 0.
 LineChart profile_chart(std::string title, std::span<const PdpTap> taps, double bin_s, double power_dbm);
 
@@ -45,8 +45,9 @@ class LinkPlots {
   /// Doppler; how many paths are new, gone or kept since the frame before, by their ids.
   std::vector<LineChart> charts() const;
 
-  /// Power over time and delay. Of more than 1000 frames, neighbours are joined to their mean power; of more than 400
-  /// bins, neighbours to their sum; the title says so. Nothing where no power arrives in any frame.
+  /// Power over time and delay. Of more than 1000 frames, neighbours are joined to their mean power; of more than 280
+  /// bins, neighbours to their sum; the title says so. Power more than 70 dB below the
+  /// maximum is left out. Nothing where no power arrives in any frame.
   std::optional<HeatMap> profile() const;
 
   /// Every specular path of every frame over time and delay. Nothing where there is none.

@@ -203,14 +203,14 @@ TEST_CASE("the profile keeps the power of every bin, and where frames or bins ar
   for (int frame = 0; frame < 3000; ++frame) many.add(scene, 0.1 * frame, &link);
   const io::HeatMap small = few.profile().value(), large = many.profile().value();
   CHECK(small.columns == 10);
-  CHECK(small.rows <= 400);
+  CHECK(small.rows <= 280);
   CHECK(large.columns == 1000);
   // 1 W: 4e-3 mW in every frame.
   CHECK(sum_mw(small) == doctest::Approx(10 * 4e-3).epsilon(1e-9));
   CHECK(sum_mw(large) == doctest::Approx(1000 * 4e-3).epsilon(1e-9));
   CHECK(large.title.find("frames joined") != std::string::npos);
   CHECK(small.title.find("frames joined") == std::string::npos);
-  CHECK(small.title.find("bins of 13 ns") != std::string::npos);  // 5091 bins in at most 400 rows
+  CHECK(small.title.find("bins of 19 ns") != std::string::npos);  // 5091 bins in at most 280 rows
   CHECK(io::heat_map_layout(large).sampling == 1);                // no cell is left out of the picture
 }
 
@@ -219,9 +219,9 @@ TEST_CASE("the profile of one frame has a bar per bin: specular, and beside it d
   const io::LineChart chart = io::profile_chart("one", taps, 1e-9, 30.0);
   REQUIRE(series_names(chart) == Names{"specular paths", "diffuse"});
   CHECK(chart.x_unit == "ns");
-  // −25.2 dBm is the highest: bars stand on −90; −110 dBm is left out.
+  // −25.2 dBm is the highest: bars stand on −100; −110 dBm is left out.
   REQUIRE(chart.series[0].y.size() == 3);
-  CHECK(chart.series[0].y[0] == -90.0);
+  CHECK(chart.series[0].y[0] == -100.0);
   CHECK(chart.series[0].y[1] == doctest::Approx(30.0 + 10.0 * std::log10(2e-6)).epsilon(1e-9));
   CHECK(chart.series[0].x[0] > 10.0);
   CHECK(chart.series[0].x[0] < chart.series[1].x[0]);

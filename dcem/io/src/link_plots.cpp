@@ -17,7 +17,8 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_columns = 1000;
-constexpr std::int64_t most_rows = 400, least_rows = 20;
+constexpr double most_range_db = 70.0;
+constexpr std::int64_t most_rows = 280, least_rows = 20;
 
 std::string bin_text(double bin_s) {
   std::string text = "bins of ";
@@ -68,7 +69,7 @@ LineChart profile_chart(std::string title, std::span<const PdpTap> taps, double 
     if (tap.power_ratio > 0.0) highest_dbm = std::max(highest_dbm, level_dbm(tap.power_ratio));
     any_diffuse = any_diffuse || tap.diffuse_power_ratio > 0.0;
   }
-  const double floor_dbm = std::isfinite(highest_dbm) ? 10.0 * std::floor(highest_dbm / 10.0) - 60.0 : 0.0;
+  const double floor_dbm = std::isfinite(highest_dbm) ? 20.0 * std::floor((highest_dbm - 60.0) / 20.0) : 0.0;
   LineChart chart{std::move(title), "delay", "ns", "received power", "dBm"};
   const auto specular = [&](const PdpTap& tap) { return level_dbm(tap.power_ratio - tap.diffuse_power_ratio); };
   const auto diffuse = [&](const PdpTap& tap) { return level_dbm(tap.diffuse_power_ratio); };
@@ -201,6 +202,23 @@ ProfileGrid profile_grid(const std::vector<double>& times_s, std::int64_t lowest
   return grid;
 }
 
+// What is far below the strongest cell would drown the rest in the darkest colour.
+void leave_out_weak_cells(HeatMap& map) {
+  double top_dbm = -std::numeric_limits<double>::infinity(), low_dbm = std::numeric_limits<double>::infinity();
+  for (const double value : map.values) {
+    if (std::isnan(value)) continue;
+    top_dbm = std::max(top_dbm, value);
+    low_dbm = std::min(low_dbm, value);
+  }
+  const double high = 5.0 * std::ceil(top_dbm / 5.0);
+  const double low = std::min(std::max(5.0 * std::floor(low_dbm / 5.0), high - most_range_db), high - 10.0);
+  for (double& value : map.values) {
+    if (value < low) value = nothing;
+  }
+  map.range = ValueRange{low, high};
+  map.no_value_label = "nothing above " + format_fixed(low, 0) + " dBm";
+}
+
 }  // namespace
 
 std::optional<HeatMap> LinkPlots::profile() const {
@@ -226,7 +244,6 @@ std::optional<HeatMap> LinkPlots::profile() const {
   map.title = title("power delay profile, " + bin_text(row_s));
   if (figures_.size() > grid.columns) map.title += ", frames joined";
   map.axes = {"time", "s", "delay", "ns", false};
-  map.no_value_label = "no path";
   map.columns = grid.columns;
   map.rows = static_cast<std::size_t>(grid.rows);
   map.origin_x_m = grid.first_s;
@@ -234,17 +251,11 @@ std::optional<HeatMap> LinkPlots::profile() const {
   const double bottom_ns = 1e9 * bin_s_ * static_cast<double>(grid.first_bin);
   map.spacing_y_m = std::max({1e9 * row_s, 1e-6, 1e-11 * bottom_ns});
   map.origin_y_m = bottom_ns + 0.5 * map.spacing_y_m;
-  double top_dbm = -std::numeric_limits<double>::infinity(), low_dbm = std::numeric_limits<double>::infinity();
   for (std::size_t cell = 0; cell < power.size(); ++cell) {
-    const bool holds = power[cell] > 0.0;
-    map.values.push_back(holds ? names_.power_dbm + power_ratio_to_db(power[cell] / frames[cell % grid.columns])
-                               : nothing);
-    if (!holds) continue;
-    top_dbm = std::max(top_dbm, map.values.back());
-    low_dbm = std::min(low_dbm, map.values.back());
+    const double mean = power[cell] / frames[cell % grid.columns];
+    map.values.push_back(power[cell] > 0.0 ? names_.power_dbm + power_ratio_to_db(mean) : nothing);
   }
-  const double high = 5.0 * std::ceil(top_dbm / 5.0);
-  map.range = ValueRange{std::min(std::max(5.0 * std::floor(low_dbm / 5.0), high - 60.0), high - 10.0), high};
+  leave_out_weak_cells(map);
   return map;
 }
 

@@ -17,7 +17,7 @@ using namespace detail;
 
 constexpr Colour white{255, 255, 255};
 constexpr int plot_width_px = 860, plot_height_px = 480, legend_row_px = 30, legend_between_px = 28;
-constexpr double largest_radius_px = 6.0, smallest_radius_px = 1.2;
+constexpr double largest_radius_px = 6.0, smallest_radius_px = 1.0;
 
 struct Span {
   double low = 0.0, high = 1.0;
@@ -83,9 +83,13 @@ ScatterPlan plan_of(const ScatterChart& chart) {
   return plan;
 }
 
+// 1 for the largest values, 0 for the smallest dots.
+double strength(const ScatterChart& chart, const ScatterPlan& plan, double value) {
+  return std::clamp(1.0 - (plan.top_value - value) / chart.value_span, 0.0, 1.0);
+}
+
 double radius_px(const ScatterChart& chart, const ScatterPlan& plan, double value) {
-  const double share = 1.0 - (plan.top_value - value) / chart.value_span;
-  return smallest_radius_px + std::clamp(share, 0.0, 1.0) * (plan.radius_px - smallest_radius_px);
+  return smallest_radius_px + strength(chart, plan, value) * (plan.radius_px - smallest_radius_px);
 }
 
 Colour colour_of(const ScatterChart::Dot& dot) {
@@ -97,7 +101,8 @@ void draw_lines(Image& image, const ScatterChart& chart, const ScatterPlan& plan
   for (const ScatterChart::Dot& dot : chart.dots) {
     const auto before = last.find(dot.trace);
     if (dot.joins_last && before != last.end()) {
-      image.draw_line(plan.point(*before->second), plan.point(dot), colour_of(dot), 1.0, 0.6);
+      image.draw_line(plan.point(*before->second), plan.point(dot), colour_of(dot), 1.0,
+                      0.3 + 0.5 * strength(chart, plan, dot.value));
     }
     last[dot.trace] = &dot;
   }
@@ -115,7 +120,7 @@ void draw_dots(Image& image, const ScatterChart& chart, const ScatterPlan& plan)
 // A dot with a text to its right; returns where the next one may begin.
 int draw_legend_dot(Image& image, int x, int y, double radius, Colour colour, const std::string& text) {
   image.fill_disc({x + largest_radius_px, y + 0.5 * text_height_px(label_scale)}, radius, colour);
-  const int text_x = x + static_cast<int>(2.0 * largest_radius_px) + gap_px;
+  const int text_x = x + static_cast<int>(2.0 * largest_radius_px) + gap_px + 2;
   image.draw_text(text_x, y, text, picture_ink, label_scale);
   return text_x + label_length_px(text) + legend_between_px;
 }
