@@ -38,6 +38,10 @@ struct OutputSettings {
   std::size_t cfr_points = 256;
   bool doppler = false;
   double doppler_bin_hz = 10.0;
+  bool npz = false;
+  bool plots = false;
+  std::size_t plots_max_links = 20;              ///< so many links have pictures, the first ones
+  std::optional<std::size_t> plots_pdp_frame{};  ///< frame of the single power delay profile; default: the middle one
 };
 
 /// What the command line may override. Absent: the scenario file decides.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "dcem/io/src/file_name.hpp"
 #include "dcem/io/src/number_text.hpp"
 #include "dcem/io/text_table.hpp"
 
@@ -13,25 +14,6 @@ namespace dcem::io {
 namespace {
 
 constexpr std::size_t sheet_bytes = std::size_t{1} << 20;
-
-bool fits_file_name(unsigned char character) {
-  constexpr std::string_view separators = "/\\:*?\"<>|%";
-  return character >= 32 && character != 127 && separators.find(static_cast<char>(character)) == std::string_view::npos;
-}
-
-std::string file_name_part(const std::string& id) {
-  constexpr std::string_view hexadecimal = "0123456789ABCDEF";
-  std::string part;
-  for (const char character : id) {
-    const auto byte = static_cast<unsigned char>(character);
-    if (fits_file_name(byte)) {
-      part.push_back(character);
-    } else {
-      part.append({'%', hexadecimal[byte / 16], hexadecimal[byte % 16]});
-    }
-  }
-  return part;
-}
 
 void append_point(std::string& text, const RadioMapPoint& point, double frequency_hz) {
   CsvLine line(text);

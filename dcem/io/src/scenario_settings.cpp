@@ -10,7 +10,7 @@ namespace {
 constexpr long long highest_order = 10, highest_diffraction_order = 3;
 
 /// The keys of `output` that this version does not write.
-const std::vector<std::string> later_outputs{"npz", "mat", "qd", "p2m", "deepmimo", "kml", "gltf", "html", "plots"};
+const std::vector<std::string> later_outputs{"mat", "qd", "p2m", "deepmimo", "kml", "gltf", "html"};
 
 /// The value from the command line, or else the one from the file.
 std::optional<JsonValue> chosen(const JsonObject& command_line, const std::string& option,
@@ -127,8 +127,19 @@ void read_doppler(const JsonValue& value, OutputSettings& output) {
   output.doppler_bin_hz = value.object({"bin_hz"}).number("bin_hz", output.doppler_bin_hz, {1e-6, 1e9});
 }
 
+void read_plots(const JsonValue& value, OutputSettings& output) {
+  output.plots = value.is_boolean() ? value.boolean() : true;
+  if (value.is_boolean()) return;
+  const JsonObject object = value.object({"max_links", "pdp_frame"});
+  output.plots_max_links =
+      static_cast<std::size_t>(object.integer("max_links", static_cast<long long>(output.plots_max_links), 1, 10'000));
+  if (const auto frame = object.find("pdp_frame")) {
+    output.plots_pdp_frame = static_cast<std::size_t>(frame->integer(0, 999'999'999));
+  }
+}
+
 OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) {
-  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler"};
+  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots"};
   known.insert(known.end(), later_outputs.begin(), later_outputs.end());
   const JsonObject object = value.object(known);
   for (const std::string& key : later_outputs) {
@@ -141,6 +152,8 @@ OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) 
   if (const auto pdp = object.find("pdp")) read_pdp(*pdp, output);
   if (const auto cfr = object.find("cfr")) read_cfr(*cfr, output);
   if (const auto doppler = object.find("doppler")) read_doppler(*doppler, output);
+  output.npz = object.boolean("npz", false);
+  if (const auto plots = object.find("plots")) read_plots(*plots, output);
   return output;
 }
 
