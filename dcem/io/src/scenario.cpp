@@ -18,7 +18,7 @@ nlohmann::json output_block(std::string_view list, const nlohmann::json& file_ou
   while (true) {
     const std::size_t comma = std::min(list.find(','), list.size());
     const std::string key(trimmed(list.substr(0, comma)));
-    const bool has_settings = file_output.is_object() && file_output.contains(key) && file_output[key].is_object();
+    const bool has_settings = file_output.is_object() && file_output.contains(key) && file_output[key].is_structured();
     block[key] = has_settings ? file_output[key] : nlohmann::json(true);
     if (comma == list.size()) return block;
     list.remove_prefix(comma + 1);
@@ -69,6 +69,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   result.settings.propagation = read_propagation(root, command_line);
   result.time = read_time(root);
   result.output = read_output(root, command_line);
+  result.noise = read_noise(root);
   read_mobility(root, file.parent_path(), result);
   MotionReader motions(file.parent_path(), result.time.start_s);
   BodyLoader(root, file.parent_path(), motions, result).load();

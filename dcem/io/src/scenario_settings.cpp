@@ -1,5 +1,6 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <set>
 
 #include "dcem/io/src/scenario_parts.hpp"
 
@@ -138,8 +139,23 @@ void read_plots(const JsonValue& value, OutputSettings& output) {
   }
 }
 
+/// `true`, or a list of the endings of the files that are wanted.
+MapOutputs read_map_outputs(const JsonValue& value) {
+  const std::vector<std::string> endings{"csv", "png", "npz", "asc", "svg"};
+  MapOutputs outputs;
+  if (value.is_boolean()) {
+    if (!value.boolean()) value.fail("is false; expected true, or a list of csv, png, npz, asc, svg");
+    return outputs;
+  }
+  std::set<std::string> wanted;
+  for (const JsonValue& ending : value.elements()) wanted.insert(ending.one_of(endings));
+  if (wanted.empty()) value.fail("is an empty list; expected some of csv, png, npz, asc, svg");
+  const auto has = [&](const char* ending) { return wanted.contains(ending); };
+  return {has("csv"), has("png"), has("npz"), has("asc"), has("svg")};
+}
+
 OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) {
-  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots"};
+  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots", "map"};
   known.insert(known.end(), later_outputs.begin(), later_outputs.end());
   const JsonObject object = value.object(known);
   for (const std::string& key : later_outputs) {
@@ -154,6 +170,7 @@ OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) 
   if (const auto doppler = object.find("doppler")) read_doppler(*doppler, output);
   output.npz = object.boolean("npz", false);
   if (const auto plots = object.find("plots")) read_plots(*plots, output);
+  if (const auto map = object.find("map")) output.map = read_map_outputs(*map);
   return output;
 }
 
@@ -241,10 +258,18 @@ OutputSettings read_output(const JsonObject& scenario, const JsonObject& command
   return value ? read_output_keys(*value, true) : OutputSettings{};
 }
 
+std::optional<NoiseSettings> read_noise(const JsonObject& scenario) {
+  const auto object = find_object(scenario, "noise", {"bandwidth_hz", "noise_figure_db", "temperature_k"});
+  if (!object) return std::nullopt;
+  NoiseSettings noise;
+  noise.bandwidth_hz = object->at("bandwidth_hz").number({0.0, 1e12, true});
+  noise.noise_figure_db = object->number("noise_figure_db", noise.noise_figure_db, {0.0, 100.0});
+  noise.temperature_k = object->number("temperature_k", noise.temperature_k, {0.0, 1e6, true});
+  return noise;
+}
+
 void refuse_later_blocks(const JsonObject& scenario) {
-  for (const char* key : {"geo", "noise"}) {
-    if (scenario.has(key)) scenario.at(key).not_in_this_version("no such key");
-  }
+  if (scenario.has("geo")) scenario.at("geo").not_in_this_version("no such key");
   const auto links = scenario.find("links");
   if (links && !(links->is_string() && links->text() == "all")) links->not_in_this_version("\"all\"");
 }
