@@ -26,6 +26,14 @@ struct TimeSettings {
   }
 };
 
+/// How much a page of results may hold, so that a browser opens a day's trace, too.
+struct ViewerSettings {
+  std::size_t max_rays = 400'000;  ///< over all frames; half as many links and poses, ten times as many map values
+  std::size_t max_frames = 2'000;
+
+  friend bool operator==(const ViewerSettings&, const ViewerSettings&) = default;
+};
+
 /// Which result files are written.
 struct OutputSettings {
   bool paths = false;
@@ -38,6 +46,8 @@ struct OutputSettings {
   std::size_t cfr_points = 256;
   bool doppler = false;
   double doppler_bin_hz = 10.0;
+  bool html = false;
+  ViewerSettings viewer{};
 };
 
 /// What the command line may override. Absent: the scenario file decides.
