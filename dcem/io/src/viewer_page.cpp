@@ -1,10 +1,15 @@
 #include "dcem/io/src/viewer_page.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <span>
+#include <optional>
+#include <utility>
 
 #include "dcem/io/src/colour_map.hpp"
 
@@ -177,6 +182,15 @@ class FramePart {
  public:
   FramePart(const std::vector<ViewedFrame>& frames, const Vec3& centre_m) : centre_m_(centre_m) {
     names_.of("");  // of devices
+    // All of them are there, also where nothing comes to stand in them.
+    for (const char* name : {"frame_index", "frame_links", "frame_poses", "pose_thing", "pose_name", "link_tx",
+                             "link_rx", "link_paths", "link_listed", "link_rays", "ray_path", "map_obstructed"}) {
+      counts(name);
+    }
+    for (const char* name : {"pose", "link_power", "link_diffuse", "link_k_factor", "link_delay_spread", "ray_length",
+                             "ray_gain", "ray_doppler", "ray_points", "map_values"}) {
+      numbers(name);
+    }
     for (const ViewedFrame& frame : frames) add(frame);
     add_maps(frames);
   }
@@ -190,10 +204,7 @@ class FramePart {
   }
 
   void write(AtomicFile& file) const {
-    for (const auto& [name, array] : arrays_) {
-      const bool is_count = name.second == "u32";
-      array.write(file, name.first, is_count ? "u32" : name.second);
-    }
+    for (const auto& [name, array] : arrays_) array.write(file, name.first, name.second);
   }
 
  private:

@@ -29,6 +29,8 @@ class Viewer {
     this.shown = mechanisms.map(() => true);
     this.hiddenLinks = new Set();
     this.byPower = false;
+    this.most = data.link_rays.reduce((most, count) => Math.max(most, count), 1);
+    this.strongest = Math.min(this.most, 20);
     this.chosen = null;
     this.rayRange = powerRange(data.power) || { low: -100, high: 0 };
     this.makeScene();
@@ -165,21 +167,27 @@ class Viewer {
     const { data } = this;
     this.rays.clear();
     this.pickable = [];
-    for (const row of this.rows()) {
-      if (this.hiddenLinks.has(this.linkKey(row))) continue;
-      // The strongest last, so that it lies on top.
-      for (let ray = data.rayStart[row + 1] - 1; ray >= data.rayStart[row]; --ray) {
-        if (!this.shown[data.mechanism[data.ray_path[ray]]]) continue;
-        const points = this.rayPoints(row, ray), tint = this.rayColour(ray);
-        for (let i = 1; i < points.length; ++i) {
-          this.rays.add(points[i - 1], points[i], tint);
-          this.pickable.push({ row, ray });
-        }
-      }
+    const rows = [...this.rows()].filter((row) => !this.hiddenLinks.has(this.linkKey(row)));
+    const most = rows.reduce((sum, row) => Math.max(sum, data.link_rays[row]), 0);
+    this.counts = mechanisms.map(() => 0);
+    // The strongest of every link last, so that they lie on top.
+    for (let rank = Math.min(most, this.strongest) - 1; rank >= 0; --rank) {
+      for (const row of rows) if (rank < data.link_rays[row]) this.addRay(row, data.rayStart[row] + rank);
     }
     this.rays.show();
+    this.mechanismCounts.forEach((element, index) => { element.textContent = this.counts[index]; });
     this.updateAccent();
-    this.dirty = true;
+  }
+
+  addRay(row, ray) {
+    const mechanism = this.data.mechanism[this.data.ray_path[ray]];
+    ++this.counts[mechanism];
+    if (!this.shown[mechanism]) return;
+    const points = this.rayPoints(row, ray), tint = this.rayColour(ray);
+    for (let i = 1; i < points.length; ++i) {
+      this.rays.add(points[i - 1], points[i], tint);
+      this.pickable.push({ row, ray });
+    }
   }
 
   updateAccent() {
@@ -206,10 +214,9 @@ class Viewer {
     for (let body = 1; body < data.bodyCount; ++body) this.surfaces.pose(body, poseEntry(data, body, this.frame));
     $("slider").value = this.frame;
     const number = data.frame_index[this.frame], time = data.frame_time[this.frame];
-    $("instant").textContent = `frame ${number} of ${head.first_frame} … ${head.first_frame + head.frames - 1},  t = ${time.toFixed(3)} s`;
+    $("instant").textContent = `frame ${number} of ${head.first_frame} to ${head.first_frame + head.frames - 1}, t = ${time.toFixed(3)} s`;
     this.updateRays();
     this.showMap();
-    this.countMechanisms();
     this.showChosen();
   }
 
@@ -549,6 +556,14 @@ class Viewer {
   }
 
   makeSliders() {
+    Object.assign($("strongest"), { max: this.most, value: this.strongest });
+    const limit = () => {
+      this.strongest = Number($("strongest").value);
+      $("strongest_text").textContent = `${this.strongest} of ${this.most}`;
+      this.updateRays();
+    };
+    $("strongest").addEventListener("input", limit);
+    limit();
     const bottom = this.sceneBox.min.z, height = Math.max(this.sceneBox.max.z - bottom, 0.01);
     const update = () => {
       $("ray_width_text").textContent = `${$("ray_width").value} px`;
@@ -587,13 +602,6 @@ class Viewer {
       });
     }
     this.makeBar("power", this.rayRange);
-  }
-
-  countMechanisms() {
-    const counts = mechanisms.map(() => 0), { data } = this;
-    const first = data.rayStart[data.linkStart[this.frame]], last = data.rayStart[data.linkStart[this.frame + 1]];
-    for (let ray = first; ray < last; ++ray) ++counts[data.mechanism[data.ray_path[ray]]];
-    this.mechanismCounts.forEach((element, index) => { element.textContent = counts[index]; });
   }
 
   makeBar(name, range) {

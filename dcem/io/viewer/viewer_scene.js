@@ -269,7 +269,7 @@ class Orbit {
     const size = box.getSize(new THREE.Vector3());
     box.getCenter(this.target);
     const narrow = Math.min(1, this.camera.aspect);
-    this.distance = Math.max(0.55 * size.length() / Math.tan(this.camera.fov * Math.PI / 360) / narrow, 3);
+    this.distance = Math.max(0.42 * size.length() / Math.tan(this.camera.fov * Math.PI / 360) / narrow, 3);
     this.place();
   }
 }
