@@ -237,6 +237,24 @@ class Browser:
         self.call("Input.dispatchKeyEvent", type="keyUp", key=key, code=code or key)
         self.settle()
 
+    def cpu_seconds(self):
+        """Processor time that all processes of the browser have used. It does not depend on what else runs here."""
+        parents, times = {}, {}
+        for folder in pathlib.Path("/proc").iterdir():
+            try:
+                fields = (folder / "stat").read_text().rpartition(")")[2].split() if folder.name.isdigit() else None
+            except OSError:  # it has ended meanwhile
+                fields = None
+            if fields:
+                parents[int(folder.name)] = int(fields[1])
+                times[int(folder.name)] = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+        def is_ours(process):
+            while process in parents and process != self.process.pid:
+                process = parents[process]
+            return process == self.process.pid
+        return sum(time for process, time in times.items() if is_ours(process))
+
     def close(self):
         self.process.terminate()
         try:

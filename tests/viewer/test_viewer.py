@@ -252,10 +252,14 @@ class ViewerTest(unittest.TestCase):
         self.assertGreater(self.view().count(COLOURS["line of sight"], 0), 30)
 
     def test_it_opens_soon_and_plays_fast(self):
-        rate = self.page.evaluate(frames_per_second)
-        print(f"\nopened in {self.seconds:.2f} s, plays at {rate:.0f} frames per second")
-        self.assertLess(self.seconds, 15)  # of which most is the start of a software renderer
-        self.assertGreater(rate, 20)
+        self.page.evaluate("{ const s = document.querySelector('#strongest'); s.value = 20;"
+                           "s.dispatchEvent(new Event('input')); true }")
+        rate, processor_s = played(self.page)
+        print(f"\nopened in {self.seconds:.2f} s, {playing_text(rate, processor_s)}")
+        self.assertLess(self.seconds, 30)  # a few seconds, on a machine with other work as well
+        # Drawn in software, 20 frames per second of two processors; how many there are in a second depends on what else
+        # runs on the machine, the work of a frame does not.
+        self.assertLess(processor_s, 0.1)
 
 
 frames_per_second = """(async () => {
@@ -270,13 +274,23 @@ frames_per_second = """(async () => {
 })()"""
 
 
+def played(browser):
+    """Frames per second while playing, and processor seconds per frame."""
+    before_s, drawn = browser.cpu_seconds(), browser.evaluate("dcemViewer.drawn")
+    rate = browser.evaluate(frames_per_second)
+    return rate, (browser.cpu_seconds() - before_s) / (browser.evaluate("dcemViewer.drawn") - drawn)
+
+
+def playing_text(rate, processor_s):
+    return f"plays at {rate:.0f} frames per second, {1e3 * processor_s:.0f} ms of processor time per frame"
+
+
 def measure(path):
     """Prints how long a page takes to open and how fast it plays."""
     with Browser(1280, 820) as browser:
         seconds = browser.open(path)
-        rate = browser.evaluate(frames_per_second)
         size = pathlib.Path(path).stat().st_size / 1e6
-        print(f"{path}: {size:.1f} MB, opened in {seconds:.2f} s, plays at {rate:.0f} frames per second")
+        print(f"{path}: {size:.1f} MB, opened in {seconds:.2f} s, {playing_text(*played(browser))}")
         if SHOTS:
             browser.screenshot(None, SHOTS / "measured.png")
 
@@ -292,4 +306,11 @@ if __name__ == "__main__":
         measure(sys.argv[1])
         sys.exit(0)
     PROGRAM = pathlib.Path(sys.argv[1]).absolute()
+    with tempfile.TemporaryDirectory() as empty:
+        write_case(pathlib.Path(empty))
+        tried = subprocess.run([PROGRAM, "run", pathlib.Path(empty) / "street.json", "--frames", "0:1", "--output", "html",
+                                "-o", pathlib.Path(empty) / "out"], capture_output=True, text=True)
+    if tried.returncode == 2 and "has no viewer" in tried.stderr:
+        print(f"skipped: {tried.stderr.strip()}")
+        sys.exit(77)
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -21,6 +21,15 @@ function frequencyText(hz) {
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 
+// Smooth edges take half of the time where no graphics card draws.
+function drawnInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl");
+  const names = gl && gl.getExtension("WEBGL_debug_renderer_info");
+  const name = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "";
+  if (gl && gl.getExtension("WEBGL_lose_context")) gl.getExtension("WEBGL_lose_context").loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
+
 class Viewer {
   constructor(data) {
     this.data = data;
@@ -45,14 +54,14 @@ class Viewer {
 
   makeScene() {
     this.canvas = $("scene");
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !drawnInSoftware() });
     this.renderer.setClearColor(0xf2f4f6);
     this.renderer.localClippingEnabled = true;
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(40, 1, 0.1, 1000);
     this.orbit = new Orbit(this.camera, this.canvas, () => { this.dirty = true; });
     this.cut = new THREE.Plane(new THREE.Vector3(0, 0, -1), 1e9);
-    this.surfaces = new Surfaces(this.data, this.scene, [this.cut]);
+    this.surfaces = new Surfaces(this.data, this.scene);
     this.sceneBox = new THREE.Box3();
     for (const part of this.surfaces.meshes.slice(0, 1)) {
       part.faces.computeBoundingBox();
@@ -569,7 +578,8 @@ class Viewer {
       $("ray_width_text").textContent = `${$("ray_width").value} px`;
       $("opacity_text").textContent = `${$("opacity").value} %`;
       const share = Number($("cut").value) / 1000, z = bottom + share * height;
-      this.cut.constant = share === 1 ? 1e9 : z;
+      this.cut.constant = z;
+      this.surfaces.setCut(share === 1 ? [] : [this.cut]);
       $("cut_text").textContent = share === 1 ? "off" : `${(z + this.head.centre_m[2]).toFixed(2)} m`;
       this.surfaces.setOpacity(Number($("opacity").value) / 100);
       this.dirty = true;
@@ -690,7 +700,7 @@ class Viewer {
 
 // Bars of power over delay, with axes.
 function drawProfile(canvas, bars) {
-  const width = 300, height = 180, ratio = 2, left = 44, bottom = 38, top = 8, right = 8;
+  const width = 300, height = 180, ratio = 2, left = 52, bottom = 38, top = 8, right = 8;
   Object.assign(canvas, { width: width * ratio, height: height * ratio });
   const pen = canvas.getContext("2d");
   pen.scale(ratio, ratio);
@@ -723,7 +733,7 @@ function drawProfile(canvas, bars) {
   pen.fillText("power / dBm", 0, 0);
   pen.restore();
   for (const bar of [...bars].sort((a, b) => b.power - a.power)) {
-    const size = bar.accent ? 7 : 4;
+    const size = bar.accent ? 7 : bars.length > 60 ? 2 : 4;
     if (bar.accent) {
       pen.fillStyle = "#000000";
       pen.fillRect(x(bar.delay) - size / 2 - 1.5, y(bar.power) - 1.5, size + 3, y(powers.low) - y(bar.power) + 1.5);

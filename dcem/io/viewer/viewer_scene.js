@@ -10,13 +10,13 @@ function shadeOf(normal) {
 }
 
 class Surfaces {
-  constructor(data, scene, clipping) {
+  constructor(data, scene) {
     this.data = data;
     this.materials = data.head.materials.map((material) => new THREE.Color(material.colour));
     const offset = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
     this.faceMaterial = new THREE.MeshBasicMaterial(
-      { vertexColors: THREE.VertexColors, side: THREE.DoubleSide, clippingPlanes: clipping, ...offset });
-    this.edgeMaterial = new THREE.LineBasicMaterial({ color: 0x59636d, clippingPlanes: clipping, transparent: true });
+      { vertexColors: THREE.VertexColors, side: THREE.DoubleSide, ...offset });
+    this.edgeMaterial = new THREE.LineBasicMaterial({ color: 0x59636d, transparent: true });
     this.meshes = data.head.meshes.map((mesh) => this.build(mesh, 1));
     this.objects = data.head.bodies.map((body, index) => {
       const parts = index === 0 ? this.meshes[body.mesh] : this.vehicleMesh(body.mesh);
@@ -92,6 +92,14 @@ class Surfaces {
     this.edgeMaterial.opacity = Math.max(opacity, 0.35);
   }
 
+  // Shows what lies below the planes alone.
+  setCut(planes) {
+    for (const material of [this.faceMaterial, this.edgeMaterial]) {
+      material.clippingPlanes = planes;
+      material.needsUpdate = true;
+    }
+  }
+
   pose(body, entry) {
     const object = this.objects[body];
     object.visible = entry >= 0 && this.data.pose_name[entry] !== 0xffffffff;
@@ -106,7 +114,7 @@ class Surfaces {
 const rayVertexShader = `
   attribute vec3 start; attribute vec3 stop; attribute vec3 tint;
   uniform vec2 size; uniform float width; uniform float nearest;
-  varying vec3 colour;
+  varying vec3 colour; varying float across;
   void main() {
     vec4 a = modelViewMatrix * vec4(start, 1.0), b = modelViewMatrix * vec4(stop, 1.0);
     if (a.z > -nearest && b.z < -nearest) a = mix(a, b, (a.z + nearest) / (a.z - b.z));
@@ -115,12 +123,13 @@ const rayVertexShader = `
     vec2 along = (q.xy / q.w - p.xy / p.w) * size;
     along = length(along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);
     gl_Position = position.x < 0.5 ? p : q;
-    gl_Position.xy += vec2(-along.y, along.x) * position.y * width / size * gl_Position.w;
+    gl_Position.xy += vec2(-along.y, along.x) * position.y * (width + 1.0) / size * gl_Position.w;
     colour = tint;
+    across = position.y * (width + 1.0) / 2.0;
   }`;
 const rayFragmentShader = `
-  uniform float opacity; varying vec3 colour;
-  void main() { gl_FragColor = vec4(colour, opacity); }`;
+  uniform float opacity; uniform float width; varying vec3 colour; varying float across;
+  void main() { gl_FragColor = vec4(colour, opacity * clamp(width / 2.0 + 0.5 - abs(across), 0.0, 1.0)); }`;
 
 class Segments {
   constructor(scene, layers) {
