@@ -22,11 +22,13 @@ void write_frame(io::ResultWriter& writer, const FrameResult& result, const Scen
 }
 
 void solve_frames(Simulator<>& simulator, const Job& job, const ScenarioOptions& options, io::FrameSource& frames,
-                  io::ResultWriter& writer, io::RunSummary& summary) {
+                  io::ResultWriter& writer, io::ViewerWriter* viewer, io::RunSummary& summary) {
   io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
   for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
-    const FrameResult result = simulator.advance(frames.frame(simulator.scene(), frame));
+    const Frame instant = frames.frame(simulator.scene(), frame);
+    const FrameResult result = simulator.advance(instant);
     write_frame(writer, result, options);
+    if (viewer != nullptr) viewer->add(instant, result);
     summary.add(io::figures_of(result));
     bar.advance();
   }
@@ -72,8 +74,10 @@ void run_scenario(const ScenarioOptions& options) {
   warn_of_plots(job, io::plotted_links(simulator.scene(), receivers));
   io::RunSummary summary(run_facts(job, simulator, receivers.size()), simulator.scene());
   print_warnings(job.scenario.warnings, options);
-  solve_frames(simulator, job, options, frames, writer, summary);
+  const auto viewer = make_viewer(folder, job, simulator);
+  solve_frames(simulator, job, options, frames, writer, viewer.get(), summary);
   writer.finish();
+  finish_viewer(viewer.get(), summary);
   folder.open("summary.json").write(summary.json());
   folder.commit();
   print_warnings(summary.late_warnings(), options);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dcem/io/scenario.hpp"
@@ -46,6 +47,7 @@ class RunSummary {
   RunSummary(RunFacts facts, const Scene& scene);
 
   void add(const FrameFigures& frame) { frames_.push_back(frame); }
+  void add_warning(std::string line) { facts_.warnings.push_back(std::move(line)); }
 
   /// The text of `summary.json`: `version`, `scenario`, `scene`, `settings`, `warnings`, `totals`, `frames`. Times
   /// differ from run to run; everything else is the same for the same input.

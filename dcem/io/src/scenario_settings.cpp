@@ -3,6 +3,7 @@
 #include <set>
 
 #include "dcem/io/src/scenario_parts.hpp"
+#include "dcem/io/viewer_writer.hpp"
 
 namespace dcem::io {
 
@@ -11,7 +12,7 @@ namespace {
 constexpr long long highest_order = 10, highest_diffraction_order = 3;
 
 /// The keys of `output` that this version does not write.
-const std::vector<std::string> later_outputs{"mat", "qd", "p2m", "deepmimo", "kml", "gltf", "html"};
+const std::vector<std::string> later_outputs{"mat", "qd", "p2m", "deepmimo", "kml", "gltf"};
 
 /// The value from the command line, or else the one from the file.
 std::optional<JsonValue> chosen(const JsonObject& command_line, const std::string& option,
@@ -154,8 +155,22 @@ MapOutputs read_map_outputs(const JsonValue& value) {
   return {has("csv"), has("png"), has("npz"), has("asc"), has("svg")};
 }
 
+void read_html(const JsonValue& value, OutputSettings& output) {
+  output.html = value.is_boolean() ? value.boolean() : true;
+  if (output.html && !viewer_is_built_in()) {
+    value.fail("this build has no viewer; expected three.js (libjs-three) when DCEM was built");
+  }
+  if (value.is_boolean()) return;
+  const JsonObject object = value.object({"max_rays", "max_frames"});
+  const auto count = [&](const char* key, std::size_t absent, long long most) {
+    return static_cast<std::size_t>(object.integer(key, static_cast<long long>(absent), 1, most));
+  };
+  output.viewer.max_rays = count("max_rays", output.viewer.max_rays, 10'000'000);
+  output.viewer.max_frames = count("max_frames", output.viewer.max_frames, 1'000'000);
+}
+
 OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) {
-  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots", "map"};
+  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots", "map", "html"};
   known.insert(known.end(), later_outputs.begin(), later_outputs.end());
   const JsonObject object = value.object(known);
   for (const std::string& key : later_outputs) {
@@ -171,6 +186,7 @@ OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) 
   output.npz = object.boolean("npz", false);
   if (const auto plots = object.find("plots")) read_plots(*plots, output);
   if (const auto map = object.find("map")) output.map = read_map_outputs(*map);
+  if (const auto html = object.find("html")) read_html(*html, output);
   return output;
 }
 
