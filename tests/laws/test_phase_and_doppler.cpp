@@ -101,13 +101,13 @@ class WalkedLink {
  public:
   explicit WalkedLink(const Walk& walk) : walk_(walk), simulator_(scene(walk), settings()) {}
 
-  const PathContribution& at(double time_s) {
-    frame_ = simulator_.advance_to(time_s);
+  PathContribution at(double time_s) {
+    const FrameResult frame = simulator_.advance_to(time_s);
     std::vector<Stretch> now = walk_.stretches;
     for (Stretch& stretch : now) stretch.apart_m += time_s * stretch.rate_mps;
     const double length_m = rates_of(now).length_m;
     const PathContribution* found = nullptr;
-    for (const PathContribution& path : frame_.links.at(0).paths) {
+    for (const PathContribution& path : frame.links.at(0).paths) {
       // 1e-9 m: the images agree to rounding, and different paths differ by centimetres.
       if (kinds(path) != walk_.kinds || std::abs(path.path.length_m - length_m) > 1e-9) continue;
       CHECK(found == nullptr);
@@ -138,7 +138,6 @@ class WalkedLink {
 
   Walk walk_;
   Simulator<> simulator_;
-  FrameResult frame_;
 };
 
 /// The phase −kL(t) has the symmetric difference f_D − (dt²/6·L''' + dt⁴/120·L⁽⁵⁾ + …)/λ: an error known in advance, of
@@ -517,7 +516,7 @@ TEST_CASE("phase from frame to frame: pictures 10 ms apart do not show a Doppler
   Complex before = link.at(0.0).amplitude;
   double length_before_m = link.at(0.0).path.length_m;
   for (int frame = 1; frame <= 20; ++frame) {
-    const PathContribution& path = link.at(frame * frame_s);
+    const PathContribution path = link.at(frame * frame_s);
     const double seen_hz = std::arg(path.amplitude / before) / (circle_rad * frame_s);
     const double mean_shift_hz = (length_before_m - path.path.length_m) / (carrier_wavelength_m * frame_s);
     CHECK(path.doppler_hz > 2950.0);
