@@ -33,9 +33,9 @@ Scene small_scene() {
   add_quad(ground, {Vec3(400000, 0, 0), Vec3(400100, 0, 0), Vec3(400100, 50, 0), Vec3(400000, 50, 0)}, "ground");
   scene.set_scenery(ground);
   scene.add_object("car", make_box({4, 2, 1.5}, "metal"), LinearMotion{{Vec3(400010, 5, 0)}, Vec3(10, 0, 0), 0.0});
-  scene.add_object(hostile, make_box({4, 2, 1.5}, "metal"), LinearMotion{{Vec3(400050, 5, 0)}, Vec3(0.0), 0.0});
+  scene.add_object("<!--<script>", make_box({4, 2, 1.5}, "metal"), LinearMotion{{Vec3(400050, 5, 0)}, Vec3(0.0), 0.0});
   scene.add_transmitter(device_at("mast", {400020, 20, 10}, 30.0));
-  scene.add_receiver(device_at("ue", {400030, 20, 1.5}));
+  scene.add_receiver(device_at(hostile, {400030, 20, 1.5}));
   return scene;
 }
 

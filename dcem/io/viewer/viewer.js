@@ -39,7 +39,8 @@ class Viewer {
     this.hiddenLinks = new Set();
     this.byPower = false;
     this.most = data.link_rays.reduce((most, count) => Math.max(most, count), 1);
-    this.strongest = Math.min(this.most, 20);
+    const links = Math.max(data.frame_links[0] || 0, 1);
+    this.strongest = Math.min(this.most, Math.max(3, Math.min(20, Math.floor(240 / links)))); // more hide each other
     this.chosen = null;
     this.rayRange = powerRange(data.power) || { low: -100, high: 0 };
     this.makeScene();
@@ -223,7 +224,8 @@ class Viewer {
     for (let body = 1; body < data.bodyCount; ++body) this.surfaces.pose(body, poseEntry(data, body, this.frame));
     $("slider").value = this.frame;
     const number = data.frame_index[this.frame], time = data.frame_time[this.frame];
-    $("instant").textContent = `frame ${number} of ${head.first_frame} to ${head.first_frame + head.frames - 1}, t = ${time.toFixed(3)} s`;
+    const range = head.frames > 1 ? `frame ${number} of ${head.first_frame} to ${head.first_frame + head.frames - 1}, ` : "";
+    $("instant").textContent = `${range}t = ${time.toFixed(3)} s`;
     this.updateRays();
     this.showMap();
     this.showChosen();
@@ -574,6 +576,8 @@ class Viewer {
     $("strongest").addEventListener("input", limit);
     limit();
     const bottom = this.sceneBox.min.z, height = Math.max(this.sceneBox.max.z - bottom, 0.01);
+    const roof = this.coverHeight();
+    if (roof !== undefined) $("cut").value = Math.floor(1000 * (roof - bottom) / height) - 1;
     const update = () => {
       $("ray_width_text").textContent = `${$("ray_width").value} px`;
       $("opacity_text").textContent = `${$("opacity").value} %`;
@@ -588,8 +592,22 @@ class Viewer {
     update();
   }
 
+  // Where to cut so that what is under a roof can be seen: above a map, or below the lowest ceiling where every device
+  // of the first frame has one.
+  coverHeight() {
+    if (this.head.maps.length > 0) return Math.max(...this.head.maps.map((map) => map.corner_m[2])) + 0.3;
+    const places = [];
+    for (let thing = this.data.bodyCount; thing < this.receiverThing(this.data.receiverCount) && places.length < 50; ++thing) {
+      const place = this.place(thing);
+      if (place) places.push(place);
+    }
+    const ceilings = places.map((place) => this.surfaces.lowestAbove(place));
+    return places.length > 0 && ceilings.every(Number.isFinite) ? Math.min(...ceilings) : undefined;
+  }
+
   makeMechanisms() {
     const used = new Set(this.data.mechanism);
+    $("rays_part").hidden = used.size === 0;
     this.mechanismCounts = [];
     mechanisms.forEach(({ name, colour }, index) => {
       if (!used.has(index)) return;

@@ -92,6 +92,21 @@ class Surfaces {
     this.edgeMaterial.opacity = Math.max(opacity, 0.35);
   }
 
+  // Height at which a line upwards from a point first meets the scenery; Infinity where it does not.
+  lowestAbove([x, y, z]) {
+    const corners = this.meshes[0].faces.attributes.position.array;
+    let lowest = Infinity;
+    for (let at = 0; at < corners.length; at += 9) {
+      const [ax, ay, az, bx, by, bz, cx, cy, cz] = corners.subarray(at, at + 9);
+      const area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay);
+      if (Math.abs(area) < 1e-9) continue;
+      const b = ((x - ax) * (cy - ay) - (cx - ax) * (y - ay)) / area, c = ((bx - ax) * (y - ay) - (x - ax) * (by - ay)) / area;
+      const height = az + b * (bz - az) + c * (cz - az);
+      if (b >= 0 && c >= 0 && b + c <= 1 && height > z + 0.01) lowest = Math.min(lowest, height);
+    }
+    return lowest;
+  }
+
   // Shows what lies below the planes alone.
   setCut(planes) {
     for (const material of [this.faceMaterial, this.edgeMaterial]) {
