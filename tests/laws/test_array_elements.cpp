@@ -628,3 +628,27 @@ TEST_CASE("array elements: one thread and three give the same bits") {
   CHECK(solve(ArrayChannel::exact, 3) == exact);
   CHECK(solve(ArrayChannel::plane_wave, 3) == plane);
 }
+
+TEST_CASE("elements of an array on a wall are mounted on it as its centre is, also where the array is tilted into it") {
+  TriangleMesh wall;
+  add_quad(wall, {Vec3(0, -20, 0), Vec3(0, 20, 0), Vec3(0, 20, 20), Vec3(0, -20, 20)}, "metal");
+  for (const double pitch_rad : {0.0, 0.17}) {
+    CAPTURE(pitch_rad);
+    Scene scene;
+    scene.add_material({"metal", PerfectConductor{}});
+    scene.set_scenery(wall);
+    Antenna column;
+    column.array = {8, 1, 0.5};
+    column.orientation.pitch_rad = pitch_rad;
+    scene.add_transmitter(device_at("wall", Vec3(0, 1, 10), 0.0, column));
+    scene.add_receiver(device_at("street", Vec3(30, 4, 1.5)));
+    SimulationSettings settings;
+    settings.propagation.antenna_array = ArrayChannel::exact;
+    Simulator<> simulator(scene, settings);
+    const LinkResult link = simulator.advance_to(0.0).links.at(0);
+    REQUIRE(!link.paths.empty());
+    const ChannelMatrix& channel = link.paths[0].channel;
+    REQUIRE(channel.columns() == 8);
+    for (std::size_t element = 0; element < 8; ++element) CHECK(channel(0, element) != Complex{});
+  }
+}
