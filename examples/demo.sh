@@ -16,10 +16,13 @@ cmake --preset release
 cmake --build build/release --target dcem_program --parallel "$(nproc)"
 
 step "Town: vehicles drive through streets, 100 frames"
-build/release/bin/dcem run data/town_drive.json -o out/town_drive
+build/release/bin/dcem run data/town_drive.json -o out/town_drive --output paths,links,pdp,npz,plots,html
 
 step "Office: a coverage map for each transmitter"
 build/release/bin/dcem map data/office_map.json -o out/office_map
 
-step "Done. Results are in $PWD/out; the pictures:"
-find "$PWD/out/town_drive" "$PWD/out/office_map" -name '*.png' | sort
+step "Done. Results are in $PWD/out; open these:"
+find "$PWD/out/town_drive" -name '*.html'
+find "$PWD/out/office_map" -name '*.png' | sort
+echo "and, for each link of the drive, power over time (plot_*.svg), its delay profile (pdp_*.png) and its paths (taps_*.png):"
+find "$PWD/out/town_drive" -name 'plot_*.svg' -o -name 'pdp_*.png' | sort | head -n 6

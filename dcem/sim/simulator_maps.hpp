@@ -2,6 +2,7 @@
 /// How a `Simulator` makes maps; included by simulator.hpp.
 #include <algorithm>
 
+#include "dcem/paths/covered_edges.hpp"
 #include "dcem/sim/simulator.hpp"
 
 namespace dcem {
@@ -20,8 +21,10 @@ template <SurfaceModel Surface, typename Tree>
 std::vector<RadioMap> Simulator<Surface, Tree>::radio_maps(const ReceiverGrid& grid,
                                                            const std::function<void(std::size_t)>& progress,
                                                            WorkCounters* work) const {
+  const bool looks_for_covered = settings_.share_map_work && diffraction_order(settings_.propagation) > 0;
+  TransmitterEnds transmitters =
+      transmitter_ends({}, looks_for_covered ? covered_edges(scene_, tree_, settings_.threads) : std::vector<char>{});
   // Maps hold no channel between elements, and their powers are those of one: none is computed.
-  TransmitterEnds transmitters = transmitter_ends({});
   for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
   ReceiverGrid single = grid;
   single.antenna.array = {};

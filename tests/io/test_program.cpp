@@ -313,7 +313,7 @@ TEST_CASE("a map that cannot be written or held says so in one line") {
   write(folder / "full", "a file where a folder should be");
   check_refused(folder, "map street.json -o full/result", "full");
   check_refused(folder, "map street.json -o /proc/maps", "/proc/maps");
-  // Where no file may grow beyond 4 KiB the pictures do not fit, as on a full disk.
+  // Where no file may grow beyond a few kilobytes the pictures do not fit, as on a full disk.
   const auto before = folder.names();
   const std::string limited = "cd " + quoted(folder.path()) + " && ( ulimit -f 4; trap '' XFSZ; " +
                               quoted(DCEM_PROGRAM) + " map street.json --frames 0:1 --quiet -o m ) > /dev/null 2> " +
