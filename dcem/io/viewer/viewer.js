@@ -55,7 +55,8 @@ class Viewer {
 
   makeScene() {
     this.canvas = $("scene");
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !drawnInSoftware() });
+    this.isSlow = drawnInSoftware();
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !this.isSlow });
     this.renderer.setClearColor(0xf2f4f6);
     this.renderer.localClippingEnabled = true;
     this.scene = new THREE.Scene();
@@ -257,6 +258,7 @@ class Viewer {
     if (this.playing && this.frame === this.data.frameCount - 1) this.showFrame(0);
     this.lastTick = performance.now();
     this.clock = this.data.frame_time[this.frame];
+    this.setSharpness();
     $("play").textContent = this.playing ? "❚❚" : "▶";
     $("play").setAttribute("aria-label", this.playing ? "Pause" : "Play");
   }
@@ -271,12 +273,18 @@ class Viewer {
   resize() {
     const view = $("view"), ratio = Math.min(window.devicePixelRatio || 1, 2);
     const width = Math.max(view.clientWidth, 1), height = Math.max(view.clientHeight, 1);
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(width, height, false);
+    Object.assign(this, { width, height, ratio });
+    this.setSharpness();
     this.camera.aspect = width / height;
     Object.assign($("overlay"), { width: width * ratio, height: height * ratio });
-    Object.assign(this, { width, height, ratio });
     this.orbit.place();
+  }
+
+  // Without a graphics card, pixels are coarser while the picture moves.
+  setSharpness() {
+    this.renderer.setPixelRatio(this.isSlow && this.playing ? 0.5 : this.ratio);
+    this.renderer.setSize(this.width, this.height, false);
+    this.dirty = true;
   }
 
   draw() {
