@@ -541,7 +541,8 @@ class Viewer {
     if (Number.isFinite(data.link_diffuse[row])) notes.push(`Diffuse power in all: ${fixed(data.link_diffuse[row], 1, "dBm")}.`);
     $("profile_note").textContent = notes.join(" ");
     drawProfile($("profile"), rays.map((ray) => ({ delay: data.ray_length[ray] / speedOfLight * 1e9, power: data.power[ray],
-      colour: mechanisms[data.mechanism[data.ray_path[ray]]].colour, accent: ray === accent })));
+      colour: mechanisms[data.mechanism[data.ray_path[ray]]].colour, accent: ray === accent,
+      thin: data.mechanism[data.ray_path[ray]] === diffuse })));
   }
 
   // Controls ---------------------------------------------------------------------------------------------------------
@@ -758,8 +759,9 @@ function drawProfile(canvas, bars) {
   pen.rotate(-Math.PI / 2);
   pen.fillText("power / dBm", 0, 0);
   pen.restore();
-  for (const bar of [...bars].sort((a, b) => b.power - a.power)) {
-    const size = bar.accent ? 7 : bars.length > 60 ? 2 : 4;
+  // The many of a rough surface behind the few paths, high ones behind low ones.
+  for (const bar of [...bars].sort((a, b) => b.thin - a.thin || b.power - a.power)) {
+    const size = bar.accent ? 7 : bar.thin ? 2 : 4;
     if (bar.accent) {
       pen.fillStyle = "#000000";
       pen.fillRect(x(bar.delay) - size / 2 - 1.5, y(bar.power) - 1.5, size + 3, y(powers.low) - y(bar.power) + 1.5);
