@@ -55,7 +55,8 @@ class Viewer {
 
   makeScene() {
     this.canvas = $("scene");
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !drawnInSoftware() });
+    this.isSlow = drawnInSoftware();
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !this.isSlow });
     this.renderer.setClearColor(0xf2f4f6);
     this.renderer.localClippingEnabled = true;
     this.scene = new THREE.Scene();
@@ -257,6 +258,7 @@ class Viewer {
     if (this.playing && this.frame === this.data.frameCount - 1) this.showFrame(0);
     this.lastTick = performance.now();
     this.clock = this.data.frame_time[this.frame];
+    this.setSharpness();
     $("play").textContent = this.playing ? "❚❚" : "▶";
     $("play").setAttribute("aria-label", this.playing ? "Pause" : "Play");
   }
@@ -271,12 +273,18 @@ class Viewer {
   resize() {
     const view = $("view"), ratio = Math.min(window.devicePixelRatio || 1, 2);
     const width = Math.max(view.clientWidth, 1), height = Math.max(view.clientHeight, 1);
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(width, height, false);
+    Object.assign(this, { width, height, ratio });
+    this.setSharpness();
     this.camera.aspect = width / height;
     Object.assign($("overlay"), { width: width * ratio, height: height * ratio });
-    Object.assign(this, { width, height, ratio });
     this.orbit.place();
+  }
+
+  // Without a graphics card, pixels are coarser while the picture moves.
+  setSharpness() {
+    this.renderer.setPixelRatio(this.isSlow && this.playing ? 0.5 : this.ratio);
+    this.renderer.setSize(this.width, this.height, false);
+    this.dirty = true;
   }
 
   draw() {
@@ -533,7 +541,8 @@ class Viewer {
     if (Number.isFinite(data.link_diffuse[row])) notes.push(`Diffuse power in all: ${fixed(data.link_diffuse[row], 1, "dBm")}.`);
     $("profile_note").textContent = notes.join(" ");
     drawProfile($("profile"), rays.map((ray) => ({ delay: data.ray_length[ray] / speedOfLight * 1e9, power: data.power[ray],
-      colour: mechanisms[data.mechanism[data.ray_path[ray]]].colour, accent: ray === accent })));
+      colour: mechanisms[data.mechanism[data.ray_path[ray]]].colour, accent: ray === accent,
+      thin: data.mechanism[data.ray_path[ray]] === diffuse })));
   }
 
   // Controls ---------------------------------------------------------------------------------------------------------
@@ -750,8 +759,9 @@ function drawProfile(canvas, bars) {
   pen.rotate(-Math.PI / 2);
   pen.fillText("power / dBm", 0, 0);
   pen.restore();
-  for (const bar of [...bars].sort((a, b) => b.power - a.power)) {
-    const size = bar.accent ? 7 : bars.length > 60 ? 2 : 4;
+  // The many of a rough surface behind the few paths, high ones behind low ones.
+  for (const bar of [...bars].sort((a, b) => b.thin - a.thin || b.power - a.power)) {
+    const size = bar.accent ? 7 : bar.thin ? 2 : 4;
     if (bar.accent) {
       pen.fillStyle = "#000000";
       pen.fillRect(x(bar.delay) - size / 2 - 1.5, y(bar.power) - 1.5, size + 3, y(powers.low) - y(bar.power) + 1.5);

@@ -10,10 +10,11 @@ const mechanisms = [
   { name: "diffracted", colour: "#CC79A7" },
   { name: "diffuse", colour: "#56B4E9" },
 ];
+const diffuse = 4;
 
 // Which share of the power a path belongs to: the same rule as in links.csv.
 function mechanismOf(kinds) {
-  if (kinds.includes("S")) return 4;
+  if (kinds.includes("S")) return diffuse;
   if (kinds.includes("D")) return 3;
   if (kinds.includes("R")) return 1;
   return kinds === "" ? 0 : 2;
