@@ -16,17 +16,19 @@ void write_frame(io::ResultWriter& writer, const FrameResult& result, const Scen
     writer.write(result);
   } catch (const std::invalid_argument& error) {
     const std::string problem = error.what();
-    if (problem.starts_with("output.")) throw io::InputError(options.scenario, problem);
-    throw io::InputError(options.scenario, "output: " + problem + "; expected wider bins");
+    const bool says_what = problem.find("; expected ") != std::string::npos;
+    throw io::InputError(options.scenario, problem + (says_what ? "" : "; expected wider bins"));
   }
 }
 
 void solve_frames(Simulator<>& simulator, const Job& job, const ScenarioOptions& options, io::FrameSource& frames,
-                  io::ResultWriter& writer, io::RunSummary& summary) {
+                  io::ResultWriter& writer, io::ViewerWriter* viewer, io::RunSummary& summary) {
   io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
   for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
-    const FrameResult result = simulator.advance(frames.frame(simulator.scene(), frame));
+    const Frame instant = frames.frame(simulator.scene(), frame);
+    const FrameResult result = simulator.advance(instant);
     write_frame(writer, result, options);
+    if (viewer != nullptr) viewer->add(instant, result);
     summary.add(io::figures_of(result));
     bar.advance();
   }
@@ -71,11 +73,14 @@ void run_scenario(const ScenarioOptions& options) {
   io::ResultWriter writer = make_writer(folder, job, simulator, options);
   warn_of_plots(job, io::plotted_links(simulator.scene(), receivers));
   io::RunSummary summary(run_facts(job, simulator, receivers.size()), simulator.scene());
-  print_warnings(job, options);
-  solve_frames(simulator, job, options, frames, writer, summary);
+  print_warnings(job.scenario.warnings, options);
+  const auto viewer = make_viewer(folder, job, simulator);
+  solve_frames(simulator, job, options, frames, writer, viewer.get(), summary);
   writer.finish();
+  finish_viewer(viewer.get(), summary);
   folder.open("summary.json").write(summary.json());
   folder.commit();
+  print_warnings(summary.late_warnings(), options);
   if (!options.quiet) std::cout << summary.table(folder.path());
 }
 

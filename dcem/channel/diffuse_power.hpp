@@ -143,10 +143,13 @@ class DiffuseIntegral {
 
   DiffusePower collect(const AdaptiveTiles<Integrand>& tiles, Integrand& integrand, const DiffuseKey& key) const {
     DiffusePower result;
+    // A dual-polarized end has no single sum that a phase could enter.
+    const bool has_phases = settings_.phases == DiffusePhases::seeded && !integrand.from.antenna.is_dual() &&
+                            !integrand.to.antenna.is_dual();
     for (auto& [index, one] : integrand.seen) {
       const Tile& tile = tiles.tiles()[index];
       if (tile.is_halved) continue;
-      if (settings_.phases == DiffusePhases::seeded) one.amplitude = random_amplitude(one, tile, key);
+      if (has_phases) one.amplitude = random_amplitude(one, tile, key);
       one.triangle = tile.source;
       one.place = tile.place;
       if (!settings_.list_paths) one.path = {};

@@ -60,6 +60,9 @@ struct HeatMap {
   std::vector<std::array<double, 4>> walls_m;  // segments x0, y0, x1, y1
   std::vector<Marker> transmitters;
   std::optional<ValueRange> range;  // ends of the colour bar; default: `default_value_range`
+  /// Where this is not empty the values are numbers of these names, counted from 0. Each name has a colour and an entry
+  /// in the legend, and there is no colour bar. Colours repeat after 21 names.
+  std::vector<std::string> categories;
 };
 
 /// The colour range of a map that names none: from the 2nd percentile of its values (so that a few deep fades do not
@@ -92,7 +95,8 @@ struct HeatMapLayout {
 /// cell (at most 240), one pixel per cell for up to 1,500 cells, and one cell of k × k, its middle one, beyond. Axes
 /// that are not to scale each follow this rule on their own, the upright one for 400 pixels.
 /// Throws `std::invalid_argument` where sizes do not fit together, a spacing lies outside 1e-6…1e9 m or is lost beside
-/// its origin (below 1e-12 of it), a coordinate is not finite, or the range is empty.
+/// its origin (below 1e-12 of it), a coordinate is not finite, the range is empty, or a value is no number of a
+/// category.
 HeatMapLayout heat_map_layout(const HeatMap& map);
 
 /// Draws the map. Values outside the colour range take the colour of its end, and the bar then ends in a tip.

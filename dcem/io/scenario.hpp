@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dcem/channel/power_delay_profile.hpp"
+#include "dcem/channel/thermal_noise.hpp"
 #include "dcem/io/traffic.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/settings.hpp"
@@ -26,6 +27,23 @@ struct TimeSettings {
   }
 };
 
+/// Which files `dcem map` writes of each map.
+struct MapOutputs {
+  bool csv = true;
+  bool png = true;
+  bool npz = true;
+  bool asc = true;
+  bool svg = true;  ///< the distribution over the points of a grid
+};
+
+/// How much a page of results may hold, so that a browser opens a day's trace, too.
+struct ViewerSettings {
+  std::size_t max_rays = 400'000;  ///< over all frames; half as many links and poses, ten times as many map values
+  std::size_t max_frames = 2'000;
+
+  friend bool operator==(const ViewerSettings&, const ViewerSettings&) = default;
+};
+
 /// Which result files are written.
 struct OutputSettings {
   bool paths = false;
@@ -42,6 +60,9 @@ struct OutputSettings {
   bool plots = false;
   std::size_t plots_max_links = 20;              ///< so many links have pictures, the first ones
   std::optional<std::size_t> plots_pdp_frame{};  ///< frame of the single power delay profile; default: the middle one
+  MapOutputs map{};
+  bool html = false;
+  ViewerSettings viewer{};
 };
 
 /// What the command line may override. Absent: the scenario file decides.
@@ -59,8 +80,9 @@ struct Scenario {
   SimulationSettings settings;
   TimeSettings time;
   OutputSettings output;
-  std::vector<ReceiverGrid> grids;  ///< not yet among the scene's receivers
-  std::optional<Traffic> traffic;   ///< vehicles of a trace; their frames come from a `FrameSource`
+  std::optional<NoiseSettings> noise{};  ///< of the receivers; absent: maps know no noise
+  std::vector<ReceiverGrid> grids;       ///< not yet among the scene's receivers
+  std::optional<Traffic> traffic;        ///< vehicles of a trace; their frames come from a `FrameSource`
   std::vector<std::string> warnings;
 
   /// Instant of a frame.

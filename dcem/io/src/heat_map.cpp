@@ -36,6 +36,12 @@ std::vector<std::size_t> cells_of_pixels(int length_px, std::size_t cells) {
   return result;
 }
 
+Colour cell_colour(const HeatMap& map, const HeatMapLayout& layout, std::size_t cell) {
+  if (!is_valued(map, cell)) return no_value_grey;
+  if (!map.categories.empty()) return category_colour(static_cast<std::size_t>(map.values[cell]));
+  return layout.range ? viridis(share_of_range(map.values[cell], *layout.range)) : no_value_grey;
+}
+
 void draw_cells(const HeatMap& map, const HeatMapLayout& layout, Image& image) {
   const PixelRect& plot = layout.plot;
   const std::vector<std::size_t> columns = cells_of_pixels(plot.width, map.columns);
@@ -49,9 +55,7 @@ void draw_cells(const HeatMap& map, const HeatMapLayout& layout, Image& image) {
         image.set_pixel(dot.x, dot.y, hatch_ground);
         image.hatch_rectangle(dot, object_hatch);
       } else {
-        const bool valued = is_valued(map, cell) && layout.range.has_value();
-        image.set_pixel(dot.x, dot.y,
-                        valued ? viridis(share_of_range(map.values[cell], *layout.range)) : no_value_grey);
+        image.set_pixel(dot.x, dot.y, cell_colour(map, layout, cell));
       }
     }
   }
@@ -183,12 +187,16 @@ void draw_bar(const HeatMap& map, const HeatMapPlan& plan, Image& image) {
   image.draw_text(name_x, name_y, plan.bar_name, ink, label_scale, TextDirection::upwards);
 }
 
-void draw_symbol(Symbol symbol, const PixelRect& swatch, Image& image) {
+void draw_symbol(const LegendItem& item, const PixelRect& swatch, Image& image) {
+  const Symbol symbol = item.symbol;
   const PixelPoint middle{swatch.x + 0.5 * swatch.width, swatch.y + 0.5 * swatch.height};
   if (symbol == Symbol::transmitter) {
     draw_marker(middle, image);
   } else if (symbol == Symbol::wall) {
     image.fill_rectangle({swatch.x, static_cast<int>(middle.y) - 1, swatch.width, 2}, wall_colour);
+  } else if (symbol == Symbol::category) {
+    image.fill_rectangle(swatch, category_colour(item.category));
+    image.draw_frame(swatch, ink);
   } else if (symbol != Symbol::none) {
     image.fill_rectangle(swatch, symbol == Symbol::no_value ? no_value_grey : hatch_ground);
     if (symbol == Symbol::hatched) image.hatch_rectangle(swatch, object_hatch);
@@ -200,7 +208,7 @@ void draw_legend(const HeatMapPlan& plan, Image& image) {
   for (const LegendItem& item : plan.legend) {
     const int x = plan.left_px + item.x;
     const int y = plan.legend_y + item.y;
-    draw_symbol(item.symbol, {x, y, swatch_px, swatch_px}, image);
+    draw_symbol(item, {x, y, swatch_px, swatch_px}, image);
     const int text_x = item.symbol == Symbol::none ? x : x + swatch_px + gap_px;
     image.draw_text(text_x, y + (swatch_px - 7 * label_scale) / 2, item.text, ink, label_scale);
   }

@@ -32,11 +32,21 @@ void check_axis(double origin_m, double spacing_m) {
   require(std::abs(origin_m) * 1e-12 < spacing_m, "an origin is not finite or so large that the spacing is lost");
 }
 
+void check_categories(const HeatMap& map) {
+  const double count = static_cast<double>(map.categories.size());
+  for (std::size_t cell = 0; count > 0.0 && cell < map.values.size(); ++cell) {
+    const double value = map.values[cell];
+    require(!is_valued(map, cell) || (value >= 0.0 && value < count && value == std::floor(value)),
+            "a value is no number of a category");
+  }
+}
+
 void check(const HeatMap& map) {
   require(map.columns > 0 && map.rows > 0, "the grid has no point; expected at least one column and one row");
   require(map.values.size() / map.columns == map.rows && map.values.size() % map.columns == 0,
           "the number of values is not columns x rows");
   require(map.hatched.empty() || map.hatched.size() == map.values.size(), "hatched has not the size of values");
+  check_categories(map);
   check_axis(map.origin_x_m, map.spacing_x_m);
   check_axis(map.origin_y_m, map.spacing_y_m);
   require(!map.range || (map.range->low >= -largest_value && map.range->high <= largest_value &&
@@ -76,6 +86,9 @@ std::vector<LegendItem> legend_items(const HeatMap& map, const HeatMapLayout& la
   });
   const auto outside = static_cast<std::ptrdiff_t>(map.transmitters.size()) - inside;
   std::vector<LegendItem> items;
+  for (std::size_t index = 0; index < map.categories.size(); ++index) {
+    items.push_back({Symbol::category, map.categories[index], 0, 0, index});
+  }
   if (inside > 0) items.push_back({Symbol::transmitter, "transmitter"});
   if (!map.walls_m.empty()) items.push_back({Symbol::wall, "wall"});
   if (any_grey) items.push_back({Symbol::no_value, map.no_value_label});
@@ -135,7 +148,7 @@ void size_plot(const HeatMap& map, HeatMapLayout& layout) {
   layout.bottom_m = map.origin_y_m - 0.5 * map.spacing_y_m;
   layout.horizontal_px_per_m = layout.plot.width / width_m;
   layout.vertical_px_per_m = layout.plot.height / height_m;
-  layout.range = map.range ? map.range : default_value_range(map);
+  if (map.categories.empty()) layout.range = map.range ? map.range : default_value_range(map);
 }
 
 // The name stands along the bar; one without end is cut.

@@ -13,13 +13,14 @@ inline constexpr int bar_tip_px = 14;
 inline constexpr int swatch_px = 22;
 
 /// What stands before a text of the legend.
-enum class Symbol { no_value, hatched, wall, transmitter, none };
+enum class Symbol { no_value, hatched, wall, transmitter, category, none };
 
 struct LegendItem {
   Symbol symbol = Symbol::none;
   std::string text;
   int x = 0;  // upper left corner, counted from that of the legend
   int y = 0;
+  std::size_t category = 0;
 };
 
 /// Everything that the drawing needs to know.

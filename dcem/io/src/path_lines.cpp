@@ -92,6 +92,13 @@ void append_shadow(JsonLine& line, const std::vector<Interaction>& interactions)
 
 }  // namespace
 
+std::string tile_id(const Scene& scene, const DiffuseContribution& tile) {
+  // Many tiles of one facet have the same surfaces; which part of it they are tells them apart.
+  const BodyId body = scene.facet(scene.facet_of_triangle(tile.triangle)).body;
+  const std::uint32_t number = tile.triangle - scene.triangle_range(body).first;
+  return path_id(scene, tile.path) + "#" + std::to_string(number) + "." + std::to_string(tile.place);
+}
+
 PathLines::PathLines(const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts)
     : scene_(scene), facts_(facts) {
   for (const Device& device : scene.transmitters()) {
@@ -159,11 +166,7 @@ void PathLines::append_path(std::string& text, const LinkResult& link, const Pat
 }
 
 void PathLines::append_tile(std::string& text, const LinkResult& link, const DiffuseContribution& tile) const {
-  // Many tiles of one facet have the same surfaces; which part of it they are tells them apart.
-  const BodyId body = scene_.facet(scene_.facet_of_triangle(tile.triangle)).body;
-  const std::uint32_t number = tile.triangle - scene_.triangle_range(body).first;
-  const std::string id = path_id(scene_, tile.path) + "#" + std::to_string(number) + "." + std::to_string(tile.place);
-  append_geometry(text, tile.path, id, tile.sample.delay_s, "\"tiles\"");
+  append_geometry(text, tile.path, tile_id(scene_, tile), tile.sample.delay_s, "\"tiles\"");
   JsonLine line(text);
   line.key("transfer").prepared("null").key("amplitude").prepared("null");
   append_power(text, link, tile.sample);

@@ -55,8 +55,8 @@ void ResultWriter::write(const FrameResult& frame) {
   for (const LinkResult& link : frame.links) {
     if (output_.paths) lines_->append(paths_.text, frame, link);
     if (output_.links) append_link(frame, link);
-    if (output_.pdp) append_profile(frame, link);
-    if (output_.doppler) append_doppler(frame, link);
+    if (output_.pdp) detail::naming("output.pdp.bin_s", [&] { append_profile(frame, link); });
+    if (output_.doppler) detail::naming("output.doppler.bin_hz", [&] { append_doppler(frame, link); });
     flush_all(sheet_bytes);
   }
   flush_all(1);
