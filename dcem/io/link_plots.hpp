@@ -46,8 +46,8 @@ class LinkPlots {
   std::vector<LineChart> charts() const;
 
   /// Power over time and delay. Of more than 1000 frames, neighbours are joined to their mean power; of more than 280
-  /// bins, neighbours to their sum; the title says so. Power more than 70 dB below the
-  /// maximum is left out. Nothing where no power arrives in any frame.
+  /// bins, neighbours to their sum; the title says so. Taps more than 70 dB below the
+  /// strongest are left out. Nothing where no power arrives in any frame.
   std::optional<HeatMap> profile() const;
 
   /// Every specular path of every frame over time and delay. Nothing where there is none.
@@ -78,6 +78,10 @@ class LinkPlots {
   void count_paths(std::vector<std::string>&& ids, Figures& figures);
   template <typename Value>
   LineChart::Series series(const char* name, double scale, Value&& value) const;
+  template <typename Visit>
+  void each_strong_tap(Visit&& visit) const;
+  LineChart mechanism_chart() const;
+  LineChart count_chart() const;
   LineChart chart(const char* what, const char* label, const char* unit) const;
   std::string title(const std::string& what) const;
 

@@ -20,7 +20,7 @@ delay_ns = 1e9 * paths["tau"][:, r, t]
 gain = np.where(valid, np.abs(paths["a"][:, r, t]) ** 2, 0.0)
 
 time_s = np.broadcast_to(paths["time_s"][:, None], gain.shape)
-seen = valid & (gain > 0)
+seen = gain > 1e-7 * gain.max()  # 70 dB below the strongest and less is left out
 _, (profile, power) = plt.subplots(2, 1, sharex=True, figsize=(9, 7), layout="constrained")
 dots = profile.scatter(time_s[seen], delay_ns[seen], c=10 * np.log10(gain[seen]), s=6)
 plt.colorbar(dots, ax=profile, label="path gain (dB)")

@@ -313,3 +313,14 @@ TEST_CASE("a device that is away for some frames leaves a gap and no line across
   CHECK(chart.dots[0].trace == chart.dots[2].trace);
   CHECK(chart.marked_label == "line of sight");
 }
+
+TEST_CASE("taps more than 70 dB below the strongest neither show in the profile nor stretch it") {
+  const Scene scene = small_scene();
+  io::LinkPlots plots = small_plots();
+  const LinkResult link = link_of({path_of(1e-8, 1e-5), reflected(1, 4e-8, 1.01e-12), reflected(2, 9e-6, 0.99e-12)});
+  plots.add(scene, 0.0, &link);
+  plots.add(scene, 0.1, &link);
+  const io::HeatMap map = plots.profile().value();
+  CHECK(std::count_if(map.values.begin(), map.values.end(), [](double value) { return !std::isnan(value); }) == 4);
+  CHECK(map.origin_y_m + map.spacing_y_m * static_cast<double>(map.rows) < 100.0);  // ns
+}

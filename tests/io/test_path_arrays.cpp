@@ -169,7 +169,7 @@ TEST_CASE("the arrays have the contract's names, types and shapes") {
   const Run result = run();
   const std::size_t p = longest_list(result), d = most_interactions(result);
   REQUIRE(p > 4);
-  REQUIRE(d == 4);  // into the car and out again, and two reflections
+  REQUIRE(d == 5);  // two reflections, an edge, into the car and out again
   const Shape list{frames, receivers, transmitters, p};
   struct Expected {
     std::string name, type;

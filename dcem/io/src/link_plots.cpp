@@ -132,26 +132,20 @@ LineChart LinkPlots::chart(const char* what, const char* label, const char* unit
   return {title(what), "time", "s", label, unit};
 }
 
-std::vector<LineChart> LinkPlots::charts() const {
+LineChart LinkPlots::mechanism_chart() const {
   using Values = LinkStatistics;
-  LineChart power = chart("received power", "received power", "dBm");
-  power.series = {series("coherent", 1.0, [](const Values& all) { return all.power_dbm; }),
-                  series("incoherent", 1.0, [](const Values& all) { return all.power_incoherent_dbm; })};
   LineChart mechanisms = chart("power by mechanism (incoherent)", "received power", "dBm");
   mechanisms.series = {series("line of sight", 1.0, [](const Values& all) { return all.power_los_dbm; }),
                        series("reflected", 1.0, [](const Values& all) { return all.power_reflected_dbm; }),
                        series("transmitted", 1.0, [](const Values& all) { return all.power_transmitted_dbm; }),
                        series("diffracted", 1.0, [](const Values& all) { return all.power_diffracted_dbm; }),
                        series("diffuse", 1.0, [](const Values& all) { return all.power_diffuse_dbm; })};
-  LineChart delay = chart("rms delay spread", "delay spread", "ns");
-  delay.series = {series("rms delay spread", 1e9, [](const Values& all) { return all.rms_delay_spread_s; })};
-  LineChart k_factor = chart("K factor (line of sight over the rest)", "K factor", "dB");
-  k_factor.series = {series("K factor", 1.0, [](const Values& all) { return all.k_factor_db; })};
-  LineChart doppler = chart("Doppler shift, weighted by power", "frequency", "Hz");
-  doppler.series = {series("mean", 1.0, [](const Values& all) { return all.mean_doppler_hz; }),
-                    series("rms spread", 1.0, [](const Values& all) { return all.rms_doppler_spread_hz; })};
+  return mechanisms;
+}
+
+LineChart LinkPlots::count_chart() const {
   LineChart paths = chart("paths since the frame before, by id", "paths", "");
-  paths.y_scale = delay.y_scale = ChartScale::linear_from_zero;
+  paths.y_scale = ChartScale::linear_from_zero;
   const auto counted = [&](const char* name, double PathCounts::*count) {
     LineChart::Series line{name, times_s_};
     for (const Figures& one : figures_) line.y.push_back(one.paths ? (*one.paths).*count : nothing);
@@ -159,7 +153,23 @@ std::vector<LineChart> LinkPlots::charts() const {
   };
   paths.series = {counted("kept", &PathCounts::kept), counted("new", &PathCounts::born),
                   counted("gone", &PathCounts::gone)};
-  std::vector<LineChart> charts{power, mechanisms, delay, k_factor, doppler, paths};
+  return paths;
+}
+
+std::vector<LineChart> LinkPlots::charts() const {
+  using Values = LinkStatistics;
+  LineChart power = chart("received power", "received power", "dBm");
+  power.series = {series("coherent", 1.0, [](const Values& all) { return all.power_dbm; }),
+                  series("incoherent", 1.0, [](const Values& all) { return all.power_incoherent_dbm; })};
+  LineChart delay = chart("rms delay spread", "delay spread", "ns");
+  delay.y_scale = ChartScale::linear_from_zero;
+  delay.series = {series("rms delay spread", 1e9, [](const Values& all) { return all.rms_delay_spread_s; })};
+  LineChart k_factor = chart("K factor (line of sight over the rest)", "K factor", "dB");
+  k_factor.series = {series("K factor", 1.0, [](const Values& all) { return all.k_factor_db; })};
+  LineChart doppler = chart("Doppler shift, weighted by power", "frequency", "Hz");
+  doppler.series = {series("mean", 1.0, [](const Values& all) { return all.mean_doppler_hz; }),
+                    series("rms spread", 1.0, [](const Values& all) { return all.rms_doppler_spread_hz; })};
+  std::vector<LineChart> charts{power, mechanism_chart(), delay, k_factor, doppler, count_chart()};
   for (LineChart& one : charts) drop_empty_lines(one, &one == &charts.front());
   std::erase_if(charts, [](const LineChart& one) { return one.series.empty(); });
   return charts;
@@ -202,8 +212,8 @@ ProfileGrid profile_grid(const std::vector<double>& times_s, std::int64_t lowest
   return grid;
 }
 
-// What is far below the strongest cell would drown the rest in the darkest colour.
-void leave_out_weak_cells(HeatMap& map) {
+// Colours over what is there, at most over the range that taps may have, from and to multiples of 5 dB.
+void choose_colours(HeatMap& map) {
   double top_dbm = -std::numeric_limits<double>::infinity(), low_dbm = std::numeric_limits<double>::infinity();
   for (const double value : map.values) {
     if (std::isnan(value)) continue;
@@ -211,51 +221,63 @@ void leave_out_weak_cells(HeatMap& map) {
     low_dbm = std::min(low_dbm, value);
   }
   const double high = 5.0 * std::ceil(top_dbm / 5.0);
-  const double low = std::min(std::max(5.0 * std::floor(low_dbm / 5.0), high - most_range_db), high - 10.0);
-  for (double& value : map.values) {
-    if (value < low) value = nothing;
-  }
+  const double low = std::min(std::max(5.0 * std::floor(low_dbm / 5.0), high - most_range_db - 5.0), high - 10.0);
   map.range = ValueRange{low, high};
-  map.no_value_label = "nothing above " + format_fixed(low, 0) + " dBm";
+  map.no_value_label = "nothing, or " + format_fixed(most_range_db, 0) + " dB below the strongest";
 }
 
-}  // namespace
-
-std::optional<HeatMap> LinkPlots::profile() const {
-  std::int64_t lowest = std::numeric_limits<std::int64_t>::max(), highest = -1;
-  for (const Figures& one : figures_) {
-    for (const PdpTap& tap : one.taps) {
-      if (!(tap.power_ratio > 0.0)) continue;
-      lowest = std::min(lowest, bin_number(tap, bin_s_));
-      highest = std::max(highest, bin_number(tap, bin_s_));
-    }
-  }
-  if (highest < lowest) return std::nullopt;
-  const ProfileGrid grid = profile_grid(times_s_, lowest, highest);
-  std::vector<double> power(grid.columns * static_cast<std::size_t>(grid.rows), 0.0), frames(grid.columns, 0.0);
-  for (std::size_t frame = 0; frame < figures_.size(); ++frame) {
-    frames[grid.column_of(times_s_[frame])] += 1.0;
-    for (const PdpTap& tap : figures_[frame].taps) {
-      if (tap.power_ratio > 0.0) power[grid.cell(times_s_[frame], bin_number(tap, bin_s_))] += tap.power_ratio;
-    }
-  }
+/// The axes of the picture of a grid, without values.
+HeatMap empty_picture(const ProfileGrid& grid, double bin_s) {
   HeatMap map;
-  const double row_s = static_cast<double>(grid.bins_per_row) * bin_s_;
-  map.title = title("power delay profile, " + bin_text(row_s));
-  if (figures_.size() > grid.columns) map.title += ", frames joined";
   map.axes = {"time", "s", "delay", "ns", false};
   map.columns = grid.columns;
   map.rows = static_cast<std::size_t>(grid.rows);
   map.origin_x_m = grid.first_s;
   map.spacing_x_m = grid.column_s;
-  const double bottom_ns = 1e9 * bin_s_ * static_cast<double>(grid.first_bin);
-  map.spacing_y_m = std::max({1e9 * row_s, 1e-6, 1e-11 * bottom_ns});
+  const double bottom_ns = 1e9 * bin_s * static_cast<double>(grid.first_bin);
+  map.spacing_y_m = std::max({1e9 * bin_s * static_cast<double>(grid.bins_per_row), 1e-6, 1e-11 * bottom_ns});
   map.origin_y_m = bottom_ns + 0.5 * map.spacing_y_m;
-  for (std::size_t cell = 0; cell < power.size(); ++cell) {
-    const double mean = power[cell] / frames[cell % grid.columns];
-    map.values.push_back(power[cell] > 0.0 ? names_.power_dbm + power_ratio_to_db(mean) : nothing);
+  return map;
+}
+
+}  // namespace
+
+template <typename Visit>
+void LinkPlots::each_strong_tap(Visit&& visit) const {
+  double strongest = 0.0;
+  for (const Figures& one : figures_) {
+    for (const PdpTap& tap : one.taps) strongest = std::max(strongest, tap.power_ratio);
   }
-  leave_out_weak_cells(map);
+  // Weaker taps would stretch the picture and drown the rest in the darkest colour.
+  const double weakest = strongest * db_to_power_ratio(-most_range_db);
+  for (std::size_t frame = 0; frame < figures_.size(); ++frame) {
+    for (const PdpTap& tap : figures_[frame].taps) {
+      if (tap.power_ratio > 0.0 && tap.power_ratio >= weakest) visit(times_s_[frame], tap);
+    }
+  }
+}
+
+std::optional<HeatMap> LinkPlots::profile() const {
+  std::int64_t lowest = std::numeric_limits<std::int64_t>::max(), highest = -1;
+  each_strong_tap([&](double, const PdpTap& tap) {
+    lowest = std::min(lowest, bin_number(tap, bin_s_));
+    highest = std::max(highest, bin_number(tap, bin_s_));
+  });
+  if (highest < lowest) return std::nullopt;
+  const ProfileGrid grid = profile_grid(times_s_, lowest, highest);
+  std::vector<double> power(grid.columns * static_cast<std::size_t>(grid.rows), 0.0), frames(grid.columns, 0.0);
+  for (const double time_s : times_s_) frames[grid.column_of(time_s)] += 1.0;
+  each_strong_tap(
+      [&](double time_s, const PdpTap& tap) { power[grid.cell(time_s, bin_number(tap, bin_s_))] += tap.power_ratio; });
+  HeatMap map = empty_picture(grid, bin_s_);
+  map.title = title("power delay profile, " + bin_text(static_cast<double>(grid.bins_per_row) * bin_s_));
+  if (figures_.size() > grid.columns) map.title += ", frames joined";
+  for (std::size_t cell = 0; cell < power.size(); ++cell) {
+    const bool holds = power[cell] > 0.0;
+    const double mean = holds ? power[cell] / frames[cell % grid.columns] : 0.0;
+    map.values.push_back(holds ? names_.power_dbm + power_ratio_to_db(mean) : nothing);
+  }
+  choose_colours(map);
   return map;
 }
 
