@@ -71,9 +71,22 @@ io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t
           job.scenario.time, receivers,         job.scenario.warnings};
 }
 
-void print_warnings(const Job& job, const ScenarioOptions& options) {
+void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options) {
   if (options.quiet) return;
-  for (const std::string& warning : job.scenario.warnings) std::cerr << "warning: " << warning << '\n';
+  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
+}
+
+std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator,
+                                              std::size_t map_points_per_frame) {
+  if (!job.scenario.output.html) return nullptr;
+  const io::ViewerFacts facts{job.scenario.name, simulator.settings().frequency_hz, job.frames.first,
+                              job.frames.count(), map_points_per_frame};
+  return std::make_unique<io::ViewerWriter>(folder, simulator.scene(), facts, job.scenario.output.viewer);
+}
+
+void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary) {
+  if (viewer == nullptr) return;
+  for (const std::string& notice : viewer->finish()) summary.add_warning("viewer.html: " + notice);
 }
 
 io::ProgressMode progress_mode(const ScenarioOptions& options) {

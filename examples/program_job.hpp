@@ -1,11 +1,13 @@
 #pragma once
 /// What `dcem run`, `dcem map` and `dcem verify` have in common.
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/summary.hpp"
+#include "dcem/io/viewer_writer.hpp"
 #include "program_options.hpp"
 
 namespace dcem::program {
@@ -28,7 +30,14 @@ io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t
 
 /// One line per warning on the error stream, unless the user wants quiet. Called when nothing in the input can be wrong
 /// any more, because an error is to be the only line.
-void print_warnings(const Job& job, const ScenarioOptions& options);
+void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options);
+
+/// The page of results, where the scenario asks for it; otherwise nothing.
+std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator,
+                                              std::size_t map_points_per_frame = 0);
+
+/// Writes the page; what it leaves out is a warning of the summary.
+void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary);
 
 /// The progress bar's mode, which is never when the user wants quiet.
 io::ProgressMode progress_mode(const ScenarioOptions& options);

@@ -138,14 +138,19 @@ class MapFiles {
 };
 
 io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, Simulator<>& simulator, const Frame& frame,
-                           io::ProgressBar& bar) {
-  io::FrameFigures figures = io::figures_of(simulator.advance(frame));
+                           io::ViewerWriter* viewer, io::ProgressBar& bar) {
+  const FrameResult result = simulator.advance(frame);
+  io::FrameFigures figures = io::figures_of(result);
+  if (viewer != nullptr) viewer->add(frame, result);
   for (const ReceiverGrid& grid : job.scenario.grids) {
     const auto start = std::chrono::steady_clock::now();
     const auto maps = simulator.radio_maps(
         grid, [&](std::size_t points) { bar.advance(points); }, &figures.work);
     figures.solve_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    for (const RadioMap& map : maps) add_figures(map, figures);
+    for (const RadioMap& map : maps) {
+      add_figures(map, figures);
+      if (viewer != nullptr) viewer->add(map);
+    }
     MapFiles(folder, job, simulator, frame).write(maps);
   }
   return figures;
@@ -164,15 +169,18 @@ void map_scenario(const ScenarioOptions& options) {
   io::OutputFolder folder(job.folder);
   const std::size_t points = point_count(job.scenario);
   io::RunSummary summary(run_facts(job, simulator, points), simulator.scene());
-  print_warnings(job, options);
+  print_warnings(job.scenario.warnings, options);
+  const auto viewer = make_viewer(folder, job, simulator, points * simulator.scene().transmitters().size());
   {
     io::ProgressBar bar("points", points * job.frames.count(), progress_mode(options));
     for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
-      summary.add(map_frame(folder, job, simulator, frames.frame(simulator.scene(), frame), bar));
+      summary.add(map_frame(folder, job, simulator, frames.frame(simulator.scene(), frame), viewer.get(), bar));
     }
   }
+  finish_viewer(viewer.get(), summary);
   folder.open("map_summary.json").write(summary.json());
   folder.commit();
+  print_warnings(summary.late_warnings(), options);
   if (!options.quiet) std::cout << summary.table(folder.path());
 }
 

@@ -36,6 +36,14 @@ struct MapOutputs {
   bool svg = true;  ///< the distribution over the points of a grid
 };
 
+/// How much a page of results may hold, so that a browser opens a day's trace, too.
+struct ViewerSettings {
+  std::size_t max_rays = 400'000;  ///< over all frames; half as many links and poses, ten times as many map values
+  std::size_t max_frames = 2'000;
+
+  friend bool operator==(const ViewerSettings&, const ViewerSettings&) = default;
+};
+
 /// Which result files are written.
 struct OutputSettings {
   bool paths = false;
@@ -48,7 +56,13 @@ struct OutputSettings {
   std::size_t cfr_points = 256;
   bool doppler = false;
   double doppler_bin_hz = 10.0;
+  bool npz = false;
+  bool plots = false;
+  std::size_t plots_max_links = 20;              ///< so many links have pictures, the first ones
+  std::optional<std::size_t> plots_pdp_frame{};  ///< frame of the single power delay profile; default: the middle one
   MapOutputs map{};
+  bool html = false;
+  ViewerSettings viewer{};
 };
 
 /// What the command line may override. Absent: the scenario file decides.

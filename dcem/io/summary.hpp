@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dcem/io/scenario.hpp"
@@ -46,10 +47,14 @@ class RunSummary {
   RunSummary(RunFacts facts, const Scene& scene);
 
   void add(const FrameFigures& frame) { frames_.push_back(frame); }
+  void add_warning(std::string line) { facts_.warnings.push_back(std::move(line)); }
 
   /// The text of `summary.json`: `version`, `scenario`, `scene`, `settings`, `warnings`, `totals`, `frames`. Times
   /// differ from run to run; everything else is the same for the same input.
   [[nodiscard]] std::string json() const;
+
+  /// What is known only after the last frame; one line each.
+  [[nodiscard]] std::vector<std::string> late_warnings() const;
 
   /// The table for the console. `folder` is where the results are.
   [[nodiscard]] std::string table(const std::filesystem::path& folder) const;
@@ -57,6 +62,7 @@ class RunSummary {
  private:
   [[nodiscard]] std::vector<double> frame_times_s() const;
   [[nodiscard]] std::string cache_text(const CacheCounters& cache) const;
+  [[nodiscard]] std::vector<std::string> warnings() const;
   [[nodiscard]] std::string diffuse_text(const FrameFigures& sum) const;
 
   RunFacts facts_;

@@ -342,7 +342,7 @@ TEST_CASE("bad usage and bad input end with one line, exit code 2 and no output"
   check_refused(folder, "run street.json --threads none", "--threads");
   check_refused(folder, "run street.json --cache exact", "not in this version");
   check_refused(folder, "run street.json --discovery guess", "--discovery");
-  check_refused(folder, "run street.json --output html", "not in this version");
+  check_refused(folder, "run street.json --output gltf", "not in this version");
   check_refused(folder, "run street.json --rays 0", "rays");
   check_refused(folder, "run street.json -o full/result", "full");
   check_refused(folder, "map street.json", "grid");

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "dcem/io/src/axis_ticks.hpp"
 #include "dcem/io/src/colour_map.hpp"
 #include "dcem/io/src/heat_map_plan.hpp"
 
@@ -14,7 +13,7 @@ namespace {
 using namespace detail;
 
 constexpr Colour white{255, 255, 255};
-constexpr Colour ink{30, 30, 30};
+constexpr Colour ink = picture_ink;
 constexpr Colour no_value_grey{217, 217, 217};
 constexpr Colour hatch_ground{245, 245, 245};
 constexpr Colour wall_colour{15, 15, 15};
@@ -150,29 +149,6 @@ void draw_transmitters(const HeatMap& map, const HeatMapLayout& layout, Image& i
   }
 }
 
-void draw_axes(const HeatMapPlan& plan, Image& image) {
-  const PixelRect& plot = plan.layout.plot;
-  image.draw_frame({plot.x - 1, plot.y - 1, plot.width + 2, plot.height + 2}, ink);
-  const int label_y = plot.bottom() + tick_px + gap_px;
-  for (const Tick& tick : plan.x_ticks) {
-    const int x =
-        std::clamp(static_cast<int>(plan.layout.point(tick.value, plan.layout.bottom_m).x), plot.x, plot.right() - 1);
-    image.fill_rectangle({x, plot.bottom(), 1, tick_px + 1}, ink);
-    image.draw_text(x - label_length_px(tick.label) / 2, label_y, tick.label, ink, label_scale);
-  }
-  for (const Tick& tick : plan.y_ticks) {
-    const int y =
-        std::clamp(static_cast<int>(plan.layout.point(plan.layout.left_m, tick.value).y), plot.y, plot.bottom() - 1);
-    image.fill_rectangle({plot.x - 1 - tick_px, y, tick_px + 1, 1}, ink);
-    const int x = plot.x - tick_px - gap_px - label_length_px(tick.label);
-    image.draw_text(x, y - 7 * label_scale / 2, tick.label, ink, label_scale);
-  }
-  image.draw_text(plot.x + (plot.width - label_length_px("x / m")) / 2, label_y + label_height_px + gap_px, "x / m",
-                  ink, label_scale);
-  image.draw_text(margin_px, plot.y + (plot.height - label_length_px("y / m")) / 2, "y / m", ink, label_scale,
-                  TextDirection::upwards);
-}
-
 // A tip above or below the bar: there are values beyond its end.
 void draw_bar_tip(const PixelRect& bar, bool upper, Image& image) {
   for (int i = 1; i <= bar_tip_px - 2; ++i) {
@@ -249,11 +225,11 @@ Image draw_heat_map(const HeatMap& map) {
   Image image(plan.layout.width_px, plan.layout.height_px, white);
   draw_cells(map, plan.layout, image);
   draw_walls(map, plan.layout, image);
-  draw_axes(plan, image);
+  detail::draw_axes(image, plan.layout.plot, plan.x, plan.y);
   draw_transmitters(map, plan.layout, image);
   draw_bar(map, plan, image);
   draw_legend(plan, image);
-  image.draw_text(plan.left_px, margin_px, plan.title, ink, plan.title_size);
+  image.draw_text(plan.left_px, margin_px, plan.title.text, ink, plan.title.scale);
   return image;
 }
 

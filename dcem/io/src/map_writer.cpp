@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dcem/io/esri_grid.hpp"
+#include "dcem/io/src/file_name.hpp"
 #include "dcem/io/src/map_arrays.hpp"
 #include "dcem/io/src/map_picture_parts.hpp"
 #include "dcem/io/src/number_text.hpp"
@@ -18,25 +19,6 @@ namespace {
 
 constexpr std::size_t sheet_bytes = std::size_t{1} << 20;
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-
-bool fits_file_name(unsigned char character) {
-  constexpr std::string_view separators = "/\\:*?\"<>|%";
-  return character >= 32 && character != 127 && separators.find(static_cast<char>(character)) == std::string_view::npos;
-}
-
-std::string file_name_part(const std::string& id) {
-  constexpr std::string_view hexadecimal = "0123456789ABCDEF";
-  std::string part;
-  for (const char character : id) {
-    const auto byte = static_cast<unsigned char>(character);
-    if (fits_file_name(byte)) {
-      part.push_back(character);
-    } else {
-      part.append({'%', hexadecimal[byte / 16], hexadecimal[byte % 16]});
-    }
-  }
-  return part;
-}
 
 std::optional<double> field_dbuv_per_m(const RadioMapPoint& point, double frequency_hz) {
   const std::optional<double>& power_dbm = point.statistics.power_dbm;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dcem/core/units.hpp"
+#include "dcem/io/src/link_entries.hpp"
 #include "dcem/io/src/number_text.hpp"
 #include "dcem/paths/path_id.hpp"
 
@@ -89,25 +90,14 @@ void append_shadow(JsonLine& line, const std::vector<Interaction>& interactions)
   line.key("in_shadow").prepared(in_shadow ? "true" : "false");
 }
 
-/// Specular paths and tiles in the order of a link's list.
-struct Entry {
-  const PathContribution* path = nullptr;
-  const DiffuseContribution* tile = nullptr;
-
-  const Path& geometry() const { return path != nullptr ? path->path : tile->path; }
-};
-
-std::vector<Entry> entries_of(const LinkResult& link, bool with_tiles) {
-  std::vector<Entry> entries;
-  for (const PathContribution& path : link.paths) entries.push_back({&path, nullptr});
-  if (!with_tiles) return entries;
-  for (const DiffuseContribution& tile : link.diffuse.tiles) entries.push_back({nullptr, &tile});
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const Entry& a, const Entry& b) { return reported_before(a.geometry(), b.geometry()); });
-  return entries;
-}
-
 }  // namespace
+
+std::string tile_id(const Scene& scene, const DiffuseContribution& tile) {
+  // Many tiles of one facet have the same surfaces; which part of it they are tells them apart.
+  const BodyId body = scene.facet(scene.facet_of_triangle(tile.triangle)).body;
+  const std::uint32_t number = tile.triangle - scene.triangle_range(body).first;
+  return path_id(scene, tile.path) + "#" + std::to_string(number) + "." + std::to_string(tile.place);
+}
 
 PathLines::PathLines(const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts)
     : scene_(scene), facts_(facts) {
@@ -129,7 +119,7 @@ void PathLines::append(std::string& text, const FrameResult& frame, const LinkRe
   line.key("rx").prepared(receivers_[link.receiver]);
   line.key("complete").prepared(link.complete ? "true" : "false");
   line.key("paths").open('[');
-  for (const Entry& entry : entries_of(link, facts_.diffuse_paths)) {
+  for (const LinkEntry& entry : link_entries(link, facts_.diffuse_paths)) {
     entry.path != nullptr ? append_path(text, link, *entry.path) : append_tile(text, link, *entry.tile);
   }
   line.close(']').close('}').close('\n');
@@ -176,11 +166,7 @@ void PathLines::append_path(std::string& text, const LinkResult& link, const Pat
 }
 
 void PathLines::append_tile(std::string& text, const LinkResult& link, const DiffuseContribution& tile) const {
-  // Many tiles of one facet have the same surfaces; which part of it they are tells them apart.
-  const BodyId body = scene_.facet(scene_.facet_of_triangle(tile.triangle)).body;
-  const std::uint32_t number = tile.triangle - scene_.triangle_range(body).first;
-  const std::string id = path_id(scene_, tile.path) + "#" + std::to_string(number) + "." + std::to_string(tile.place);
-  append_geometry(text, tile.path, id, tile.sample.delay_s, "\"tiles\"");
+  append_geometry(text, tile.path, tile_id(scene_, tile), tile.sample.delay_s, "\"tiles\"");
   JsonLine line(text);
   line.key("transfer").prepared("null").key("amplitude").prepared("null");
   append_power(text, link, tile.sample);

@@ -9,6 +9,9 @@
 
 namespace dcem::io {
 
+/// The id of a listed tile: that of its path, then the number of the triangle within its body and the part of it.
+std::string tile_id(const Scene& scene, const DiffuseContribution& tile);
+
 class PathLines {
  public:
   /// The scene must outlive it, and may move between the frames.

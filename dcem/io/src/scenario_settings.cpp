@@ -3,6 +3,7 @@
 #include <set>
 
 #include "dcem/io/src/scenario_parts.hpp"
+#include "dcem/io/viewer_writer.hpp"
 
 namespace dcem::io {
 
@@ -11,7 +12,7 @@ namespace {
 constexpr long long highest_order = 10, highest_diffraction_order = 3;
 
 /// The keys of `output` that this version does not write.
-const std::vector<std::string> later_outputs{"npz", "mat", "qd", "p2m", "deepmimo", "kml", "gltf", "html", "plots"};
+const std::vector<std::string> later_outputs{"mat", "qd", "p2m", "deepmimo", "kml", "gltf"};
 
 /// The value from the command line, or else the one from the file.
 std::optional<JsonValue> chosen(const JsonObject& command_line, const std::string& option,
@@ -125,7 +126,18 @@ void read_cfr(const JsonValue& value, OutputSettings& output) {
 void read_doppler(const JsonValue& value, OutputSettings& output) {
   output.doppler = value.is_boolean() ? value.boolean() : true;
   if (value.is_boolean()) return;
-  output.doppler_bin_hz = value.object({"bin_hz"}).at("bin_hz").number({1e-6, 1e9});
+  output.doppler_bin_hz = value.object({"bin_hz"}).number("bin_hz", output.doppler_bin_hz, {1e-6, 1e9});
+}
+
+void read_plots(const JsonValue& value, OutputSettings& output) {
+  output.plots = value.is_boolean() ? value.boolean() : true;
+  if (value.is_boolean()) return;
+  const JsonObject object = value.object({"max_links", "pdp_frame"});
+  output.plots_max_links =
+      static_cast<std::size_t>(object.integer("max_links", static_cast<long long>(output.plots_max_links), 1, 10'000));
+  if (const auto frame = object.find("pdp_frame")) {
+    output.plots_pdp_frame = static_cast<std::size_t>(frame->integer(0, 999'999'999));
+  }
 }
 
 /// `true`, or a list of the endings of the files that are wanted.
@@ -143,8 +155,22 @@ MapOutputs read_map_outputs(const JsonValue& value) {
   return {has("csv"), has("png"), has("npz"), has("asc"), has("svg")};
 }
 
+void read_html(const JsonValue& value, OutputSettings& output) {
+  output.html = value.is_boolean() ? value.boolean() : true;
+  if (output.html && !viewer_is_built_in()) {
+    value.fail("this build has no viewer; expected three.js (libjs-three) when DCEM was built");
+  }
+  if (value.is_boolean()) return;
+  const JsonObject object = value.object({"max_rays", "max_frames"});
+  const auto count = [&](const char* key, std::size_t absent, long long most) {
+    return static_cast<std::size_t>(object.integer(key, static_cast<long long>(absent), 1, most));
+  };
+  output.viewer.max_rays = count("max_rays", output.viewer.max_rays, 10'000'000);
+  output.viewer.max_frames = count("max_frames", output.viewer.max_frames, 1'000'000);
+}
+
 OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) {
-  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler", "map"};
+  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots", "map", "html"};
   known.insert(known.end(), later_outputs.begin(), later_outputs.end());
   const JsonObject object = value.object(known);
   for (const std::string& key : later_outputs) {
@@ -157,7 +183,10 @@ OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) 
   if (const auto pdp = object.find("pdp")) read_pdp(*pdp, output);
   if (const auto cfr = object.find("cfr")) read_cfr(*cfr, output);
   if (const auto doppler = object.find("doppler")) read_doppler(*doppler, output);
+  output.npz = object.boolean("npz", false);
+  if (const auto plots = object.find("plots")) read_plots(*plots, output);
   if (const auto map = object.find("map")) output.map = read_map_outputs(*map);
+  if (const auto html = object.find("html")) read_html(*html, output);
   return output;
 }
 

@@ -1,0 +1,264 @@
+/// viewer.html read back: its arrays are decoded here and compared with the results that went in.
+#include "dcem/io/viewer_writer.hpp"
+
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+
+#include "tests/io/temporary_folder.hpp"
+
+using namespace dcem;
+using test::file_bytes;
+using test::TemporaryFolder;
+
+#define DCEM_NEEDS_VIEWER()                                                       \
+  if (!io::viewer_is_built_in()) {                                                \
+    MESSAGE("skipped: this build has no viewer (three.js was not there for it)"); \
+    return;                                                                       \
+  }
+
+namespace {
+
+const std::string hostile = "</script><script>alert(1)</script>";
+
+Scene small_scene() {
+  Scene scene;
+  scene.add_material({"ground", ConstantReflection{0.5, std::nullopt}});
+  scene.add_material({"metal", PerfectConductor{}});
+  TriangleMesh ground;
+  add_quad(ground, {Vec3(400000, 0, 0), Vec3(400100, 0, 0), Vec3(400100, 50, 0), Vec3(400000, 50, 0)}, "ground");
+  scene.set_scenery(ground);
+  scene.add_object("car", make_box({4, 2, 1.5}, "metal"), LinearMotion{{Vec3(400010, 5, 0)}, Vec3(10, 0, 0), 0.0});
+  scene.add_object("<!--<script>", make_box({4, 2, 1.5}, "metal"), LinearMotion{{Vec3(400050, 5, 0)}, Vec3(0.0), 0.0});
+  scene.add_transmitter(device_at("mast", {400020, 20, 10}, 30.0));
+  scene.add_receiver(device_at(hostile, {400030, 20, 1.5}));
+  return scene;
+}
+
+/// A path whose numbers say which one it is; `strength` 0 is the strongest.
+PathContribution path_of_strength(int strength) {
+  PathContribution path;
+  path.path.interactions = {
+      {InteractionKind::reflection, FacetId(0), {400020.0 + strength, 20.5, 0.25}, WedgeId{}, false}};
+  path.path.length_m = 10.0 + strength;
+  path.delay_s = path.path.length_m / speed_of_light_mps;
+  path.power_ratio = std::pow(10.0, -strength - 6.0);
+  path.doppler_hz = -3.5 * strength;
+  return path;
+}
+
+FrameResult result_with(std::size_t index, int paths) {
+  FrameResult result;
+  result.index = index;
+  result.time_s = 0.1 * static_cast<double>(index);
+  LinkResult link;
+  // In the order of delays, as results are; here it is not the order of powers.
+  for (int strength = paths - 1; strength >= 0; --strength) link.paths.push_back(path_of_strength(strength));
+  link.statistics = link_statistics(link.paths, 30.0, false);
+  result.links.push_back(link);
+  return result;
+}
+
+struct Page {
+  std::string bytes;
+  std::vector<std::string> notices;
+
+  std::string between(const std::string& before, const std::string& after) const {
+    const std::size_t begin = bytes.find(before);
+    REQUIRE(begin != std::string::npos);
+    const std::size_t end = bytes.find(after, begin + before.size());
+    REQUIRE(end != std::string::npos);
+    return bytes.substr(begin + before.size(), end - begin - before.size());
+  }
+  std::string head() const { return between("id=\"head\">", "</script>"); }
+
+  /// The numbers of an array. Base64 as RFC 4648 has it, little-endian values.
+  template <typename Value>
+  std::vector<Value> array(const std::string& name) const {
+    const std::string text = between("\" id=\"" + name + "\">", "</script>");
+    std::string packed;
+    std::uint32_t group = 0;
+    int bits = 0;
+    for (const char character : text) {
+      if (character == '=') break;
+      const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+      const char* place = std::strchr(digits, character);
+      REQUIRE(place != nullptr);
+      group = group << 6 | static_cast<std::uint32_t>(place - digits);
+      bits += 6;
+      if (bits < 8) continue;
+      bits -= 8;
+      packed.push_back(static_cast<char>(group >> bits & 255U));
+    }
+    REQUIRE(packed.size() % sizeof(Value) == 0);
+    std::vector<Value> values(packed.size() / sizeof(Value));
+    if (!values.empty()) std::memcpy(values.data(), packed.data(), packed.size());
+    return values;
+  }
+};
+
+Page page_of(std::size_t frames, int paths, const io::ViewerSettings& settings = {}) {
+  const TemporaryFolder folder;
+  Scene scene = small_scene();
+  io::OutputFolder output(folder.path());
+  io::ViewerWriter writer(output, scene, {"drive", 28e9, 0, frames, 0}, settings);
+  for (std::size_t index = 0; index < frames; ++index) {
+    const Frame frame = scene.frame_at(0.1 * static_cast<double>(index), index);
+    scene.apply(frame);
+    writer.add(frame, result_with(index, paths));
+  }
+  Page page;
+  page.notices = writer.finish();
+  CHECK(folder.names() != std::vector<std::string>{"viewer.html"});  // not before the whole folder is complete
+  output.commit();
+  CHECK(folder.names() == std::vector<std::string>{"viewer.html"});
+  page.bytes = file_bytes(folder / "viewer.html");
+  return page;
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("the page gives back lengths, gains, points, Doppler and poses of the results") {
+  DCEM_NEEDS_VIEWER();
+  const Page page = page_of(3, 2);
+  CHECK(page.array<std::uint32_t>("frame_index") == std::vector<std::uint32_t>{0, 1, 2});
+  const auto times_s = page.array<double>("frame_time");
+  REQUIRE(times_s.size() == 3);
+  CHECK(times_s[2] == 0.2);
+  CHECK(page.array<std::uint32_t>("link_rays") == std::vector<std::uint32_t>{2, 2, 2});
+  // Strongest first: lengths 10 and 11 m, −60 and −70 dB.
+  CHECK(page.array<float>("ray_length") == std::vector<float>{10, 11, 10, 11, 10, 11});
+  CHECK(page.array<float>("ray_gain") == std::vector<float>{-60, -70, -60, -70, -60, -70});
+  CHECK(page.array<float>("ray_doppler") == std::vector<float>{0, -3.5F, 0, -3.5F, 0, -3.5F});
+  // The ground's middle is (400050, 25): points count from there, so that single precision holds them.
+  const auto points = page.array<float>("ray_points");
+  REQUIRE(points.size() == 18);
+  CHECK(std::vector<float>(points.begin(), points.begin() + 6) ==
+        std::vector<float>{-30, -4.5F, 0.25F, -29, -4.5F, 0.25F});
+  CHECK(page.array<std::uint32_t>("link_paths") == std::vector<std::uint32_t>{2, 2, 2});
+  CHECK(page.array<float>("link_diffuse").size() == 3);
+  CHECK(std::isnan(page.array<float>("link_diffuse")[0]));  // none computed
+}
+
+TEST_CASE("a pose stands in the frames in which it changes, and the shape of two equal cars once") {
+  DCEM_NEEDS_VIEWER();
+  const Page page = page_of(3, 1);
+  // Things: 1 the car that drives, 2 the one that stands, 3 the transmitter, 4 the receiver.
+  CHECK(page.array<std::uint32_t>("frame_poses") == std::vector<std::uint32_t>{4, 1, 1});
+  CHECK(page.array<std::uint32_t>("pose_thing") == std::vector<std::uint32_t>{1, 2, 3, 4, 1, 1});
+  const auto poses = page.array<float>("pose");
+  REQUIRE(poses.size() == 36);
+  CHECK(poses[0] == -40.0F);
+  CHECK(poses[24] == -39.0F);  // 10 m/s for 0.1 s
+  CHECK(poses[30] == -38.0F);
+  // 2 triangles of the ground, 12 of the box.
+  CHECK(page.array<std::uint32_t>("triangle_material").size() == 14);
+  CHECK(page.array<std::uint32_t>("triangles").size() == 42);
+  CHECK(page.array<float>("vertices").size() == 3 * (4 + 8));
+}
+
+TEST_CASE("no name of the user ends a script or becomes an element") {
+  DCEM_NEEDS_VIEWER();
+  const Page page = page_of(1, 1);
+  CHECK(page.bytes.find(hostile) == std::string::npos);
+  CHECK(page.head().find('<') == std::string::npos);
+  CHECK(page.head().find("\\u003c/script>") != std::string::npos);
+  // Each script that begins also ends, and nothing is loaded from elsewhere.
+  CHECK(count_of(page.bytes, "<script") == count_of(page.bytes, "</script>"));
+  CHECK(page.bytes.find(" src=") == std::string::npos);
+  CHECK(page.bytes.find("default-src 'none'") != std::string::npos);
+}
+
+TEST_CASE("frames are thinned evenly and the page says so") {
+  DCEM_NEEDS_VIEWER();
+  const Page page = page_of(100, 1, {400'000, 20});
+  const auto indices = page.array<std::uint32_t>("frame_index");
+  REQUIRE(indices.size() == 20);
+  for (std::size_t place = 0; place < indices.size(); ++place) CHECK(indices[place] == 5 * place);
+  REQUIRE(page.notices.size() == 1);
+  CHECK(page.notices[0] == "one of every 5 of 100 frames is shown");
+  CHECK(page.head().find(page.notices[0]) != std::string::npos);
+}
+
+TEST_CASE("of each link the strongest paths are kept, as many as fit, and the page says so") {
+  DCEM_NEEDS_VIEWER();
+  // 10 frames with one link of 30 paths each; 125 rays fit: 12 per link.
+  const Page page = page_of(10, 30, {125, 100});
+  CHECK(page.array<std::uint32_t>("link_rays") == std::vector<std::uint32_t>(10, 12));
+  CHECK(page.array<std::uint32_t>("link_listed") == std::vector<std::uint32_t>(10, 30));
+  const auto lengths_m = page.array<float>("ray_length");
+  REQUIRE(lengths_m.size() == 120);
+  for (std::size_t ray = 0; ray < 120; ++ray) CHECK(lengths_m[ray] == 10.0F + static_cast<float>(ray % 12));
+  REQUIRE(page.notices.size() == 1);
+  CHECK(page.notices[0] == "the 12 strongest of up to 30 paths per link are shown");
+}
+
+TEST_CASE("frames go before a link keeps fewer than eight paths; a pose survives the frame that is dropped") {
+  DCEM_NEEDS_VIEWER();
+  // 40 rays: five links with eight paths each, of 16 frames.
+  const Page page = page_of(16, 30, {40, 100});
+  const auto indices = page.array<std::uint32_t>("frame_index");
+  CHECK(indices == std::vector<std::uint32_t>{0, 4, 8, 12});
+  const auto rays = page.array<std::uint32_t>("link_rays");
+  for (const std::uint32_t count : rays) CHECK(count >= 8);
+  // The car drives 1 m per frame: it must be at 4 m per kept frame, whatever was dropped in between.
+  const auto things = page.array<std::uint32_t>("pose_thing");
+  const auto poses = page.array<float>("pose");
+  std::vector<float> x_m;
+  for (std::size_t entry = 0; entry < things.size(); ++entry) {
+    if (things[entry] == 1) x_m.push_back(poses[6 * entry]);
+  }
+  CHECK(x_m == std::vector<float>{-40, -36, -32, -28});
+}
+
+TEST_CASE("the same results give the same bytes") {
+  DCEM_NEEDS_VIEWER();
+  CHECK(page_of(7, 5, {60, 5}).bytes == page_of(7, 5, {60, 5}).bytes);
+}
+
+TEST_CASE("a map stands in the page point by point, with what is inside an object marked") {
+  DCEM_NEEDS_VIEWER();
+  const TemporaryFolder folder;
+  Scene scene = small_scene();
+  io::OutputFolder output(folder.path());
+  io::ViewerWriter writer(output, scene, {"area", 28e9, 0, 1, 6}, {});
+  const Frame frame = scene.frame_at(0.0, 0);
+  writer.add(frame, FrameResult{});
+  RadioMap map{{"area", {400040, 10, 1.5}, {2.0, 1.0}, {3, 2}, {}}, "mast", std::vector<RadioMapPoint>(6)};
+  for (std::size_t point = 0; point < 6; ++point) {
+    map.points[point].statistics.power_incoherent_dbm = -60.0 - static_cast<double>(point);
+  }
+  map.points[4].obstructed = true;
+  map.points[5].statistics.power_incoherent_dbm.reset();
+  writer.add(map);
+  CHECK(writer.finish().empty());
+  output.commit();
+  const Page page{file_bytes(folder / "viewer.html"), {}};
+  const auto values = page.array<float>("map_values");
+  REQUIRE(values.size() == 6);
+  for (std::size_t point = 0; point < 4; ++point) CHECK(values[point] == -60.0F - static_cast<float>(point));
+  CHECK(std::isnan(values[4]));
+  CHECK(std::isnan(values[5]));
+  CHECK(page.array<std::uint32_t>("map_obstructed") == std::vector<std::uint32_t>{1U << 4});
+  // The corner of the first cell, from the ground's middle (400050, 25): half a spacing before the origin.
+  CHECK(page.head().find(R"("corner_m":[-11.0,-15.5,1.5],"spacing_m":[2.0,1.0],"columns":3,"rows":2,"first":0)") !=
+        std::string::npos);
+}
+
+TEST_CASE("a build without three.js refuses to make a page") {
+  if (io::viewer_is_built_in()) return;
+  const TemporaryFolder folder;
+  const Scene scene = small_scene();
+  io::OutputFolder output(folder.path());
+  CHECK_THROWS_AS(io::ViewerWriter(output, scene, {"drive", 28e9, 0, 1, 0}, {}), std::invalid_argument);
+}
