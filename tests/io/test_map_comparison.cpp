@@ -63,7 +63,8 @@ TEST_CASE("the charts of a comparison hold every place, however far apart the ma
 
 TEST_CASE("a file that cannot be compared is refused with its line") {
   CHECK(refusal("").find("is empty; expected") != std::string::npos);
-  CHECK(refusal("x_m,y_m,power_dbm\n0,0,1\n").find(":1: no column 'p_dbm'; the nearest one is 'power_dbm'") !=
+  CHECK(refusal("x_m,y_m,pp_dbm\n0,0,1\n")
+            .find(":1: no column 'p_dbm'; expected it in the header, where the nearest one is 'pp_dbm'") !=
         std::string::npos);
   CHECK(refusal("x_m,y_m,p_dbm,p_dbm\n").find("is there twice") != std::string::npos);
   CHECK(refusal("x_m,y_m,p_dbm\n0,0,1\n0,0\n").find(":3: 2 fields; expected 3") != std::string::npos);

@@ -71,7 +71,8 @@ class MapRows {
     const auto is_column = [&](const std::string& name) { return trimmed(name) == column; };
     const auto found = std::find_if(fields_.begin(), fields_.end(), is_column);
     if (found == fields_.end()) {
-      fail("no column " + in_quotes(column) + "; the nearest one is " + in_quotes(nearest_name(column, fields_)));
+      fail("no column " + in_quotes(column) + "; expected it in the header, where the nearest one is " +
+           in_quotes(nearest_name(column, fields_)));
     }
     if (std::find_if(found + 1, fields_.end(), is_column) != fields_.end()) {
       fail("column " + in_quotes(column) + " is there twice; expected it once");
