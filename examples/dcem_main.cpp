@@ -27,6 +27,7 @@ const std::map<std::string, io::UpAxis> up_axes{{"y", io::UpAxis::y}, {"z", io::
 struct Options {
   ScenarioOptions scenario;
   InspectOptions inspect;
+  CompareOptions compare;
 };
 
 // An option that takes one of a few words.
@@ -86,12 +87,23 @@ void add_inspect_options(CLI::App& command, InspectOptions& options) {
       ->type_name("F");
 }
 
+void add_compare_options(CLI::App& command, CompareOptions& options) {
+  command.add_option("first", options.first, "A map (CSV)")->required()->type_name("A.csv");
+  command.add_option("second", options.second, "The map it is compared with (CSV)")->required()->type_name("B.csv");
+  command.add_option("-o", options.folder, "Folder for the chart (default: out/compare)")->type_name("DIR");
+  command.add_option("--column", options.column, "The power to compare (default: power_incoherent_dbm)")
+      ->type_name("NAME");
+  command.add_option("--second-column", options.second_column, "Its name in the second file, where that differs")
+      ->type_name("NAME");
+}
+
 // Commands of later versions are known by name, so that the answer is not "unknown".
 void add_absent_command(CLI::App& app, const std::string& name, const std::string& does) {
   CLI::App* command = app.add_subcommand(name, does + " (not in this version)");
   command->allow_extras();
-  command->callback(
-      [name] { throw UsageError("'dcem " + name + "' is not in this version", "run, map, verify or inspect"); });
+  command->callback([name] {
+    throw UsageError("'dcem " + name + "' is not in this version", "run, map, verify, inspect or compare");
+  });
 }
 
 void add_commands(CLI::App& app, Options& options) {
@@ -113,6 +125,9 @@ void add_commands(CLI::App& app, Options& options) {
       "verify", "Solve every reported path again on its own, and compare with exhaustive search where it is possible");
   add_common_options(*verify, options.scenario);
   verify->callback([&] { verify_scenario(options.scenario); });
+  CLI::App* compare = app.add_subcommand("compare", "How far two maps of the same places are apart");
+  add_compare_options(*compare, options.compare);
+  compare->callback([&] { compare_maps(options.compare); });
   add_absent_command(app, "import", "Make scenarios from SUMO, OpenStreetMap or GEMV2 data");
 }
 
@@ -121,7 +136,7 @@ void check_command(const CLI::App& app, int argument_count, char** arguments) {
   if (argument_count < 2 || arguments[1][0] == '-') return;
   const auto commands = app.get_subcommands([&](const CLI::App* command) { return command->check_name(arguments[1]); });
   if (commands.empty())
-    throw UsageError("'" + std::string(arguments[1]) + "' is no command", "run, map, verify or inspect");
+    throw UsageError("'" + std::string(arguments[1]) + "' is no command", "run, map, verify, inspect or compare");
 }
 
 int fail(std::string message, int exit_code) {

@@ -71,9 +71,9 @@ io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t
           job.scenario.time, receivers,         job.scenario.warnings};
 }
 
-void print_warnings(const Job& job, const ScenarioOptions& options) {
+void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options) {
   if (options.quiet) return;
-  for (const std::string& warning : job.scenario.warnings) std::cerr << "warning: " << warning << '\n';
+  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
 }
 
 std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator,

@@ -30,7 +30,7 @@ io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t
 
 /// One line per warning on the error stream, unless the user wants quiet. Called when nothing in the input can be wrong
 /// any more, because an error is to be the only line.
-void print_warnings(const Job& job, const ScenarioOptions& options);
+void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options);
 
 /// The page of results, where the scenario asks for it; otherwise nothing.
 std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator,

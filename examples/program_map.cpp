@@ -1,15 +1,23 @@
-/// `dcem map`: a coverage map per grid, transmitter and frame.
+/// `dcem map`: a coverage map per grid, transmitter and frame, and what all transmitters together do.
 #include <chrono>
 #include <iostream>
 #include <set>
 
+#include "dcem/channel/map_combination.hpp"
+#include "dcem/channel/thermal_noise.hpp"
+#include "dcem/io/combined_map_writer.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/map_distribution.hpp"
 #include "dcem/io/map_writer.hpp"
 #include "program_job.hpp"
 
 namespace dcem::program {
 namespace {
+
+constexpr const char* best_server_part = "best_server";
+constexpr const char* sinr_part = "sinr";
+constexpr const char* distribution_part = "distribution";
 
 /// One frame's number for the file names, or nothing where there is only one frame.
 std::optional<std::size_t> numbered(const Job& job, std::size_t frame) {
@@ -17,16 +25,20 @@ std::optional<std::size_t> numbered(const Job& job, std::size_t frame) {
 }
 
 // Two ids may differ in a way that their file names do not, as in grids "a" and "a_b" with transmitters "b_c" and "c".
+// The names of what is over all transmitters are taken as well.
 void check_names(const Job& job, const std::string& file) {
   std::set<std::string> names;
+  const auto take = [&](const ReceiverGrid& grid, const std::string& kind, const std::string& id) {
+    const std::string name = io::map_name(grid.id, id, {});
+    if (names.insert(name).second) return;
+    throw io::InputError(file, "grid '" + grid.id + "' and " + kind + "'" + id + "' give the file name '" + name +
+                                   "' a second time; expected ids that keep the names apart");
+  };
   for (const ReceiverGrid& grid : job.scenario.grids) {
-    for (const Device& transmitter : job.scenario.scene.transmitters()) {
-      const std::string name = io::map_name(grid.id, transmitter.id, {});
-      if (names.insert(name).second) continue;
-      throw io::InputError(file, "grid '" + grid.id + "' and transmitter '" + transmitter.id +
-                                     "' give the file name '" + name +
-                                     "' a second time; expected ids that keep the names apart");
-    }
+    for (const char* part : {best_server_part, sinr_part, distribution_part}) take(grid, "", part);
+  }
+  for (const ReceiverGrid& grid : job.scenario.grids) {
+    for (const Device& transmitter : job.scenario.scene.transmitters()) take(grid, "transmitter ", transmitter.id);
   }
 }
 
@@ -45,19 +57,85 @@ void add_figures(const RadioMap& map, io::FrameFigures& figures) {
   }
 }
 
-void write_map(io::OutputFolder& folder, const RadioMap& map, const Job& job, const Simulator<>& simulator,
-               const Frame& frame) {
-  const std::optional<std::size_t> number = numbered(job, frame.index);
-  const std::string name = io::map_name(map.grid.id, map.transmitter, number);
-  const double frequency_hz = simulator.settings().frequency_hz;
-  const auto time_s = number ? std::optional(frame.time_s) : std::nullopt;
-  io::AtomicFile& table = folder.open(name + ".csv");
-  io::write_map_csv(table, map, frequency_hz);
-  table.close();
-  io::AtomicFile& picture = folder.open(name + ".png");
-  io::write_heat_map_png(io::map_picture(map, simulator.scene(), frame, frequency_hz, time_s), picture);
-  picture.close();
-}
+/// Writes the files of the maps of one frame.
+class MapFiles {
+ public:
+  MapFiles(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator, const Frame& frame)
+      : folder_(folder),
+        wanted_(job.scenario.output.map),
+        scene_(simulator.scene()),
+        frame_(frame),
+        number_(numbered(job, frame.index)),
+        time_s_(number_ ? std::optional(frame.time_s) : std::nullopt),
+        frequency_hz_(simulator.settings().frequency_hz) {
+    if (job.scenario.noise) noise_dbm_ = noise_power_dbm(*job.scenario.noise);
+  }
+
+  void write(const std::vector<RadioMap>& maps) {
+    for (const RadioMap& map : maps) write_one(map);
+    if (maps.empty()) return;
+    const CombinedMap combined = combine_maps(maps, noise_dbm_);
+    write_best_server(combined);
+    if (io::has_sinr(combined, noise_dbm_.has_value())) write_sinr(combined);
+    const auto chart = [&](io::AtomicFile& file) { file.write(io::map_distribution_svg(maps, combined, time_s_)); };
+    if (wanted_.svg) put(name_of(combined, distribution_part) + ".svg", chart);
+  }
+
+ private:
+  template <typename Write>
+  void put(const std::string& name, Write&& write) {
+    io::AtomicFile& file = folder_.open(name);
+    write(file);
+    file.close();
+  }
+
+  std::string name_of(const CombinedMap& map, const char* part) const {
+    return io::map_name(map.grid.id, part, number_);
+  }
+
+  void write_one(const RadioMap& map) {
+    const std::string name = io::map_name(map.grid.id, map.transmitter, number_);
+    if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_map_csv(file, map, frequency_hz_); });
+    if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_map_npz(file, map, frequency_hz_); });
+    if (wanted_.asc) put(name + ".asc", [&](auto& file) { io::write_map_asc(file, map); });
+    const auto draw = [&](auto& file) {
+      io::write_heat_map_png(io::map_picture(map, scene_, frame_, frequency_hz_, time_s_), file);
+    };
+    if (wanted_.png) put(name + ".png", draw);
+  }
+
+  void write_best_server(const CombinedMap& map) {
+    const std::string name = name_of(map, best_server_part);
+    if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_best_server_csv(file, map); });
+    if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_best_server_npz(file, map); });
+    if (wanted_.asc) put(name + ".asc", [&](auto& file) { io::write_best_server_asc(file, map); });
+    const auto draw = [&](auto& file) {
+      io::write_heat_map_png(io::best_server_picture(map, scene_, frame_, frequency_hz_, time_s_), file);
+    };
+    if (wanted_.png) put(name + ".png", draw);
+  }
+
+  void write_sinr(const CombinedMap& map) {
+    const std::string name = name_of(map, sinr_part);
+    if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_sinr_csv(file, map); });
+    if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_sinr_npz(file, map); });
+    if (wanted_.asc) put(name + ".asc", [&](auto& file) { io::write_sinr_asc(file, map); });
+    const auto draw = [&](auto& file) {
+      const bool has_noise = noise_dbm_.has_value();
+      io::write_heat_map_png(io::sinr_picture(map, scene_, frame_, frequency_hz_, has_noise, time_s_), file);
+    };
+    if (wanted_.png) put(name + ".png", draw);
+  }
+
+  io::OutputFolder& folder_;
+  const io::MapOutputs wanted_;
+  const Scene& scene_;
+  const Frame& frame_;
+  const std::optional<std::size_t> number_;  ///< in the names of files; absent where there is one frame
+  const std::optional<double> time_s_;
+  const double frequency_hz_;
+  std::optional<double> noise_dbm_;
+};
 
 io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, Simulator<>& simulator, const Frame& frame,
                            io::ViewerWriter* viewer, io::ProgressBar& bar) {
@@ -71,9 +149,9 @@ io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, Simulator<>
     figures.solve_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (const RadioMap& map : maps) {
       add_figures(map, figures);
-      write_map(folder, map, job, simulator, frame);
       if (viewer != nullptr) viewer->add(map);
     }
+    MapFiles(folder, job, simulator, frame).write(maps);
   }
   return figures;
 }
@@ -91,7 +169,7 @@ void map_scenario(const ScenarioOptions& options) {
   io::OutputFolder folder(job.folder);
   const std::size_t points = point_count(job.scenario);
   io::RunSummary summary(run_facts(job, simulator, points), simulator.scene());
-  print_warnings(job, options);
+  print_warnings(job.scenario.warnings, options);
   const auto viewer = make_viewer(folder, job, simulator, points * simulator.scene().transmitters().size());
   {
     io::ProgressBar bar("points", points * job.frames.count(), progress_mode(options));
@@ -102,6 +180,7 @@ void map_scenario(const ScenarioOptions& options) {
   finish_viewer(viewer.get(), summary);
   folder.open("map_summary.json").write(summary.json());
   folder.commit();
+  print_warnings(summary.late_warnings(), options);
   if (!options.quiet) std::cout << summary.table(folder.path());
 }
 

@@ -48,11 +48,19 @@ struct InspectOptions {
   bool json = false;
 };
 
+struct CompareOptions {
+  std::string first, second;                    ///< CSV files
+  std::string column = "power_incoherent_dbm";  ///< of both, unless the second has its own
+  std::string second_column;
+  std::string folder;  ///< empty: out/compare
+};
+
 // The commands. They return when everything is written; errors are thrown.
 
 void run_scenario(const ScenarioOptions& options);
 void map_scenario(const ScenarioOptions& options);
 void verify_scenario(const ScenarioOptions& options);
 void inspect_scene(const InspectOptions& options);
+void compare_maps(const CompareOptions& options);
 
 }  // namespace dcem::program

@@ -56,7 +56,7 @@ void verify_scenario(const ScenarioOptions& options) {
   io::FrameSource frames(job.scenario);
   Simulator<> simulator = make_simulator(job, options);
   Verifier<> verifier(simulator.scene(), simulator.settings(), simulator.surface());
-  print_warnings(job, options);
+  print_warnings(job.scenario.warnings, options);
   io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
   for (std::size_t index = job.frames.first; index < job.frames.last; ++index) {
     const Frame frame = frames.frame(simulator.scene(), index);

@@ -22,8 +22,9 @@ inline bool has_array(const RadioEnd& transmitter, const RadioEnd& receiver) {
 /// of the elements' places (element_phasor). The row is element·ports + port of the receiver, the column that of the
 /// transmitter. `departure` and `arrival` are unit directions out of the ends, in the world.
 ///
-/// Valid where k·|r|²/2L is small against 1 (see element_phasor), and where every element sees the path: a wall that
-/// ends between two elements is not noticed, nor is the change of gain and polarization over the array.
+/// Valid where k·|r|²/2L is small against 1 (see element_phasor; L is the length to the first edge where there is one),
+/// and where every element sees the path: a wall that ends between two elements is not noticed, nor is the change of
+/// gain and polarization over the array.
 ChannelMatrix plane_wave_channel(const ComplexMatrix2& ports, const RadioEnd& transmitter, const Vec3& departure,
                                  const RadioEnd& receiver, const Vec3& arrival);
 

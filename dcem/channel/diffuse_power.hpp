@@ -44,8 +44,8 @@ class DiffuseIntegral {
                         const DiffuseKey& key) {
     Integrand integrand{*this, transmitter, from, receiver, to, TileSight<Tree>(tracer_, transmitter, receiver)};
     AdaptiveTiles<Integrand> tiles(
-        {db_to_power_ratio(settings_.tolerance_db) - 1.0,
-         settings_.tile_max_m.value_or(std::numeric_limits<double>::infinity()), settings_.tile_budget},
+        {relative_tolerance(), settings_.tile_max_m.value_or(std::numeric_limits<double>::infinity()),
+         settings_.tile_budget},
         integrand);
     const SolverCounters before = solver_.counters();
     for (std::uint32_t facet = 0; facet < scene_.facets().size(); ++facet) {
@@ -117,6 +117,9 @@ class DiffuseIntegral {
     }
   };
 
+  /// Half of what is promised: errors are estimates, and half as much again is what they were seen to lack.
+  double relative_tolerance() const { return 0.5 * (db_to_power_ratio(settings_.tolerance_db) - 1.0); }
+
   const WorldFacet& facet_of(const Tile& tile) const { return scene_.facet(scene_.facet_of_triangle(tile.source)); }
 
   void add_facet(AdaptiveTiles<Integrand>& tiles, FacetId id) const {
@@ -140,21 +143,23 @@ class DiffuseIntegral {
 
   DiffusePower collect(const AdaptiveTiles<Integrand>& tiles, Integrand& integrand, const DiffuseKey& key) const {
     DiffusePower result;
+    // A dual-polarized end has no single sum that a phase could enter.
+    const bool has_phases = settings_.phases == DiffusePhases::seeded && !integrand.from.antenna.is_dual() &&
+                            !integrand.to.antenna.is_dual();
     for (auto& [index, one] : integrand.seen) {
       const Tile& tile = tiles.tiles()[index];
       if (tile.is_halved) continue;
-      if (settings_.phases == DiffusePhases::seeded) one.amplitude = random_amplitude(one, tile, key);
+      if (has_phases) one.amplitude = random_amplitude(one, tile, key);
       one.triangle = tile.source;
       one.place = tile.place;
       if (!settings_.list_paths) one.path = {};
       result.tiles.push_back(std::move(one));
     }
     result.power_ratio = tiles.total();
-    result.residual_ratio = tiles.error();
+    result.residual_ratio = 2.0 * tiles.error();
     result.tiles_evaluated = tiles.evaluated();
-    const double tolerance = db_to_power_ratio(settings_.tolerance_db) - 1.0;
     // The running sums of the refinement differ from these by rounding.
-    result.converged = result.residual_ratio <= tolerance * result.power_ratio * (1.0 + 1e-9);
+    result.converged = result.residual_ratio <= 2.0 * relative_tolerance() * result.power_ratio * (1.0 + 1e-9);
     return result;
   }
 

@@ -64,11 +64,9 @@ inline std::optional<double> ratio_to_dbm(double power_ratio, double power_dbm) 
 inline double coherent_power_ratio(std::span<const PathContribution> paths, const DiffusePower& diffuse) {
   ComplexMatrix2 sum;
   for (const PathContribution& path : paths) sum = sum + path.ports;
-  const bool is_single = paths.empty() || paths.front().has_amplitude;
   double power = 0.0;
   for (const DiffuseContribution& tile : diffuse.tiles) {
-    const bool has_phase = is_single && tile.amplitude != Complex{};
-    has_phase ? void(sum(0, 0) += tile.amplitude) : void(power += tile.sample.power_ratio);
+    tile.amplitude != Complex{} ? void(sum(0, 0) += tile.amplitude) : void(power += tile.sample.power_ratio);
   }
   const int transmit_ports = paths.empty() ? 1 : paths.front().transmit_ports;
   return norm_squared(sum) / transmit_ports + power;
@@ -131,6 +129,7 @@ inline LinkStatistics link_statistics(std::span<const PathContribution> paths, d
   statistics.path_count = paths.size();
   if (paths.empty() && diffuse.tiles.empty()) return statistics;
   detail::add_powers(statistics, paths, diffuse, power_dbm);
+  if (!line_of_sight) statistics.k_factor_db.reset();  // a direct path through foliage is none
   detail::add_moments(statistics, power_samples(paths, diffuse));
   return statistics;
 }

@@ -88,7 +88,7 @@ inline double pattern_gain(const IsotropicPattern&, double, double) {
 /// poles like sin θ, without a difference of nearly equal numbers.
 inline double pattern_gain(const HalfWaveDipole&, double, double zenith_rad) {
   const double sine = std::abs(std::sin(zenith_rad));
-  if (sine == 0.0) return 0.0;
+  if (sine < 1e-15) return 0.0;  // a direction is no better known: straight down has the sine of the rounding of π
   const double field = std::sin(0.5 * pi * sine * sine / (1.0 + std::abs(std::cos(zenith_rad)))) / sine;
   return half_wave_dipole_directivity * field * field;
 }

@@ -47,6 +47,7 @@ class FacetBuilder {
     join_coplanar(edges);
     shells_ = enclosing_shells(mesh_, edges, settings_.weld_tolerance_m);
     surface_.shell_foot_m = shells_.foot_m;
+    surface_.shell_stands = shells_.stands;
     surface_.report = mesh_.report;
     surface_.report.open_edges = open_edges_;
     surface_.report.crowded_edges = crowded_edges_;

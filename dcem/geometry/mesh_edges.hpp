@@ -51,6 +51,7 @@ class MeshEdges {
 struct EnclosingShells {
   std::vector<std::uint32_t> shell_of_triangle;  ///< counted from 1; 0: none
   std::vector<double> foot_m;                    ///< lowest z of each shell; entry 0 is shell 1
+  std::vector<bool> stands;                      ///< whether it is open at the foot
   std::size_t closed = 0;                        ///< shells without open edges
   std::size_t standing = 0;                      ///< shells that are open at the foot
 };
@@ -106,6 +107,7 @@ inline EnclosingShells enclosing_shells(const CleanMesh& mesh, const MeshEdges& 
     if (shell.leaks || !(shell.top_m > shell.foot_m + tolerance_m)) continue;  // a flat sheet encloses nothing
     if (first == index) {
       result.foot_m.push_back(shell.foot_m);
+      result.stands.push_back(shell.stands);
       ++(shell.stands ? result.standing : result.closed);
     }
     result.shell_of_triangle[index] =

@@ -50,6 +50,7 @@ struct SurfaceMesh {
   /// ones elsewhere than at its foot.
   std::vector<std::uint32_t> shell_of_triangle;
   std::vector<double> shell_foot_m;  ///< lowest z of each enclosing shell; entry 0 is shell 1
+  std::vector<bool> shell_stands;    ///< whether it is open at its foot; otherwise it is closed all around
   std::vector<Facet> facets;
   std::vector<Vec3> hull_points_m;  ///< corners of each facet's convex hull, on its plane, in order around it
   std::vector<Wedge> wedges;        ///< where two facets meet, then the free edges

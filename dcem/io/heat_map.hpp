@@ -1,8 +1,9 @@
 #pragma once
-/// Pictures of values over a regular grid: coverage maps, delay maps.
+/// Pictures of values over a regular grid: coverage maps, delay maps, power over time and delay.
 ///
-/// The picture has axes in metres at true aspect ratio, a colour bar with ticks and unit, a title, walls, transmitters
-/// and a legend. One grid point is one block of equal pixels, never blended with its neighbours.
+/// The picture has axes in metres at true aspect ratio, or two axes of other quantities, each at its own scale; a
+/// colour bar with ticks and unit, a title, walls, transmitters and a legend. One grid point is one block of equal
+/// pixels, never blended with its neighbours.
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -21,6 +22,17 @@ struct ValueRange {
   double high = 1.0;
 };
 
+/// What the two axes of a picture are.
+struct HeatMapAxes {
+  std::string x_label = "x";
+  std::string x_unit = "m";
+  std::string y_label = "y";
+  std::string y_unit = "m";
+  /// A metre is as long along x as along y. False for axes that have nothing in common, such as time and delay: the
+  /// plot then is about 800 × 400 pixels, and all that this header names with `_m` is in `x_unit` or `y_unit`.
+  bool to_scale = true;
+};
+
 /// A map to be drawn. Grid point (column, row) lies at (origin_x_m + column · spacing_x_m, origin_y_m + row ·
 /// spacing_y_m) in the middle of its cell, so the picture reaches half a spacing beyond the outer points.
 struct HeatMap {
@@ -34,6 +46,8 @@ struct HeatMap {
   std::string title;
   std::string label = "received power";
   std::string unit = "dBm";
+  HeatMapAxes axes{};
+  std::string no_value_label = "no value";  // what the legend calls cells without a value
   double origin_x_m = 0.0;
   double origin_y_m = 0.0;
   double spacing_x_m = 1.0;
@@ -46,6 +60,9 @@ struct HeatMap {
   std::vector<std::array<double, 4>> walls_m;  // segments x0, y0, x1, y1
   std::vector<Marker> transmitters;
   std::optional<ValueRange> range;  // ends of the colour bar; default: `default_value_range`
+  /// Where this is not empty the values are numbers of these names, counted from 0. Each name has a colour and an entry
+  /// in the legend, and there is no colour bar. Colours repeat after 21 names.
+  std::vector<std::string> categories;
 };
 
 /// The colour range of a map that names none: from the 2nd percentile of its values (so that a few deep fades do not
@@ -63,9 +80,9 @@ struct HeatMapLayout {
   double left_m = 0.0;    // x of the left edge of the plot
   double bottom_m = 0.0;  // y of its lower edge
   double horizontal_px_per_m = 1.0;
-  double vertical_px_per_m = 1.0;   // the same, but for rounding, unless `to_scale` is false
-  std::size_t sampling = 1;         // one point in so many along each axis is shown
-  bool to_scale = true;             // false where a very long or flat grid was stretched to be seen at all
+  double vertical_px_per_m = 1.0;  // the same, but for rounding, unless `to_scale` is false
+  std::size_t sampling = 1;        // one point in so many along each axis is shown
+  bool to_scale = true;  // false where a very long or flat grid was stretched to be seen at all, or `axes` say so
   std::optional<ValueRange> range;  // what the colours mean
 
   /// Continuous pixel coordinates of a place.
@@ -75,9 +92,11 @@ struct HeatMapLayout {
 };
 
 /// The layout that `draw_heat_map` uses. The longer side of the plot is about 800 pixels: a whole number of pixels per
-/// cell (at most 240), one pixel per cell for up to 1,500 cells, and one cell of k × k, its middle one, beyond.
+/// cell (at most 240), one pixel per cell for up to 1,500 cells, and one cell of k × k, its middle one, beyond. Axes
+/// that are not to scale each follow this rule on their own, the upright one for 400 pixels.
 /// Throws `std::invalid_argument` where sizes do not fit together, a spacing lies outside 1e-6…1e9 m or is lost beside
-/// its origin (below 1e-12 of it), a coordinate is not finite, or the range is empty.
+/// its origin (below 1e-12 of it), a coordinate is not finite, the range is empty, or a value is no number of a
+/// category.
 HeatMapLayout heat_map_layout(const HeatMap& map);
 
 /// Draws the map. Values outside the colour range take the colour of its end, and the bar then ends in a tip.

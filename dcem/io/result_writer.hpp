@@ -1,5 +1,6 @@
 #pragma once
-/// Results of a run, frame by frame: `paths.jsonl`, `links.csv`, `pdp.csv`, `doppler.csv` and `cfr.npz`.
+/// Results of a run, frame by frame: `paths.jsonl`, `links.csv`, `pdp.csv`, `doppler.csv`, `cfr.npz`, `paths.npz` and
+/// pictures of links.
 ///
 /// Numbers have the fewest digits that read back as the same double. What is not defined is an empty field in CSV and
 /// `null` in JSON, never NaN or infinity. The same results give the same bytes. docs/results.md names every column.
@@ -37,23 +38,30 @@ struct ResultFacts {
   bool diffuse = false;        ///< diffuse power is computed
   bool diffuse_paths = false;  ///< and its tiles are listed among the paths
   std::size_t frames = 1;
+  std::size_t first_frame = 0;  ///< `FrameResult::index` of the first of them
 };
 
+/// The links that `output.plots` counts: transmitters times receivers, without those of a device to itself.
+std::size_t plotted_links(const Scene& scene, std::span<const Device> receivers);
+
 class CsvLine;
+class PathCollector;
 class PathLines;
+class PlotCollector;
 class ResponseCollector;
 
 /// Writes the files that `output` asks for into a folder; the caller commits the folder after the last frame.
 class ResultWriter {
  public:
   /// `receivers` are those that `LinkResult::receiver` indexes. The folder and the scene must outlive the writer, and
-  /// the scene may move between the frames. Throws `OutputError`, and std::invalid_argument where a response over the
-  /// band would need more memory than 16 GB.
+  /// the scene may move between the frames. Throws `OutputError`, and std::invalid_argument where responses over the
+  /// band or paths as arrays would need more memory than 16 GB, or where pictures cannot be as they are asked for.
   ResultWriter(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts,
                const OutputSettings& output);
   ~ResultWriter();
 
-  /// Appends a frame. Lines are in the order of the frame's links. Throws `OutputError`.
+  /// Appends a frame. Lines are in the order of the frame's links. Throws `OutputError`, and
+  /// std::invalid_argument where the paths as arrays would need more memory than 16 GB.
   void write(const FrameResult& frame);
   /// After the last frame: writes what is complete only now. Throws `OutputError`.
   void finish();
@@ -76,7 +84,10 @@ class ResultWriter {
   ResultFacts facts_;
   Sheet paths_, links_, profile_, doppler_;
   std::unique_ptr<PathLines> lines_;
-  std::unique_ptr<ResponseCollector> responses_;  // absent: not asked for
+  // Absent: not asked for.
+  std::unique_ptr<ResponseCollector> responses_;
+  std::unique_ptr<PathCollector> arrays_;
+  std::unique_ptr<PlotCollector> plots_;
   // Names as they stand in the files, prepared once.
   std::vector<std::string> csv_transmitters_, csv_receivers_;
   std::vector<double> power_dbm_;  // of each transmitter

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dcem/channel/power_delay_profile.hpp"
+#include "dcem/channel/thermal_noise.hpp"
 #include "dcem/io/traffic.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/settings.hpp"
@@ -24,6 +25,15 @@ struct TimeSettings {
   double time_s(std::size_t frame) const {
     return instants_s.empty() ? start_s + static_cast<double>(frame) * step_s : instants_s[frame];
   }
+};
+
+/// Which files `dcem map` writes of each map.
+struct MapOutputs {
+  bool csv = true;
+  bool png = true;
+  bool npz = true;
+  bool asc = true;
+  bool svg = true;  ///< the distribution over the points of a grid
 };
 
 /// How much a page of results may hold, so that a browser opens a day's trace, too.
@@ -46,6 +56,11 @@ struct OutputSettings {
   std::size_t cfr_points = 256;
   bool doppler = false;
   double doppler_bin_hz = 10.0;
+  bool npz = false;
+  bool plots = false;
+  std::size_t plots_max_links = 20;              ///< so many links have pictures, the first ones
+  std::optional<std::size_t> plots_pdp_frame{};  ///< frame of the single power delay profile; default: the middle one
+  MapOutputs map{};
   bool html = false;
   ViewerSettings viewer{};
 };
@@ -65,8 +80,9 @@ struct Scenario {
   SimulationSettings settings;
   TimeSettings time;
   OutputSettings output;
-  std::vector<ReceiverGrid> grids;  ///< not yet among the scene's receivers
-  std::optional<Traffic> traffic;   ///< vehicles of a trace; their frames come from a `FrameSource`
+  std::optional<NoiseSettings> noise{};  ///< of the receivers; absent: maps know no noise
+  std::vector<ReceiverGrid> grids;       ///< not yet among the scene's receivers
+  std::optional<Traffic> traffic;        ///< vehicles of a trace; their frames come from a `FrameSource`
   std::vector<std::string> warnings;
 
   /// Instant of a frame.

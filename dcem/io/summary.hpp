@@ -53,12 +53,16 @@ class RunSummary {
   /// differ from run to run; everything else is the same for the same input.
   [[nodiscard]] std::string json() const;
 
+  /// What is known only after the last frame; one line each.
+  [[nodiscard]] std::vector<std::string> late_warnings() const;
+
   /// The table for the console. `folder` is where the results are.
   [[nodiscard]] std::string table(const std::filesystem::path& folder) const;
 
  private:
   [[nodiscard]] std::vector<double> frame_times_s() const;
   [[nodiscard]] std::string cache_text(const CacheCounters& cache) const;
+  [[nodiscard]] std::vector<std::string> warnings() const;
   [[nodiscard]] std::string diffuse_text(const FrameFigures& sum) const;
 
   RunFacts facts_;

@@ -1,6 +1,8 @@
 #pragma once
 /// How far a leg runs inside foliage.
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "dcem/geometry/triangle.hpp"
@@ -11,28 +13,37 @@ namespace dcem {
 
 namespace detail {
 
-/// The part of a leg inside one closed shell, 0…1 of its length. `crossed_at` is scratch memory.
+/// Crossings closer than this, of the leg's length, are one crossing that rounding has doubled.
+inline constexpr double shortest_piece = 1e-12;
+
+/// Whether a point lies inside a closed shell: a ray from it meets the shell an odd number of times. The ray stands in
+/// no relation to any wall, so that it meets no edge, at which the triangles of either side would count.
+inline bool is_inside(const Scene& scene, const FoliageShell& shell, const Vec3& point_m) {
+  const WatertightRay ray({point_m, Vec3(0.271'828'182'8, 0.141'421'356'2, 1.0)});
+  bool inside = false;
+  for (const std::uint32_t triangle : shell.triangles) {
+    const std::optional<double> t = ray.intersect(scene.corners_m(triangle));
+    if (t && *t > 0.0) inside = !inside;
+  }
+  return inside;
+}
+
+/// The part of a leg inside one closed shell, 0…1 of its length: the pieces between crossings whose middle is inside.
+/// A leg may meet edges and corners, so the number of crossings says nothing. `crossed_at` is scratch memory.
 inline double share_inside(const Scene& scene, const FoliageShell& shell, const Ray<double>& leg,
-                           std::vector<std::pair<FacetId, double>>& crossed_at) {
-  crossed_at.clear();
-  // Beyond the end of the leg as well: the number of all crossings says whether the leg begins inside.
+                           std::vector<double>& crossed_at) {
+  crossed_at.assign({0.0, 1.0});
   const WatertightRay prepared(leg);
   for (const std::uint32_t triangle : shell.triangles) {
     const std::optional<double> t = prepared.intersect(scene.corners_m(triangle));
-    if (t && *t > 0.0) crossed_at.emplace_back(scene.facet_of_triangle(triangle), *t);
+    if (t && *t > 0.0 && *t < 1.0) crossed_at.push_back(*t);
   }
-  // A facet is plane: it is crossed once, even where its triangles meet.
   std::sort(crossed_at.begin(), crossed_at.end());
-  const auto same_facet = [](const auto& a, const auto& b) { return a.first == b.first; };
-  crossed_at.erase(std::unique(crossed_at.begin(), crossed_at.end(), same_facet), crossed_at.end());
-  std::sort(crossed_at.begin(), crossed_at.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  bool inside = crossed_at.size() % 2 == 1;
-  double share = 0.0, from = 0.0;
-  for (const auto& [facet, t] : crossed_at) {
-    const double to = std::min(t, 1.0);
-    if (inside) share += to - from;
-    inside = !inside;
-    from = to;
+  double share = 0.0;
+  for (std::size_t index = 1; index < crossed_at.size(); ++index) {
+    const double from = crossed_at[index - 1], to = crossed_at[index];
+    const bool is_piece = to - from > shortest_piece;
+    if (is_piece && is_inside(scene, shell, leg.at(0.5 * (from + to)))) share += to - from;
   }
   return share;
 }
@@ -42,7 +53,7 @@ inline double share_inside(const Scene& scene, const FoliageShell& shell, const 
 /// Adds what a straight leg runs through to `foliage`, one entry per material in the order in which they come.
 inline void add_foliage_along(const Scene& scene, const Vec3& from_m, const Vec3& to_m, const IgnoredBodies& ignored,
                               std::vector<FoliageLength>& foliage) {
-  std::vector<std::pair<FacetId, double>> crossed_at;
+  std::vector<double> crossed_at;
   const Ray<double> leg = segment_between(from_m, to_m);
   Aabb<double> leg_box;
   leg_box.extend(from_m);

@@ -56,24 +56,22 @@ class SceneTracer {
                   const IgnoredBodies& ignored, std::size_t crossing_limit, std::vector<Crossing>& crossings,
                   TraversalCounters& counters) const;
 
-  /// Calls `visit(triangle, t)` for every triangle that a straight leg meets and does not ignore, t from 0 to 1, in no
-  /// promised order.
-  template <typename Visit>
-  void triangles_between(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end,
-                         const IgnoredBodies& ignored, Visit&& visit, TraversalCounters& counters) const {
+  /// Calls `test(triangle) -> bool` for triangles that a straight leg meets and does not ignore, in no promised order,
+  /// until one returns true. Returns whether one did.
+  template <typename Test>
+  bool any_triangle_between(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end,
+                            const IgnoredBodies& ignored, Test&& test, TraversalCounters& counters) const {
     const Ray<double> leg = segment_between(from_m, to_m);
     const WatertightRay prepared(leg);
-    tree_.all(
-        leg,
-        [&](std::uint32_t triangle) {
-          const std::optional<double> t = prepared.intersect(scene_.corners_m(triangle));
-          if (!t || *t < 0.0 || *t > 1.0) return;
-          const FacetId facet = scene_.facet_of_triangle(triangle);
-          const Vec3 point_m = leg.at(*t);
-          if (is_ignored(scene_.facet(facet).body, ignored)) return;
-          if (!skips(start, facet, point_m) && !skips(end, facet, point_m)) visit(triangle, *t);
-        },
-        &counters);
+    const auto meets = [&](std::uint32_t triangle) {
+      const std::optional<double> t = prepared.intersect(scene_.corners_m(triangle));
+      if (!t || *t < 0.0 || *t > 1.0) return false;
+      const FacetId facet = scene_.facet_of_triangle(triangle);
+      const Vec3 point_m = leg.at(*t);
+      if (is_ignored(scene_.facet(facet).body, ignored)) return false;
+      return !skips(start, facet, point_m) && !skips(end, facet, point_m) && test(triangle);
+    };
+    return tree_.any(leg, meets, &counters);
   }
 
   /// Facets within `radius_m` of a point, ascending by id.

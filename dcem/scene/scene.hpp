@@ -2,6 +2,7 @@
 /// The world: materials, bodies and devices. The only state that changes from frame to frame.
 ///
 /// Body 0 is the standing scenery, every object is a body of its own.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -109,6 +110,12 @@ class Scene {
   std::span<const Vec3> hull_m(const WorldFacet& facet) const { return world_.hull_m(facet); }
   /// Boxes of all triangles, in the order of `triangles()`; empty for triangles of an absent body.
   std::span<const Aabb<double>> triangle_boxes() const { return world_.triangle_boxes(); }
+  /// Facets that can reflect, block or let pass: all but the skins of foliage.
+  std::size_t surface_count() const {
+    const std::span<const WorldFacet> all = facets();
+    return static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [](const WorldFacet& facet) { return !facet.is_foliage; }));
+  }
   /// Closed shells of foliage; empty boxes for those of an absent body.
   std::span<const FoliageShell> foliage() const { return world_.foliage(); }
   /// The number of a facet within its body: it does not change when other bodies come or go.
@@ -228,13 +235,20 @@ inline std::vector<SurfaceMaterial> Scene::resolve_materials(const SurfaceMesh& 
   return resolved;
 }
 
-/// A length inside is defined for closed shells only.
+/// A length inside is defined for shells that are closed all around, and of one foliage.
 inline void Scene::check_foliage_is_closed(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials) {
+  std::vector<std::optional<std::uint32_t>> material_of_shell(mesh.shell_foot_m.size() + 1);
   for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
-    const Facet& facet = mesh.facets[mesh.facet_of_triangle[triangle]];
-    if (!materials[facet.material].is_foliage || mesh.shell_of_triangle[triangle] != 0) continue;
-    throw std::invalid_argument("material '" + mesh.material_names[facet.material] +
-                                "' is foliage on a surface that is not closed; expected closed shells of it");
+    const std::uint32_t shell = mesh.shell_of_triangle[triangle];
+    const std::uint32_t material = mesh.facets[mesh.facet_of_triangle[triangle]].material;
+    const std::uint32_t first = material_of_shell[shell].value_or(material);
+    if (shell != 0) material_of_shell[shell] = first;
+    if (!materials[material].is_foliage && !materials[first].is_foliage) continue;
+    if (shell != 0 && !mesh.shell_stands[shell - 1] && first == material) continue;
+    const std::uint32_t foliage = materials[material].is_foliage ? material : first;
+    throw std::invalid_argument("material '" + mesh.material_names[foliage] +
+                                "' is foliage on a surface that is not closed, shares an edge with another one, or is "
+                                "of something else in part; expected closed shells of it alone");
   }
 }
 

@@ -24,7 +24,7 @@ inline std::size_t automatic_exact_facet_limit(const PropagationSettings& propag
 /// Exact or sampled: what a simulation with these settings really does. Throws std::invalid_argument where exact
 /// discovery is asked for by name in a scene that is too large for it: what was asked for is never weakened in silence.
 inline Discovery resolve_discovery(const PropagationSettings& propagation, const Scene& scene) {
-  const std::size_t facets = scene.facets().size();
+  const std::size_t facets = scene.surface_count();
   if (propagation.discovery == Discovery::exact && facets > exact_discovery_facet_limit) {
     throw std::invalid_argument("discovery exact: not in this version for " + std::to_string(facets) +
                                 " facets; expected at most " + std::to_string(exact_discovery_facet_limit));

@@ -1,5 +1,6 @@
 #pragma once
 /// The channel between the elements of two arrays with a path of its own for each pair of elements.
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -17,7 +18,7 @@ struct ElementEnds {
   std::vector<RadioEnd> radio;
 };
 
-/// `centre` is the end of the whole device: its elements ride on the same body.
+/// `centre` is the end of the whole device: its elements ride on the same body and are mounted on the same facets.
 template <typename Tree>
 ElementEnds element_ends(const SceneTracer<Tree>& tracer, const LinkEnd& centre, const RadioEnd& device,
                          double wavelength_m, TraversalCounters& counters) {
@@ -27,7 +28,11 @@ ElementEnds element_ends(const SceneTracer<Tree>& tracer, const LinkEnd& centre,
   for (std::size_t index = 0; index < device.antenna.array.size(); ++index) {
     const Vec3 offset_m = device.rotation * element_offset_m(device.antenna.array, index, wavelength_m);
     element.position_m = device.position_m + offset_m;
-    ends.link.push_back(make_link_end(tracer, element.position_m, centre.ignored_body, counters));
+    LinkEnd end = make_link_end(tracer, element.position_m, centre.ignored_body, counters);
+    end.mounted_on.insert(end.mounted_on.end(), centre.mounted_on.begin(), centre.mounted_on.end());
+    std::sort(end.mounted_on.begin(), end.mounted_on.end());
+    end.mounted_on.erase(std::unique(end.mounted_on.begin(), end.mounted_on.end()), end.mounted_on.end());
+    ends.link.push_back(std::move(end));
     ends.radio.push_back(element);
   }
   return ends;

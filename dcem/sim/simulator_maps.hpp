@@ -20,7 +20,11 @@ template <SurfaceModel Surface, typename Tree>
 std::vector<RadioMap> Simulator<Surface, Tree>::radio_maps(const ReceiverGrid& grid,
                                                            const std::function<void(std::size_t)>& progress,
                                                            WorkCounters* work) const {
-  const TransmitterEnds transmitters = transmitter_ends({});
+  // Maps hold no channel between elements, and their powers are those of one: none is computed.
+  TransmitterEnds transmitters = transmitter_ends({});
+  for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
+  ReceiverGrid single = grid;
+  single.antenna.array = {};
   const Tracer tracer(scene_, tree_);
   std::vector<Vec3> transmitters_m;
   std::vector<RadioMap> maps;
@@ -37,7 +41,7 @@ std::vector<RadioMap> Simulator<Surface, Tree>::radio_maps(const ReceiverGrid& g
       const bool obstructed = obstruction.obstructed(position_m);
       for (RadioMap& map : maps) map.points[cell] = {position_m, obstructed, {}, {}};
       if (obstructed) continue;
-      const Solved solved = solve_receiver(grid_receiver(grid, row, column), cell, transmitters, nullptr);
+      const Solved solved = solve_receiver(grid_receiver(single, row, column), cell, transmitters, nullptr);
       for (const LinkResult& link : solved.links) maps[link.transmitter].points[cell] = map_point(link, position_m);
       spent[row] += solved.work;
     }

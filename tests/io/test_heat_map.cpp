@@ -457,3 +457,25 @@ TEST_CASE("the same map gives the same bytes, and a place that cannot be written
   CHECK_THROWS_AS(write_heat_map_png(room(), folder / "absent/map.png"), OutputError);
   CHECK(folder.names() == std::vector<std::string>{"a.png", "results"});
 }
+
+TEST_CASE("axes that have nothing in common each fill the picture, and are named with their units") {
+  HeatMap map = plain_map(60, 30, -60.0);
+  map.spacing_x_m = 0.1;
+  map.spacing_y_m = 250.0;
+  map.origin_y_m = 1000.0;
+  map.axes = {"time", "s", "delay", "ns", false};
+  const HeatMapLayout layout = heat_map_layout(map);
+  CHECK_FALSE(layout.to_scale);
+  CHECK(layout.plot.width % 60 == 0);
+  CHECK(layout.plot.height % 30 == 0);
+  CHECK(std::abs(layout.plot.width - 800) < 60);
+  CHECK(std::abs(layout.plot.height - 400) < 30);
+  CHECK(layout.point(map.origin_x_m - 0.05, 875.0).x == doctest::Approx(layout.plot.x));
+  CHECK(layout.point(map.origin_x_m - 0.05, 875.0).y == doctest::Approx(layout.plot.bottom()));
+  // No note that the scales differ: nobody expects them to agree. The names take other ink than "x / m".
+  HeatMap metres = map;
+  metres.axes = {"x", "m", "y", "m", false};
+  const Png named = drawn(map), plain = drawn(metres);
+  CHECK(named.height == plain.height);
+  CHECK(named.pixels != plain.pixels);
+}

@@ -224,6 +224,110 @@ TEST_CASE("inspect shows a scene whose materials are not defined") {
   CHECK(table.output.find("from 190 degrees outside, 160.0 m in all") != std::string::npos);
 }
 
+TEST_CASE("a map brings tables, pictures, arrays, rasters and distributions, also over all transmitters") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, grid_receiver);
+  REQUIRE(dcem_program(folder, "map street.json --frames 0:1 --quiet -o m").exit_code == 0);
+  // One transmitter and no noise: nothing to weigh it against.
+  const auto names_in = [&](const std::string& name) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / name)) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  };
+  CHECK(names_in("m") == std::vector<std::string>{"map_area_best_server.asc", "map_area_best_server.csv",
+                                                  "map_area_best_server.npz", "map_area_best_server.png",
+                                                  "map_area_bs.asc", "map_area_bs.csv", "map_area_bs.npz",
+                                                  "map_area_bs.png", "map_area_distribution.svg", "map_summary.json"});
+  write_scenario(folder, grid_receiver, R"(,"noise":{"bandwidth_hz":1e8,"noise_figure_db":7})");
+  REQUIRE(dcem_program(folder, "map street.json --frames 0:1 --quiet -o noisy").exit_code == 0);
+  const std::string ratios = file_bytes(folder.path() / "noisy" / "map_area_sinr.csv");
+  const std::string powers = file_bytes(folder.path() / "noisy" / "map_area_bs.csv");
+  // -173.975 dBm per hertz, 80 dB for the bandwidth, 7 dB noise figure.
+  const std::size_t at = ratios.find("\n-3,-4,1.5,bs,"), same = powers.find("\n-3,-4,1.5,");
+  REQUIRE(at != std::string::npos);
+  const double sinr_db = std::stod(ratios.substr(at + 14));
+  const double incoherent_dbm = std::stod(powers.substr(powers.find(',', same + 11) + 1));
+  CHECK(std::abs(sinr_db - (incoherent_dbm + 173.975 - 87.0)) < 1e-3);
+  write(folder / "few.json", scenario(grid_receiver + "," + moving_receiver, R"(,"noise":{"bandwidth_hz":1e6})"));
+  std::string few = file_bytes(folder / "few.json");
+  few.replace(few.find(R"("output":{)"), 10, R"("output":{"map":["csv","svg"],)");
+  write(folder / "few.json", few);
+  REQUIRE(dcem_program(folder, "map few.json --frames 1:3 --quiet -o few").exit_code == 0);
+  CHECK(names_in("few") == std::vector<std::string>{"map_area_best_server_1.csv", "map_area_best_server_2.csv",
+                                                    "map_area_bs_1.csv", "map_area_bs_2.csv",
+                                                    "map_area_distribution_1.svg", "map_area_distribution_2.svg",
+                                                    "map_area_sinr_1.csv", "map_area_sinr_2.csv", "map_summary.json"});
+}
+
+TEST_CASE("two maps are compared place by place") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write(folder / "a.csv", "x_m,y_m,power_incoherent_dbm\n0,0,-60\n1,0,-70\n2,0,\n");
+  write(folder / "b.csv", "x_m,y_m,p_db\n0,0,-60\n1,0,-60\n2,0,-60\n");
+  const Outcome outcome = dcem_program(folder, "compare a.csv b.csv --second-column p_db -o c");
+  CAPTURE(outcome.error);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(outcome.output.find("2 places with two values") != std::string::npos);
+  CHECK(outcome.output.find("0.4500") != std::string::npos);  // mean of 0 and 0.9
+  CHECK(file_bytes(folder.path() / "c" / "comparison.svg").starts_with("<?xml"));
+  check_refused(folder, "compare a.csv b.csv -o d", "b.csv:1: no column");
+  write(folder / "far.csv", "x_m,y_m,power_incoherent_dbm\n10,0,-60\n");
+  check_refused(folder, "compare a.csv far.csv -o d", "no place has a value");
+}
+
+TEST_CASE("a map that cannot be written or held says so in one line") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1,1],"count":[100000,10000]}})");
+  check_refused(folder, "map street.json", "1000000000 points need");
+  write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1,1],"count":[0,5]}})");
+  check_refused(folder, "map street.json", "count");
+  write_scenario(folder, grid_receiver, R"(,"noise":{"noise_figure_db":3})");
+  check_refused(folder, "map street.json", "bandwidth_hz");
+  write_scenario(folder, grid_receiver, R"(,"noise":{"bandwidth_hz":-1})");
+  check_refused(folder, "map street.json", "noise.bandwidth_hz");
+  write_scenario(folder, grid_receiver, R"(,"noise":{"bandwidth_hz":1,"noise_figure_db":1000})");
+  check_refused(folder, "map street.json", "noise.noise_figure_db");
+  write_scenario(folder, grid_receiver, R"(,"noise":{"bandwidth_hz":1,"temperature_k":0})");
+  check_refused(folder, "map street.json", "noise.temperature_k");
+  write_scenario(folder, grid_receiver, R"(,"noise":{"bandwidth_hz":1,"temperature":290})");
+  check_refused(folder, "map street.json", "temperature_k");
+  write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1,1],"count":[2,2]}})");
+  std::string text = file_bytes(folder / "street.json");
+  text.replace(text.find(R"("id":"bs")"), 9, R"("id":"sinr")");
+  write(folder / "street.json", text);
+  check_refused(folder, "map street.json", "map_area_sinr");
+  for (const char* keys : {R"("map":[])", R"("map":false)", R"("map":["gif"])"}) {
+    write_scenario(folder, grid_receiver);
+    std::string file = file_bytes(folder / "street.json");
+    file.replace(file.find(R"("output":{)"), 10, std::string(R"("output":{)") + keys + ",");
+    write(folder / "street.json", file);
+    check_refused(folder, "map street.json", "output.map");
+  }
+  // A folder that is no folder stands for one that cannot be written, which a privileged user never meets.
+  write_scenario(folder, grid_receiver);
+  write(folder / "full", "a file where a folder should be");
+  check_refused(folder, "map street.json -o full/result", "full");
+  check_refused(folder, "map street.json -o /proc/maps", "/proc/maps");
+  // Where no file may grow beyond 4 KiB the pictures do not fit, as on a full disk.
+  const auto before = folder.names();
+  const std::string limited = "cd " + quoted(folder.path()) + " && ( ulimit -f 4; trap '' XFSZ; " +
+                              quoted(DCEM_PROGRAM) + " map street.json --frames 0:1 --quiet -o m ) > /dev/null 2> " +
+                              quoted(folder / ".error");
+  const int status = std::system(limited.c_str());
+  const std::string error = file_bytes(folder / ".error");
+  std::filesystem::remove(folder / ".error");
+  CAPTURE(error);
+  CHECK(WEXITSTATUS(status) == 2);
+  CHECK(std::count(error.begin(), error.end(), '\n') == 1);
+  CHECK(error.find("; expected ") != std::string::npos);
+  CHECK(folder.names() == before);
+}
+
 TEST_CASE("bad usage and bad input end with one line, exit code 2 and no output") {
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;

@@ -127,6 +127,24 @@ TEST_CASE("every setting arrives") {
   CHECK(scenario.scene.vertices_m()[0] == Vec3(-18, -18, 0));
 }
 
+TEST_CASE("pictures are asked for by true, or with their settings") {
+  ScenarioCase files;
+  files.more = R"(, "output": {"npz": true, "plots": {"max_links": 3, "pdp_frame": 40}})";
+  io::OutputSettings output = files.load().output;
+  CHECK(output.npz);
+  CHECK(output.plots);
+  CHECK(output.plots_max_links == 3);
+  CHECK(output.plots_pdp_frame == 40);
+  files.more = R"(, "output": {"plots": true})";
+  output = files.load().output;
+  CHECK(output.plots);
+  CHECK_FALSE(output.npz);
+  CHECK(output.plots_max_links == 20);
+  CHECK_FALSE(output.plots_pdp_frame.has_value());
+  files.more = R"(, "output": {"plots": false})";
+  CHECK_FALSE(files.load().output.plots);
+}
+
 TEST_CASE("a device has one of five forms") {
   ScenarioCase files;
   files.objects =

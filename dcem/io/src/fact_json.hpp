@@ -42,7 +42,8 @@ inline nlohmann::ordered_json model_json(const Multilayer& model) {
 
 inline nlohmann::ordered_json model_json(const Foliage& model) {
   if (model.attenuation_db_per_m) return {{"foliage_db_per_m", *model.attenuation_db_per_m}};
-  return {{"foliage_db_per_m", "auto"}};
+  return {{"foliage_db_per_m", "auto"},
+          {"foliage_source", "0.79·f^0.61 dB/m, f in GHz (GEMV2, after Goldhirsh & Vogel 1998)"}};
 }
 
 inline void add_scattering(const Scattering& scattering, nlohmann::ordered_json& json) {

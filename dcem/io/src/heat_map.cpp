@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "dcem/io/src/axis_ticks.hpp"
 #include "dcem/io/src/colour_map.hpp"
 #include "dcem/io/src/heat_map_plan.hpp"
 
@@ -14,7 +13,7 @@ namespace {
 using namespace detail;
 
 constexpr Colour white{255, 255, 255};
-constexpr Colour ink{30, 30, 30};
+constexpr Colour ink = picture_ink;
 constexpr Colour no_value_grey{217, 217, 217};
 constexpr Colour hatch_ground{245, 245, 245};
 constexpr Colour wall_colour{15, 15, 15};
@@ -37,6 +36,12 @@ std::vector<std::size_t> cells_of_pixels(int length_px, std::size_t cells) {
   return result;
 }
 
+Colour cell_colour(const HeatMap& map, const HeatMapLayout& layout, std::size_t cell) {
+  if (!is_valued(map, cell)) return no_value_grey;
+  if (!map.categories.empty()) return category_colour(static_cast<std::size_t>(map.values[cell]));
+  return layout.range ? viridis(share_of_range(map.values[cell], *layout.range)) : no_value_grey;
+}
+
 void draw_cells(const HeatMap& map, const HeatMapLayout& layout, Image& image) {
   const PixelRect& plot = layout.plot;
   const std::vector<std::size_t> columns = cells_of_pixels(plot.width, map.columns);
@@ -50,9 +55,7 @@ void draw_cells(const HeatMap& map, const HeatMapLayout& layout, Image& image) {
         image.set_pixel(dot.x, dot.y, hatch_ground);
         image.hatch_rectangle(dot, object_hatch);
       } else {
-        const bool valued = is_valued(map, cell) && layout.range.has_value();
-        image.set_pixel(dot.x, dot.y,
-                        valued ? viridis(share_of_range(map.values[cell], *layout.range)) : no_value_grey);
+        image.set_pixel(dot.x, dot.y, cell_colour(map, layout, cell));
       }
     }
   }
@@ -146,29 +149,6 @@ void draw_transmitters(const HeatMap& map, const HeatMapLayout& layout, Image& i
   }
 }
 
-void draw_axes(const HeatMapPlan& plan, Image& image) {
-  const PixelRect& plot = plan.layout.plot;
-  image.draw_frame({plot.x - 1, plot.y - 1, plot.width + 2, plot.height + 2}, ink);
-  const int label_y = plot.bottom() + tick_px + gap_px;
-  for (const Tick& tick : plan.x_ticks) {
-    const int x =
-        std::clamp(static_cast<int>(plan.layout.point(tick.value, plan.layout.bottom_m).x), plot.x, plot.right() - 1);
-    image.fill_rectangle({x, plot.bottom(), 1, tick_px + 1}, ink);
-    image.draw_text(x - label_length_px(tick.label) / 2, label_y, tick.label, ink, label_scale);
-  }
-  for (const Tick& tick : plan.y_ticks) {
-    const int y =
-        std::clamp(static_cast<int>(plan.layout.point(plan.layout.left_m, tick.value).y), plot.y, plot.bottom() - 1);
-    image.fill_rectangle({plot.x - 1 - tick_px, y, tick_px + 1, 1}, ink);
-    const int x = plot.x - tick_px - gap_px - label_length_px(tick.label);
-    image.draw_text(x, y - 7 * label_scale / 2, tick.label, ink, label_scale);
-  }
-  image.draw_text(plot.x + (plot.width - label_length_px("x / m")) / 2, label_y + label_height_px + gap_px, "x / m",
-                  ink, label_scale);
-  image.draw_text(margin_px, plot.y + (plot.height - label_length_px("y / m")) / 2, "y / m", ink, label_scale,
-                  TextDirection::upwards);
-}
-
 // A tip above or below the bar: there are values beyond its end.
 void draw_bar_tip(const PixelRect& bar, bool upper, Image& image) {
   for (int i = 1; i <= bar_tip_px - 2; ++i) {
@@ -207,12 +187,16 @@ void draw_bar(const HeatMap& map, const HeatMapPlan& plan, Image& image) {
   image.draw_text(name_x, name_y, plan.bar_name, ink, label_scale, TextDirection::upwards);
 }
 
-void draw_symbol(Symbol symbol, const PixelRect& swatch, Image& image) {
+void draw_symbol(const LegendItem& item, const PixelRect& swatch, Image& image) {
+  const Symbol symbol = item.symbol;
   const PixelPoint middle{swatch.x + 0.5 * swatch.width, swatch.y + 0.5 * swatch.height};
   if (symbol == Symbol::transmitter) {
     draw_marker(middle, image);
   } else if (symbol == Symbol::wall) {
     image.fill_rectangle({swatch.x, static_cast<int>(middle.y) - 1, swatch.width, 2}, wall_colour);
+  } else if (symbol == Symbol::category) {
+    image.fill_rectangle(swatch, category_colour(item.category));
+    image.draw_frame(swatch, ink);
   } else if (symbol != Symbol::none) {
     image.fill_rectangle(swatch, symbol == Symbol::no_value ? no_value_grey : hatch_ground);
     if (symbol == Symbol::hatched) image.hatch_rectangle(swatch, object_hatch);
@@ -224,7 +208,7 @@ void draw_legend(const HeatMapPlan& plan, Image& image) {
   for (const LegendItem& item : plan.legend) {
     const int x = plan.left_px + item.x;
     const int y = plan.legend_y + item.y;
-    draw_symbol(item.symbol, {x, y, swatch_px, swatch_px}, image);
+    draw_symbol(item, {x, y, swatch_px, swatch_px}, image);
     const int text_x = item.symbol == Symbol::none ? x : x + swatch_px + gap_px;
     image.draw_text(text_x, y + (swatch_px - 7 * label_scale) / 2, item.text, ink, label_scale);
   }
@@ -241,11 +225,11 @@ Image draw_heat_map(const HeatMap& map) {
   Image image(plan.layout.width_px, plan.layout.height_px, white);
   draw_cells(map, plan.layout, image);
   draw_walls(map, plan.layout, image);
-  draw_axes(plan, image);
+  detail::draw_axes(image, plan.layout.plot, plan.x, plan.y);
   draw_transmitters(map, plan.layout, image);
   draw_bar(map, plan, image);
   draw_legend(plan, image);
-  image.draw_text(plan.left_px, margin_px, plan.title, ink, plan.title_size);
+  image.draw_text(plan.left_px, margin_px, plan.title.text, ink, plan.title.scale);
   return image;
 }
 

@@ -5,35 +5,31 @@
 #include <vector>
 
 #include "dcem/io/heat_map.hpp"
-#include "dcem/io/src/axis_ticks.hpp"
+#include "dcem/io/src/picture_axes.hpp"
 
 namespace dcem::io::detail {
 
-inline constexpr int title_scale = 3;
-inline constexpr int margin_px = 18;
-inline constexpr int tick_px = 6;
-inline constexpr int gap_px = 8;
 inline constexpr int bar_tip_px = 14;
 inline constexpr int swatch_px = 22;
 
 /// What stands before a text of the legend.
-enum class Symbol { no_value, hatched, wall, transmitter, none };
+enum class Symbol { no_value, hatched, wall, transmitter, category, none };
 
 struct LegendItem {
   Symbol symbol = Symbol::none;
   std::string text;
   int x = 0;  // upper left corner, counted from that of the legend
   int y = 0;
+  std::size_t category = 0;
 };
 
 /// Everything that the drawing needs to know.
 struct HeatMapPlan {
   HeatMapLayout layout;
-  std::string title;  // cut to the width of the picture
-  int title_size = title_scale;
+  FittedTitle title;  // to the width of the picture
   std::string bar_name;
-  std::vector<Tick> x_ticks;
-  std::vector<Tick> y_ticks;
+  PictureAxis x;
+  PictureAxis y;
   std::vector<Tick> bar_ticks;
   std::vector<LegendItem> legend;
   int legend_y = 0;

@@ -202,6 +202,9 @@ bool JsonValue::is_object() const {
 bool JsonValue::is_string() const {
   return value_->is_string();
 }
+bool JsonValue::is_number() const {
+  return value_->is_number();
+}
 bool JsonValue::is_boolean() const {
   return value_->is_boolean();
 }

@@ -38,6 +38,7 @@ class JsonValue {
   bool is_null() const;
   bool is_object() const;
   bool is_string() const;
+  bool is_number() const;
   bool is_boolean() const;
 
   // Each throws InputError where the value is of another type or out of range.

@@ -4,8 +4,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 
+#include "dcem/io/esri_grid.hpp"
+#include "dcem/io/src/file_name.hpp"
+#include "dcem/io/src/map_arrays.hpp"
+#include "dcem/io/src/map_picture_parts.hpp"
 #include "dcem/io/src/number_text.hpp"
 #include "dcem/io/text_table.hpp"
 
@@ -13,24 +18,11 @@ namespace dcem::io {
 namespace {
 
 constexpr std::size_t sheet_bytes = std::size_t{1} << 20;
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-bool fits_file_name(unsigned char character) {
-  constexpr std::string_view separators = "/\\:*?\"<>|%";
-  return character >= 32 && character != 127 && separators.find(static_cast<char>(character)) == std::string_view::npos;
-}
-
-std::string file_name_part(const std::string& id) {
-  constexpr std::string_view hexadecimal = "0123456789ABCDEF";
-  std::string part;
-  for (const char character : id) {
-    const auto byte = static_cast<unsigned char>(character);
-    if (fits_file_name(byte)) {
-      part.push_back(character);
-    } else {
-      part.append({'%', hexadecimal[byte / 16], hexadecimal[byte % 16]});
-    }
-  }
-  return part;
+std::optional<double> field_dbuv_per_m(const RadioMapPoint& point, double frequency_hz) {
+  const std::optional<double>& power_dbm = point.statistics.power_dbm;
+  return power_dbm ? std::optional(field_strength_dbuv_per_m(*power_dbm, frequency_hz)) : std::nullopt;
 }
 
 void append_point(std::string& text, const RadioMapPoint& point, double frequency_hz) {
@@ -41,10 +33,8 @@ void append_point(std::string& text, const RadioMapPoint& point, double frequenc
     return;
   }
   const LinkStatistics& values = point.statistics;
-  std::optional<double> field_dbuv_per_m;
-  if (values.power_dbm) field_dbuv_per_m = field_strength_dbuv_per_m(*values.power_dbm, frequency_hz);
   line.number(values.power_dbm).number(values.power_incoherent_dbm).number(values.path_gain_db);
-  line.number(field_dbuv_per_m).number(values.mean_delay_s).number(values.rms_delay_spread_s);
+  line.number(field_dbuv_per_m(point, frequency_hz)).number(values.mean_delay_s).number(values.rms_delay_spread_s);
   line.flag(values.line_of_sight).count(values.path_count).prepared(point.strongest_kinds).end();
 }
 
@@ -71,14 +61,6 @@ std::optional<std::array<double, 4>> cut(const std::array<Vec3, 3>& corners_m, d
   return std::array<double, 4>{from.x, from.y, to.x, to.y};
 }
 
-std::string picture_title(const RadioMap& map, double frequency_hz, std::optional<double> time_s) {
-  std::string title = map.grid.id + ", transmitter " + map.transmitter + ": incoherent power, ";
-  append_number(title, std::round(frequency_hz / 1e3) / 1e6);
-  title += " GHz, z = " + format_fixed(map.grid.origin_m.z, 2) + " m";
-  if (time_s) title += ", t = " + format_fixed(*time_s, 3) + " s";
-  return title;
-}
-
 }  // namespace
 
 std::string map_name(const std::string& grid, const std::string& transmitter, std::optional<std::size_t> frame) {
@@ -96,28 +78,66 @@ void write_map_csv(AtomicFile& file, const RadioMap& map, double frequency_hz) {
   file.write(text);
 }
 
+void write_map_npz(AtomicFile& file, const RadioMap& map, double frequency_hz) {
+  MapArrays arrays(map.grid, map.points);
+  const auto add = [&](const char* name, std::optional<double> LinkStatistics::*value) {
+    arrays.add_numbers(name, [value](const RadioMapPoint& point) { return point.statistics.*value; });
+  };
+  add("power_dbm", &LinkStatistics::power_dbm);
+  add("power_incoherent_dbm", &LinkStatistics::power_incoherent_dbm);
+  add("path_gain_db", &LinkStatistics::path_gain_db);
+  arrays.add_numbers("field_strength_dbuv_per_m",
+                     [&](const RadioMapPoint& point) { return field_dbuv_per_m(point, frequency_hz); });
+  add("mean_delay_s", &LinkStatistics::mean_delay_s);
+  add("rms_delay_spread_s", &LinkStatistics::rms_delay_spread_s);
+  arrays.add_flags("line_of_sight", [](const RadioMapPoint& point) { return point.statistics.line_of_sight; });
+  arrays.add_flags("obstructed", [](const RadioMapPoint& point) { return point.obstructed; });
+  arrays.add_counts("path_count", [](const RadioMapPoint& point) { return point.statistics.path_count; });
+  arrays.add_texts("strongest_kinds", [](const RadioMapPoint& point) { return point.strongest_kinds; });
+  arrays.writer().add("frequency_hz", {}, std::array{frequency_hz});
+  arrays.writer().write(file);
+}
+
+void write_map_asc(AtomicFile& file, const RadioMap& map) {
+  std::vector<double> powers_dbm;
+  powers_dbm.reserve(map.points.size());
+  for (const RadioMapPoint& point : map.points) powers_dbm.push_back(point.statistics.power_dbm.value_or(no_number));
+  write_esri_grid(file, map.grid, powers_dbm);
+}
+
 HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame, double frequency_hz,
                     std::optional<double> time_s) {
-  HeatMap picture;
-  picture.title = picture_title(map, frequency_hz, time_s);
+  const MapOccasion occasion{scene, frame, frequency_hz, time_s};
+  HeatMap picture =
+      empty_map_picture(map.grid, occasion, map.grid.id + ", transmitter " + map.transmitter + ": incoherent power",
+                        [&](const std::string& id) { return id == map.transmitter; });
   picture.label = "incoherent received power";
-  picture.origin_x_m = map.grid.origin_m.x;
-  picture.origin_y_m = map.grid.origin_m.y;
-  picture.spacing_x_m = map.grid.spacing_m[0];
-  picture.spacing_y_m = map.grid.spacing_m[1];
-  picture.columns = map.grid.columns();
-  picture.rows = map.grid.rows();
   for (const RadioMapPoint& point : map.points) {
-    picture.values.push_back(point.statistics.power_incoherent_dbm.value_or(std::numeric_limits<double>::quiet_NaN()));
+    picture.values.push_back(point.statistics.power_incoherent_dbm.value_or(no_number));
     picture.hatched.push_back(point.obstructed ? 1 : 0);
   }
-  picture.walls_m = walls_at_height_m(scene, map.grid.origin_m.z);
-  for (const Device& device : scene.transmitters()) {
-    const DeviceState state = scene.device_state(device, frame);
-    if (!state.present) continue;
-    const std::string label = device.id == map.transmitter ? device.id : std::string();
-    picture.transmitters.push_back({state.position_m.x, state.position_m.y, label});
-  }
+  return picture;
+}
+
+std::string map_title_end(const ReceiverGrid& grid, const MapOccasion& occasion) {
+  std::string title = ", ";
+  append_number(title, std::round(occasion.frequency_hz / 1e3) / 1e6);
+  title += " GHz, z = " + format_fixed(grid.origin_m.z, 2) + " m";
+  if (occasion.time_s) title += ", t = " + format_fixed(*occasion.time_s, 3) + " s";
+  return title;
+}
+
+HeatMap map_picture_ground(const ReceiverGrid& grid, const MapOccasion& occasion) {
+  HeatMap picture;
+  picture.origin_x_m = grid.origin_m.x;
+  picture.origin_y_m = grid.origin_m.y;
+  picture.spacing_x_m = grid.spacing_m[0];
+  picture.spacing_y_m = grid.spacing_m[1];
+  picture.columns = grid.columns();
+  picture.rows = grid.rows();
+  picture.values.reserve(grid.size());
+  picture.hatched.reserve(grid.size());
+  picture.walls_m = walls_at_height_m(occasion.scene, grid.origin_m.z);
   return picture;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/number_text.hpp"
 #include "dcem/io/src/text_input.hpp"
 
 namespace dcem::io {
@@ -170,7 +171,11 @@ class MaterialMaker {
   std::optional<int> lobe(const std::string& name) const {
     const std::optional<double> value = number(name);
     if (!value) return std::nullopt;
-    if (*value != std::floor(*value)) find(name)->fail("expected a whole number from 1 to 100");
+    if (*value != std::floor(*value)) {
+      std::string found;
+      append_number(found, *value);
+      find(name)->fail("found " + in_quotes(found) + "; expected a whole number from 1 to 100");
+    }
     return static_cast<int>(*value);
   }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dcem/core/units.hpp"
+#include "dcem/io/src/link_entries.hpp"
 #include "dcem/io/src/number_text.hpp"
 #include "dcem/paths/path_id.hpp"
 
@@ -89,24 +90,6 @@ void append_shadow(JsonLine& line, const std::vector<Interaction>& interactions)
   line.key("in_shadow").prepared(in_shadow ? "true" : "false");
 }
 
-/// Specular paths and tiles in the order of a link's list.
-struct Entry {
-  const PathContribution* path = nullptr;
-  const DiffuseContribution* tile = nullptr;
-
-  const Path& geometry() const { return path != nullptr ? path->path : tile->path; }
-};
-
-std::vector<Entry> entries_of(const LinkResult& link, bool with_tiles) {
-  std::vector<Entry> entries;
-  for (const PathContribution& path : link.paths) entries.push_back({&path, nullptr});
-  if (!with_tiles) return entries;
-  for (const DiffuseContribution& tile : link.diffuse.tiles) entries.push_back({nullptr, &tile});
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const Entry& a, const Entry& b) { return reported_before(a.geometry(), b.geometry()); });
-  return entries;
-}
-
 }  // namespace
 
 std::string tile_id(const Scene& scene, const DiffuseContribution& tile) {
@@ -136,7 +119,7 @@ void PathLines::append(std::string& text, const FrameResult& frame, const LinkRe
   line.key("rx").prepared(receivers_[link.receiver]);
   line.key("complete").prepared(link.complete ? "true" : "false");
   line.key("paths").open('[');
-  for (const Entry& entry : entries_of(link, facts_.diffuse_paths)) {
+  for (const LinkEntry& entry : link_entries(link, facts_.diffuse_paths)) {
     entry.path != nullptr ? append_path(text, link, *entry.path) : append_tile(text, link, *entry.tile);
   }
   line.close(']').close('}').close('\n');

@@ -4,7 +4,9 @@
 #include "dcem/channel/doppler_spectrum.hpp"
 #include "dcem/core/units.hpp"
 #include "dcem/io/src/number_text.hpp"
+#include "dcem/io/src/path_collector.hpp"
 #include "dcem/io/src/path_lines.hpp"
+#include "dcem/io/src/plot_collector.hpp"
 #include "dcem/io/src/response_collector.hpp"
 
 namespace dcem::io {
@@ -35,6 +37,8 @@ ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<c
   profile_.text = std::string(facts.diffuse ? diffuse_pdp_csv_header : pdp_csv_header) + '\n';
   doppler_.text = std::string(doppler_csv_header) + '\n';
   if (output.cfr) responses_ = std::make_unique<ResponseCollector>(folder, scene, receivers, facts, output);
+  if (output.npz) arrays_ = std::make_unique<PathCollector>(folder, scene, receivers, facts);
+  if (output.plots) plots_ = std::make_unique<PlotCollector>(folder, scene, receivers, facts, output);
   for (const Device& device : scene.transmitters()) {
     csv_transmitters_.push_back(csv_field(device.id));
     power_dbm_.push_back(device.power_dbm);
@@ -51,16 +55,20 @@ void ResultWriter::write(const FrameResult& frame) {
   for (const LinkResult& link : frame.links) {
     if (output_.paths) lines_->append(paths_.text, frame, link);
     if (output_.links) append_link(frame, link);
-    if (output_.pdp) append_profile(frame, link);
-    if (output_.doppler) append_doppler(frame, link);
+    if (output_.pdp) detail::naming("output.pdp.bin_s", [&] { append_profile(frame, link); });
+    if (output_.doppler) detail::naming("output.doppler.bin_hz", [&] { append_doppler(frame, link); });
     flush_all(sheet_bytes);
   }
   flush_all(1);
   if (responses_) responses_->add(frame);
+  if (arrays_) arrays_->add(frame);
+  if (plots_) plots_->add(frame);
 }
 
 void ResultWriter::finish() {
   if (responses_) responses_->write();
+  if (arrays_) arrays_->write();
+  if (plots_) plots_->write();
 }
 
 CsvLine ResultWriter::begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const {

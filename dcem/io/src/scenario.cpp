@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "dcem/channel/medium_loss.hpp"
 #include "dcem/io/src/scenario_parts.hpp"
 #include "dcem/io/src/text_input.hpp"
 
@@ -17,7 +18,7 @@ nlohmann::json output_block(std::string_view list, const nlohmann::json& file_ou
   while (true) {
     const std::size_t comma = std::min(list.find(','), list.size());
     const std::string key(trimmed(list.substr(0, comma)));
-    const bool has_settings = file_output.is_object() && file_output.contains(key) && file_output[key].is_object();
+    const bool has_settings = file_output.is_object() && file_output.contains(key) && file_output[key].is_structured();
     block[key] = has_settings ? file_output[key] : nlohmann::json(true);
     if (comma == list.size()) return block;
     list.remove_prefix(comma + 1);
@@ -39,12 +40,23 @@ nlohmann::json command_line_values(const ScenarioOverrides& overrides, const nlo
 
 /// What is asked for by name and cannot be done is refused, never weakened.
 void check_exact_discovery(const Scenario& scenario, const JsonObject& file, const JsonObject& command_line) {
-  const std::size_t facets = scenario.scene.facets().size();
+  const std::size_t facets = scenario.scene.surface_count();
   if (scenario.settings.propagation.discovery != Discovery::exact || facets <= exact_discovery_facet_limit) return;
   const auto option = command_line.find("--discovery");
   const JsonValue place = option ? *option : file.at("propagation").member("discovery");
   place.fail("'exact' for " + std::to_string(facets) + " facets is not in this version; expected at most " +
              std::to_string(exact_discovery_facet_limit) + " facets, or 'sampled'");
+}
+
+/// Air, foliage and the band of a frequency response must fit the frequency.
+void check_frequency(const Scenario& scenario, const JsonValue& place) {
+  const SimulationSettings& settings = scenario.settings;
+  reported_at(place,
+              [&] { MediumLoss(settings.propagation.atmosphere, scenario.scene.materials(), settings.frequency_hz); });
+  const OutputSettings& output = scenario.output;
+  if (output.cfr && output.cfr_bandwidth_hz > 2.0 * settings.frequency_hz) {
+    place.fail("output.cfr asks for frequencies below 0; expected a bandwidth_hz of at most twice the frequency");
+  }
 }
 
 Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root, const JsonObject& command_line) {
@@ -57,6 +69,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   result.settings.propagation = read_propagation(root, command_line);
   result.time = read_time(root);
   result.output = read_output(root, command_line);
+  result.noise = read_noise(root);
   read_mobility(root, file.parent_path(), result);
   MotionReader motions(file.parent_path(), result.time.start_s);
   BodyLoader(root, file.parent_path(), motions, result).load();
@@ -65,6 +78,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   motions.check_all_taken();
   reported_at(root.value(), [&] { validate(result.settings); });
   check_exact_discovery(result, root, command_line);
+  check_frequency(result, root.at("frequency_hz"));
   return result;
 }
 

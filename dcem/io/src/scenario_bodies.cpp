@@ -35,10 +35,12 @@ MaterialLayer read_layer(const JsonValue& value) {
 
 MaterialKey read_material_key(const std::string& name, const JsonValue& value) {
   MaterialKey key{0.0, value.place(), value.path()};
-  const std::string_view word = material_word(name);
-  if (!word.empty() && value.is_string()) {
-    key.value = value.one_of({std::string(word)});
-  } else if (const NumberRange* range = material_number_range(name)) {
+  const std::string word(material_word(name));
+  const NumberRange* range = material_number_range(name);
+  if (!word.empty() && !value.is_number()) {
+    if (!value.is_string() || value.text() != word) value.fail("expected " + range->text() + " or '" + word + "'");
+    key.value = word;
+  } else if (range != nullptr) {
     key.value = value.number(*range);
   } else if (name != "layers") {
     key.value = value.text();

@@ -39,6 +39,8 @@ SurfaceSettings read_surface_settings(const JsonObject& scene);
 /// `command_line` holds what overrides the file: `--discovery`, `--rays`, …
 PropagationSettings read_propagation(const JsonObject& scenario, const JsonObject& command_line);
 OutputSettings read_output(const JsonObject& scenario, const JsonObject& command_line);
+/// The block `noise`, if there is one.
+std::optional<NoiseSettings> read_noise(const JsonObject& scenario);
 /// Refuses the blocks of a scenario that later versions bring.
 void refuse_later_blocks(const JsonObject& scenario);
 

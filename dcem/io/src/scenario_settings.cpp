@@ -1,5 +1,6 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <set>
 
 #include "dcem/io/src/scenario_parts.hpp"
 #include "dcem/io/viewer_writer.hpp"
@@ -11,7 +12,7 @@ namespace {
 constexpr long long highest_order = 10, highest_diffraction_order = 3;
 
 /// The keys of `output` that this version does not write.
-const std::vector<std::string> later_outputs{"npz", "mat", "qd", "p2m", "deepmimo", "kml", "gltf", "plots"};
+const std::vector<std::string> later_outputs{"mat", "qd", "p2m", "deepmimo", "kml", "gltf"};
 
 /// The value from the command line, or else the one from the file.
 std::optional<JsonValue> chosen(const JsonObject& command_line, const std::string& option,
@@ -125,7 +126,33 @@ void read_cfr(const JsonValue& value, OutputSettings& output) {
 void read_doppler(const JsonValue& value, OutputSettings& output) {
   output.doppler = value.is_boolean() ? value.boolean() : true;
   if (value.is_boolean()) return;
-  output.doppler_bin_hz = value.object({"bin_hz"}).at("bin_hz").number({1e-6, 1e9});
+  output.doppler_bin_hz = value.object({"bin_hz"}).number("bin_hz", output.doppler_bin_hz, {1e-6, 1e9});
+}
+
+void read_plots(const JsonValue& value, OutputSettings& output) {
+  output.plots = value.is_boolean() ? value.boolean() : true;
+  if (value.is_boolean()) return;
+  const JsonObject object = value.object({"max_links", "pdp_frame"});
+  output.plots_max_links =
+      static_cast<std::size_t>(object.integer("max_links", static_cast<long long>(output.plots_max_links), 1, 10'000));
+  if (const auto frame = object.find("pdp_frame")) {
+    output.plots_pdp_frame = static_cast<std::size_t>(frame->integer(0, 999'999'999));
+  }
+}
+
+/// `true`, or a list of the endings of the files that are wanted.
+MapOutputs read_map_outputs(const JsonValue& value) {
+  const std::vector<std::string> endings{"csv", "png", "npz", "asc", "svg"};
+  MapOutputs outputs;
+  if (value.is_boolean()) {
+    if (!value.boolean()) value.fail("is false; expected true, or a list of csv, png, npz, asc, svg");
+    return outputs;
+  }
+  std::set<std::string> wanted;
+  for (const JsonValue& ending : value.elements()) wanted.insert(ending.one_of(endings));
+  if (wanted.empty()) value.fail("is an empty list; expected some of csv, png, npz, asc, svg");
+  const auto has = [&](const char* ending) { return wanted.contains(ending); };
+  return {has("csv"), has("png"), has("npz"), has("asc"), has("svg")};
 }
 
 void read_html(const JsonValue& value, OutputSettings& output) {
@@ -143,7 +170,7 @@ void read_html(const JsonValue& value, OutputSettings& output) {
 }
 
 OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) {
-  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler", "html"};
+  std::vector<std::string> known{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots", "map", "html"};
   known.insert(known.end(), later_outputs.begin(), later_outputs.end());
   const JsonObject object = value.object(known);
   for (const std::string& key : later_outputs) {
@@ -156,6 +183,9 @@ OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) 
   if (const auto pdp = object.find("pdp")) read_pdp(*pdp, output);
   if (const auto cfr = object.find("cfr")) read_cfr(*cfr, output);
   if (const auto doppler = object.find("doppler")) read_doppler(*doppler, output);
+  output.npz = object.boolean("npz", false);
+  if (const auto plots = object.find("plots")) read_plots(*plots, output);
+  if (const auto map = object.find("map")) output.map = read_map_outputs(*map);
   if (const auto html = object.find("html")) read_html(*html, output);
   return output;
 }
@@ -244,10 +274,18 @@ OutputSettings read_output(const JsonObject& scenario, const JsonObject& command
   return value ? read_output_keys(*value, true) : OutputSettings{};
 }
 
+std::optional<NoiseSettings> read_noise(const JsonObject& scenario) {
+  const auto object = find_object(scenario, "noise", {"bandwidth_hz", "noise_figure_db", "temperature_k"});
+  if (!object) return std::nullopt;
+  NoiseSettings noise;
+  noise.bandwidth_hz = object->at("bandwidth_hz").number({0.0, 1e12, true});
+  noise.noise_figure_db = object->number("noise_figure_db", noise.noise_figure_db, {0.0, 100.0});
+  noise.temperature_k = object->number("temperature_k", noise.temperature_k, {0.0, 1e6, true});
+  return noise;
+}
+
 void refuse_later_blocks(const JsonObject& scenario) {
-  for (const char* key : {"geo", "noise"}) {
-    if (scenario.has(key)) scenario.at(key).not_in_this_version("no such key");
-  }
+  if (scenario.has("geo")) scenario.at("geo").not_in_this_version("no such key");
   const auto links = scenario.find("links");
   if (links && !(links->is_string() && links->text() == "all")) links->not_in_this_version("\"all\"");
 }

@@ -29,6 +29,7 @@ Json point_json(const Vec3& point_m) {
 Json box_json(const Scene& scene) {
   Aabb<double> box;
   for (const Aabb<double>& triangle : scene.triangle_boxes()) box.extend(triangle);
+  for (const FoliageShell& crown : scene.foliage()) box.extend(crown.box);
   if (box.empty()) return nullptr;
   return {{"min_m", point_json(box.min)}, {"max_m", point_json(box.max)}};
 }
@@ -173,6 +174,19 @@ std::string RunSummary::cache_text(const CacheCounters& cache) const {
          std::to_string(cache.born) + " born, " + std::to_string(cache.died) + " died";
 }
 
+std::vector<std::string> RunSummary::warnings() const {
+  std::vector<std::string> all = facts_.warnings;
+  const std::vector<std::string> late = late_warnings();
+  all.insert(all.end(), late.begin(), late.end());
+  return all;
+}
+
+std::vector<std::string> RunSummary::late_warnings() const {
+  const FrameFigures sum = sum_of(frames_);
+  if (sum.work.diffuse_links_unfinished == 0) return {};
+  return {"diffuse power: " + diffuse_text(sum)};
+}
+
 /// How many tiles the sums took, and what they may lack.
 std::string RunSummary::diffuse_text(const FrameFigures& sum) const {
   const DiffuseSettings& settings = facts_.settings.propagation.diffuse;
@@ -192,7 +206,7 @@ std::string RunSummary::json() const {
                                 {"scenario", facts_.scenario},
                                 {"scene", scene_json(scene_, facts_.receivers)},
                                 {"settings", settings_json(facts_)},
-                                {"warnings", facts_.warnings},
+                                {"warnings", warnings()},
                                 {"totals",
                                  {{"frames", frames_.size()},
                                   {"links", sum.links},

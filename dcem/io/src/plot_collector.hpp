@@ -1,0 +1,45 @@
+#pragma once
+/// The pictures of the first links of a run, for `output.plots`. Private to dcem::io.
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dcem/io/atomic_file.hpp"
+#include "dcem/io/link_plots.hpp"
+#include "dcem/io/result_writer.hpp"
+
+namespace dcem::io {
+
+/// Writes `plot_<tx>_<rx>.svg`, `pdp_<tx>_<rx>.png`, `taps_<tx>_<rx>.png` over time, and `pdp_<tx>_<rx>_<frame>.svg`.
+class PlotCollector {
+ public:
+  /// Throws std::invalid_argument where the frame asked for is not among those of the run, and where two links would
+  /// have the same file names. The scene must outlive it.
+  PlotCollector(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts,
+                const OutputSettings& output);
+
+  /// Throws std::invalid_argument where the bins of `output.pdp` are too narrow.
+  void add(const FrameResult& frame);
+  void write();
+
+ private:
+  struct Link {
+    std::size_t transmitter = 0, receiver = 0;
+    std::string name;  // "<tx>_<rx>", as it stands in file names
+    LinkPlots plots;
+  };
+
+  void check_names() const;
+  void write_over_time(const Link& link);
+  template <typename Draw>
+  void write_file(const std::string& name, Draw&& draw);
+
+  OutputFolder& folder_;
+  const Scene& scene_;
+  std::size_t profile_frame_ = 0;  // counted from the first of the run
+  std::size_t first_frame_ = 0;
+  std::vector<Link> links_;  // by transmitter, then receiver
+};
+
+}  // namespace dcem::io
