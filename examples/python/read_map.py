@@ -16,7 +16,9 @@ grid = np.load(file)  # arrays over [row, column]; NaN where a point has no valu
 figure, axes = plt.subplots(figsize=(9, 6), layout="constrained")
 mesh = axes.pcolormesh(grid["x_m"], grid["y_m"], grid[name], shading="nearest")
 figure.colorbar(mesh, label=name)
-axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal", title=f"{name} at {grid['frequency_hz'] / 1e9:g} GHz")
+# Maps over all transmitters (best server, SINR) say nothing of a frequency.
+title = f"{name} at {grid['frequency_hz'] / 1e9:g} GHz" if "frequency_hz" in grid else name
+axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal", title=title)
 plt.savefig(picture or "map.png", dpi=110)
 values = grid[name][np.isfinite(grid[name])]
 if values.size:

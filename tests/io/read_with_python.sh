@@ -32,7 +32,7 @@ grep -q '^5 frames, ' "$folder/text"
 
 "$program" map "$source/data/office_map_coarse.json" --quiet -o "$folder/map"
 for arrays in "$folder"/map/map_*.npz; do
-  [ -e "$arrays" ] || { echo "no arrays of maps in this version"; break; }
+  [ -e "$arrays" ] || { echo "no arrays of maps"; exit 1; }
   "$python" "$source/examples/python/read_map.py" "$arrays" power_incoherent_dbm "$folder/map.png"
   check_picture "$folder/map.png"
   break
