@@ -34,6 +34,8 @@ class JsonValue {
   [[noreturn]] void fail(const std::string& what) const;
   /// Throws InputError: the value is legal, but this version does not offer it.
   [[noreturn]] void not_in_this_version(const std::string& expectation) const;
+  /// The same where the value is not what was expected: says what was found.
+  [[noreturn]] void fail_expected(const std::string& expectation) const;
 
   bool is_null() const;
   bool is_object() const;
@@ -63,7 +65,6 @@ class JsonValue {
  private:
   std::string child_path(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   /// Throws that something else was expected.
-  [[noreturn]] void fail_expected(const std::string& expectation) const;
 
   const JsonDocument* document_;
   const nlohmann::json* value_;

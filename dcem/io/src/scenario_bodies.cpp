@@ -38,7 +38,7 @@ MaterialKey read_material_key(const std::string& name, const JsonValue& value) {
   const std::string word(material_word(name));
   const NumberRange* range = material_number_range(name);
   if (!word.empty() && !value.is_number()) {
-    if (!value.is_string() || value.text() != word) value.fail("expected " + range->text() + " or '" + word + "'");
+    if (!value.is_string() || value.text() != word) value.fail_expected(range->text() + " or '" + word + "'");
     key.value = word;
   } else if (range != nullptr) {
     key.value = value.number(*range);
