@@ -75,8 +75,7 @@ struct Contender {
 
 void follow(Contender& contender, const dcem::Scene& scene, const std::vector<std::uint32_t>& moved) {
   const auto start = std::chrono::steady_clock::now();
-  const dcem::UpkeepReport report =
-      contender.maintainer.update(contender.tree, moved, scene.triangle_boxes(), scene.first_triangles());
+  const dcem::UpkeepReport report = contender.maintainer.update(contender.tree, moved, scene.triangle_boxes());
   contender.update_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   contender.nodes_refit += report.nodes_refit;
   contender.nodes_rebuilt += report.nodes_rebuilt;

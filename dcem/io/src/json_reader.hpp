@@ -64,7 +64,6 @@ class JsonValue {
 
  private:
   std::string child_path(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
-  /// Throws that something else was expected.
 
   const JsonDocument* document_;
   const nlohmann::json* value_;
