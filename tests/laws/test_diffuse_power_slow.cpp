@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "dcem/accel/brute_force.hpp"
+#include "dcem/accel/bvh.hpp"
 #include "dcem/channel/scattered_power.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/io/compiled_simulator.hpp"
