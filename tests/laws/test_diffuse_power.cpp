@@ -781,7 +781,7 @@ TEST_CASE("diffuse power: with too few tiles the result says so, and the residua
   const Vec3 from_m(-17, 4, 3), to_m(16, -14, 1.5);
   const DiffusePower reference = link(city, from_m, to_m, settings_for(0.02, 400'000)).diffuse;
   REQUIRE(reference.power_ratio > 0.0);
-  for (const std::size_t budget : {1, 5, 20, 60, 200, 1000}) {
+  for (const std::size_t budget : {1U, 5U, 20U, 60U, 200U, 1000U}) {
     CAPTURE(budget);
     const LinkResult result = link(city, from_m, to_m, settings_for(0.02, budget));
     CHECK_FALSE(result.diffuse.converged);
