@@ -1221,3 +1221,62 @@ TEST_CASE("diffuse power: no point of a tile brings more than the limit that ste
   }
   CHECK(close > 100);  // a limit that is always far off would be of no use
 }
+
+TEST_CASE("diffuse power: an antenna a hair off a wall has its power to the tolerance, and the result says so") {
+  const Scene scene = scene_of({{Vec3(-300, -300, 0), Vec3(600, 0, 0), Vec3(0, 600, 0), "wall"}},
+                               {rough("wall", ConstantReflection{0.6, {}}, 0.5)});
+  const double expected = std::pow(wavelength / (2.0 * circle), 2) * 0.09 * 2.0 * 0.866025403784 / 1e4;
+  for (const double off_m : {3e-3, 1e-3, 3e-4, 1.5e-4}) {
+    CAPTURE(off_m);
+    const DiffusePower power =
+        link(scene, Vec3(0, 0, off_m), Vec3(30, 40, 86.6025403784), settings_for(0.1, 20'000)).diffuse;
+    CHECK(power.converged);
+    CHECK(power.tiles_evaluated < 20'000);
+    CHECK(std::abs(db(power.power_ratio / expected)) < 0.1);
+  }
+}
+
+TEST_CASE("diffuse power: a place is the same part of its triangle in every frame, however the body stands") {
+  // Else the seeded phase of a tile jumps to another tile. The halves of a right triangle have two edges of one length.
+  Scene scene = scene_of({}, {rough("bus", PerfectConductor{}, 0.4)});
+  scene.add_object("bus", make_box(Vec3(9, 2.4, 3), "bus"),
+                   WaypointMotion{{{0.0, {Vec3(-6, 5, 0), 0.1}}, {1.0, {Vec3(10, 4, 0.5), 0.5}}}});
+  scene.add_transmitter(device_at("tx", Vec3(-8, -6, 4)));
+  scene.add_receiver(device_at("rx", Vec3(12, -4, 1.5)));
+  SimulationSettings settings = settings_for(1.0);
+  settings.propagation.diffuse.list_paths = true;
+  settings.propagation.diffuse.tile_max_m = 1.0;
+  Simulator<> simulator(std::move(scene), settings);
+  std::map<std::pair<std::uint32_t, std::uint64_t>, Vec3> first;
+  std::size_t compared = 0;
+  for (int step = 0; step < 20; ++step) {
+    const double time_s = 0.05 * step;
+    const FrameResult frame = simulator.advance_to(time_s);
+    const Pose pose = simulator.scene().body_state(BodyId(1)).placement.pose;
+    for (const DiffuseContribution& tile : frame.links.at(0).diffuse.tiles) {
+      // Into the bus's own axes: the transpose of its rotation.
+      const Vec3 local_m = (scattering_point_m(tile) - pose.position_m) * rotation_matrix(pose);
+      const auto [entry, is_new] = first.emplace(std::pair(tile.triangle, tile.place), local_m);
+      CHECK(glm::distance(entry->second, local_m) < 1e-9);
+      compared += !is_new;
+    }
+  }
+  CHECK(compared > 100);
+}
+
+TEST_CASE("diffuse power: between two ports at an end seeded tiles add in power, with or without a specular path") {
+  const Scene open = scene_of({{Vec3(-5, 3, -2), Vec3(10, 0, 0), Vec3(0, 0, 4), "wall"}},
+                              {rough("wall", ConstantReflection{0.8, {}}, 0.6), {"screen", PerfectConductor{}}});
+  Scene hidden = open;
+  hidden.add_object("screen", mesh_of({{Vec3(0, -4, -3), Vec3(0, 5.5, 0), Vec3(0, 0, 6), "screen"}}), LinearMotion{});
+  SimulationSettings settings = settings_for(0.5);
+  settings.propagation.diffuse.phases = DiffusePhases::seeded;
+  for (const Scene* scene : std::array<const Scene*, 2>{&open, &hidden}) {
+    const LinkResult result = link(*scene, device("tx", Vec3(-2, 0, 0), {PolarizationKind::vertical}),
+                                   device("rx", Vec3(2, 0, 0), {PolarizationKind::dual}), settings);
+    CHECK(result.paths.empty() == (scene == &hidden));
+    double specular = 0.0;
+    for (const PathContribution& path : result.paths) specular += path.power_ratio;
+    CHECK(*result.statistics.power_dbm == doctest::Approx(db(specular + result.diffuse.power_ratio)).epsilon(1e-12));
+  }
+}

@@ -141,3 +141,44 @@ TEST_CASE("diffuse power in the office: what has converged is within its toleran
   MESSAGE(converged << " have converged");
   CHECK(converged > 5);
 }
+
+TEST_CASE("diffuse power of a wall behind a bus: what has converged is within its tolerance, shadow or not") {
+  RandomStream random(11);
+  const auto between = [&](double low, double high) { return low + (high - low) * random.uniform(); };
+  for (int trial = 0; trial < 40; ++trial) {
+    CAPTURE(trial);
+    Scene scene;
+    scene.add_material({"wall", ConstantReflection{0.7, {}}, 0.0, {0.4}});
+    scene.add_material({"metal", PerfectConductor{}});
+    TriangleMesh wall;
+    add_quad(wall, {Vec3(-15, 0, 0), Vec3(15, 0, 0), Vec3(15, 0, 12), Vec3(-15, 0, 12)}, "wall");
+    scene.set_scenery(wall);
+    const Vec3 size_m(between(1, 12), between(0.5, 3), between(1.5, 4));
+    const Pose pose{Vec3(between(-8, 8), between(4, 8), 0), between(-0.5, 0.5)};
+    scene.add_object("bus", make_box(size_m, "metal"), LinearMotion{pose});
+    const Vec3 from_m(between(-15, 15), between(10, 14), between(1, 3));
+    const Vec3 to_m(between(-15, 15), between(10, 20), between(1, 10));
+    scene.add_transmitter(device_at("tx", from_m));
+    scene.add_receiver(device_at("rx", to_m));
+    scene.apply(scene.frame_at(0.0));
+    SimulationSettings settings;
+    settings.threads = 1;
+    settings.propagation.discovery = Discovery::exact;
+    settings.propagation.max_reflections = settings.propagation.max_diffractions = 0;
+    settings.propagation.diffuse.enabled = true;
+    Simulator<> simulator(scene, settings);
+    const FrameResult frame = simulator.advance_to(0.0);
+    const DiffusePower& power = frame.links.at(0).diffuse;
+
+    Bvh<double> tree;
+    tree.build_grouped(scene.triangle_boxes(), scene.first_triangles());
+    const SceneTracer<Bvh<double>> tracer(scene, tree);
+    const MaterialTable table({scene.materials().begin(), scene.materials().end()}, settings.frequency_hz);
+    const AnyPathLoss loss;
+    const MediumLoss medium;
+    const ScatteredPower<MaterialTable, AnyPathLoss> scattered(scene, table, loss, medium, settings.frequency_hz);
+    const double even = grid_power(scene, tracer, scattered, from_m, to_m, 0.1);
+    // Cells of 0.04 m changed none of these by more than 0.021 dB.
+    if (power.converged) CHECK(std::abs(10.0 * std::log10(power.power_ratio / even)) < 0.1 + 0.03);
+  }
+}
