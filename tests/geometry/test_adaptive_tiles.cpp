@@ -336,3 +336,48 @@ TEST_CASE("adaptive tiles: an empty domain brings nothing, and is done") {
   CHECK(tiles.evaluated() == 0);
   CHECK(tiles.tiles().empty());
 }
+
+TEST_CASE("adaptive tiles: the estimate covers integrands that change along one direction more than along the other") {
+  // A cut along the direction in which nothing changes shows no difference, and yet the halves err.
+  const auto check = [](Field integrand, double tolerance, double exact) {
+    CAPTURE(tolerance);
+    AdaptiveTiles<Field> tiles(to(tolerance), integrand);
+    add_square(tiles, 1.0);
+    tiles.refine();
+    CHECK(std::abs(tiles.total() - exact) <= tolerance * exact);
+    CHECK(std::abs(tiles.total() - exact) <= tiles.error());
+  };
+  for (const double tolerance : {0.1, 0.03, 0.01, 1e-3}) {
+    check(field([](const Vec3& p) { return std::exp(p.x + 2.0 * p.y); }, std::exp(3.0)), tolerance,
+          2.0 * std::sinh(1.0) * std::sinh(2.0));
+    check(field([](const Vec3& p) { return std::pow(p.x, 4); }, 1.0), tolerance, 0.8);
+    const Vec3 eye_m(1.5, 0.2, 0.05);
+    check(solid_angle_seen_from(eye_m), tolerance, square_solid_angle(1.0, eye_m));
+  }
+}
+
+TEST_CASE("adaptive tiles: what is halved unseen is bounded by the budget, too") {
+  Field integrand = field([](const Vec3&) { return 1.0; }, 1.0);
+  AdaptiveTiles<Field> tiles(to(0.02, 100, 0.02), integrand);
+  add_square(tiles, 1.0);
+  tiles.refine();
+  CHECK(tiles.evaluated() <= 101);
+  CHECK(tiles.tiles().size() <= 1000);
+  CHECK(std::abs(tiles.total() - 4.0) <= tiles.error());
+}
+
+TEST_CASE(
+    "adaptive tiles: a bound that is a million million times the integral does not end the work before its time") {
+  // The first bound is 4e6 m² · 1e6 m⁻²; running sums lose what is left of it when the tiles are small.
+  for (const double height_m : {1e-2, 1e-3, 1e-4, 1e-5}) {
+    CAPTURE(height_m);
+    const Vec3 eye_m(3.3, -2.7, height_m);
+    Field integrand = solid_angle_seen_from(eye_m);
+    AdaptiveTiles<Field> tiles(to(0.005, 200'000), integrand);
+    add_square(tiles, 1000.0);
+    tiles.refine();
+    CHECK(tiles.evaluated() < 100'000);
+    CHECK(tiles.error() <= 0.005 * tiles.total() * (1.0 + 1e-9));
+    CHECK(std::abs(tiles.total() - square_solid_angle(1000.0, eye_m)) <= 0.005 * tiles.total());
+  }
+}
