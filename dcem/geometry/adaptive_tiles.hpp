@@ -4,9 +4,11 @@
 /// A tile's value is the integrand at its centroid times its area. A tile that is halved across its longest edge shows
 /// by the difference between its value and the sum of its halves how wrong they may still be. As the centroid rule
 /// errs by the square of a tile's size, and half a tile has √½ of the size, that difference is about the halves' own
-/// error. An integrand that happens to agree at three points could deceive it, and so could one that is zero at all of
-/// them; therefore an estimate falls by no more than a factor of 16 at a time, counted from a bound of the integrand.
-/// And a tile that is too large to show a peak of the integrand may be wrong by all of that bound.
+/// error. Two things could deceive it. A cut along a direction in which the integrand does not change shows nothing of
+/// the other one: so what differences have shown of a tile falls by no more than a factor of 4 from a tile to its half.
+/// And an integrand may be zero, or alike, wherever one looked: so there is a doubt, which begins with a bound of the
+/// integrand and falls by no more than a factor of 16 at a time. The estimate is the larger of the two. A tile that is
+/// too large to show a peak of the integrand may be wrong by all of that bound.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,6 +39,8 @@ struct Tile {
   double bound = 0.0;        ///< no less than the value can be
   double value = 0.0;
   double error = 0.0;     ///< estimate
+  double shown = 0.0;     ///< what differences have shown of it
+  double doubt = 0.0;     ///< what of it nobody has looked for
   bool is_tight = false;  ///< the bound is the tight one
   bool is_evaluated = false;
   bool is_halved = false;  ///< its halves stand for it
@@ -69,10 +73,14 @@ class AdaptiveTiles {
 
   /// Evaluates and halves tiles until the errors add up to no more than the tolerance allows, or the budget is spent.
   void refine() {
-    while (!queue_.empty() && evaluated_ < settings_.budget && error_ > settings_.tolerance * total_) {
+    const std::size_t most_tiles = tiles_.size() + 4 * settings_.budget;  // those that are halved unseen cost, too
+    recount();
+    while (!queue_.empty() && evaluated_ < settings_.budget && tiles_.size() < most_tiles &&
+           error_ > settings_.tolerance * total_) {
       const std::size_t worst = queue_.top().second;
       queue_.pop();
       improve(worst);
+      if (error_ < 1e-3 * error_at_recount_) recount();
     }
   }
 
@@ -96,9 +104,15 @@ class AdaptiveTiles {
     return sum;
   }
 
+  /// Running sums lose the digits of what was large at first.
+  void recount() {
+    error_ = error_at_recount_ = error();
+    total_ = total();
+  }
+
   std::size_t append(Tile tile) {
     tile.bound = integrand_.bound(tile);
-    tile.error = tile.bound;
+    tile.error = tile.doubt = tile.bound;
     tiles_.push_back(tile);
     enter(tiles_.size() - 1);
     return tiles_.size() - 1;
@@ -114,13 +128,13 @@ class AdaptiveTiles {
     if (longest_edge_m(tiles_[index]) > settings_.longest_edge_m) return halve_unseen(index);
     if (!tiles_[index].is_tight && has_tight_bound) {
       tighten(tiles_[index]);
-      tiles_[index].error = tiles_[index].bound;
+      tiles_[index].error = tiles_[index].doubt = tiles_[index].bound;
       return enter(index);
     }
     if (tiles_[index].is_evaluated) return halve(index);
     evaluate(index);
-    tiles_[index].error = std::max(tiles_[index].value, tiles_[index].bound / slowest_decay);
-    doubt_if_coarse(tiles_[index]);
+    tiles_[index].doubt = std::max(tiles_[index].value, tiles_[index].bound / slowest_decay);
+    estimate(tiles_[index]);
     enter(index);
   }
 
@@ -129,10 +143,9 @@ class AdaptiveTiles {
     tile.is_tight = true;
   }
 
-  void doubt_if_coarse(Tile& tile) const {
+  void estimate(Tile& tile) const {
     const bool coarse = longest_edge_m(tile) > integrand_.resolution_m(tile);
-    if (coarse) tile.error = std::max(tile.error, tile.bound);
-    tile.error = std::min(tile.error, tile.bound);
+    tile.error = std::min(tile.bound, coarse ? tile.bound : std::max(tile.shown, tile.doubt));
   }
 
   void evaluate(std::size_t index) {
@@ -165,8 +178,9 @@ class AdaptiveTiles {
     const double difference = std::abs(whole.value - values);
     for (std::size_t half = first; half < tiles_.size(); ++half) {
       const double share = bounds > 0.0 ? tiles_[half].bound / bounds : 0.5;
-      tiles_[half].error = std::max(0.5 * difference, 2.0 * share * whole.error / slowest_decay);
-      doubt_if_coarse(tiles_[half]);
+      tiles_[half].shown = std::max(0.5 * difference, 0.25 * whole.shown);
+      tiles_[half].doubt = 2.0 * share * whole.doubt / slowest_decay;
+      estimate(tiles_[half]);
       enter(half);
     }
   }
@@ -179,10 +193,11 @@ class AdaptiveTiles {
   static std::array<Tile, 2> halves(const Tile& tile) {
     const auto& corners = tile.corners_m;
     std::size_t longest = 0;  // the edge from corner `longest` to the next one
-    double longest_m = -1.0;
+    double longest_m = 0.0;
     for (std::size_t edge = 0; edge < 3; ++edge) {
       const double length_m = glm::distance(corners[edge], corners[(edge + 1) % 3]);
-      if (length_m > longest_m) longest = edge, longest_m = length_m;
+      // Of edges that are as long as each other the first, however they are turned.
+      if (length_m > longest_m * (1.0 + 1e-9)) longest = edge, longest_m = length_m;
     }
     const Vec3 &from = corners[longest], &to = corners[(longest + 1) % 3], &across = corners[(longest + 2) % 3];
     const Vec3 middle = 0.5 * (from + to);
@@ -200,7 +215,7 @@ class AdaptiveTiles {
   std::vector<Tile> tiles_;
   std::priority_queue<std::pair<double, std::size_t>> queue_;  ///< by error, then index
   std::size_t evaluated_ = 0;
-  double total_ = 0.0, error_ = 0.0;
+  double total_ = 0.0, error_ = 0.0, error_at_recount_ = 0.0;
 };
 
 }  // namespace dcem
