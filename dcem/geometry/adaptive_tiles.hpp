@@ -7,7 +7,7 @@
 /// error. Two things could deceive it. A cut along a direction in which the integrand does not change shows nothing of
 /// the other one: so what differences have shown of a tile falls by no more than a factor of 4 from a tile to its half.
 /// And an integrand may be zero, or alike, wherever one looked: so there is a doubt, which begins with a bound of the
-/// integrand and falls by no more than a factor of 16 at a time. The estimate is the larger of the two. A tile that is
+/// integrand and falls by no more than a factor of 8 at a time. The estimate is the larger of the two. A tile that is
 /// too large to show a peak of the integrand may be wrong by all of that bound.
 #include <algorithm>
 #include <array>
@@ -205,7 +205,7 @@ class AdaptiveTiles {
             Tile{{middle, to, across}, tile.source, 2 * tile.place + 1}};
   }
 
-  static constexpr double slowest_decay = 16.0;
+  static constexpr double slowest_decay = 8.0;
   static constexpr bool has_tight_bound = requires(Integrand & integrand, const Tile& tile) {
     { integrand.tight_bound(tile) } -> std::convertible_to<double>;
   };
