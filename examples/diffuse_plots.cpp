@@ -23,7 +23,8 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 dcem::Simulator<> office(const dcem::io::Scenario& scenario, bool diffuse) {
   dcem::SimulationSettings settings = scenario.settings;
   settings.propagation.diffuse.enabled = diffuse;
-  settings.propagation.diffuse.tolerance_db = 0.3;  // a third of what the colours of a picture can show
+  settings.propagation.diffuse.tolerance_db = 0.5;  // what the colours of a picture can show
+  settings.propagation.diffuse.tile_budget = 3000;
   return {scenario.scene, settings};
 }
 
