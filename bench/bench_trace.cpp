@@ -1,0 +1,307 @@
+/// Times rays through a scene that stands still: the wide tree, the binary tree, and Embree where it was found.
+///
+///   bench_trace ROUNDS FILE.obj... [--copies N] [--rays R]
+///
+/// All trees get the same rays, in turns. One CSV row per scene, kind of ray and tree; a table that a person reads goes
+/// to standard error. Hits that differ by more than 1e-5 of their distance from those of the binary tree, which is all
+/// double, or are there for one tree only, are counted; for our own trees more than one in 100,000 is an error: exit 1.
+/// (Embree counts in single precision from the scene's origin.)
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/bench_program.hpp"
+#include "bench/moving_boxes.hpp"
+#include "dcem/accel/bvh.hpp"
+#include "dcem/accel/wide_tree.hpp"
+#include "dcem/core/statistics.hpp"
+#if defined(DCEM_HAS_EMBREE)
+#include "bench/embree_scene.hpp"
+#endif
+
+namespace {
+
+using dcem::Ray;
+using dcem::TraversalCounters;
+using dcem::Vec3;
+using dcem::bench::Stopwatch;
+
+/// One tree: how it is built, and what it says of a ray.
+struct Contender {
+  std::string name;
+  std::function<void()> build;
+  std::function<double(const std::vector<Ray<double>>&, std::vector<double>&, TraversalCounters&)> nearest_ms;
+  std::function<double(const std::vector<Ray<double>>&, std::vector<double>&, TraversalCounters&)> blocked_ms;
+  std::vector<double> build_ms{};
+};
+
+/// Asks one question of all rays and keeps the answers; the time is that of the loop.
+template <typename Ask>
+double timed(const std::vector<Ray<double>>& rays, std::vector<double>& answers, Ask&& ask) {
+  const Stopwatch watch;
+  for (std::size_t ray = 0; ray < rays.size(); ++ray) answers[ray] = ask(rays[ray]);
+  return watch.elapsed_ms();
+}
+
+constexpr double none = std::numeric_limits<double>::infinity();
+
+Contender wide_contender(const std::string& name, const dcem::Scene& scene, const dcem::TriangleView& mesh,
+                         double flatness) {
+  const auto tree = std::make_shared<dcem::WideTree>();
+  Contender contender{name, {}, {}, {}};
+  contender.build = [=, &scene] {
+    dcem::WideSettings settings;
+    settings.pair_flatness = flatness;
+    tree->build(mesh, scene.triangle_boxes(), settings);
+  };
+  contender.nearest_ms = [=](const auto& rays, auto& answers, auto& counters) {
+    return timed(rays, answers, [&](const Ray<double>& ray) {
+      const auto hit = tree->nearest(ray, &counters);
+      return hit ? hit->t : none;
+    });
+  };
+  contender.blocked_ms = [=](const auto& rays, auto& answers, auto& counters) {
+    return timed(rays, answers, [&](const Ray<double>& ray) { return tree->blocked(ray, &counters) ? 1.0 : 0.0; });
+  };
+  return contender;
+}
+
+Contender binary_contender(const dcem::Scene& scene) {
+  const auto tree = std::make_shared<dcem::Bvh<double>>();
+  Contender contender{"binary, double", {}, {}, {}};
+  contender.build = [=, &scene] { tree->build(scene.triangle_boxes()); };
+  contender.nearest_ms = [=, &scene](const auto& rays, auto& answers, auto& counters) {
+    return timed(rays, answers, [&](const Ray<double>& ray) {
+      const dcem::WatertightRay exact(ray);
+      double nearest = none;
+      const auto leaf = [&](std::uint32_t triangle, double& t_max) {
+        const auto t = exact.intersect(scene.corners_m(triangle));
+        if (t && *t >= ray.t_min && *t <= t_max && *t < nearest) nearest = t_max = *t;
+      };
+      tree->closest(ray, leaf, &counters);
+      return nearest;
+    });
+  };
+  contender.blocked_ms = [=, &scene](const auto& rays, auto& answers, auto& counters) {
+    return timed(rays, answers, [&](const Ray<double>& ray) {
+      const dcem::WatertightRay exact(ray);
+      const auto leaf = [&](std::uint32_t triangle) {
+        const auto t = exact.intersect(scene.corners_m(triangle));
+        return t && *t >= ray.t_min && *t <= ray.t_max;
+      };
+      return tree->any(ray, leaf, &counters) ? 1.0 : 0.0;
+    });
+  };
+  return contender;
+}
+
+#if defined(DCEM_HAS_EMBREE)
+Contender embree_contender(const std::string& name, const dcem::TriangleView& mesh,
+                           const dcem::bench::EmbreeSettings& settings) {
+  const auto tree = std::make_shared<std::unique_ptr<dcem::bench::EmbreeScene>>();
+  const auto patches = std::make_shared<std::vector<dcem::Patch>>();
+  if (settings.quads) {
+    dcem::detail::PatchBuilder(mesh, dcem::WideSettings{}.pair_flatness)
+        .append(0, static_cast<std::uint32_t>(mesh.size()), *patches);
+  }
+  Contender contender{name, {}, {}, {}};
+  contender.build = [=] {
+    *tree = std::make_unique<dcem::bench::EmbreeScene>(settings);
+    (*tree)->attach((*tree)->add(mesh, *patches));
+    (*tree)->commit();
+  };
+  contender.nearest_ms = [=](const auto& rays, auto& answers, auto&) {
+    return timed(rays, answers, [&](const Ray<double>& ray) { return static_cast<double>((*tree)->nearest(ray)); });
+  };
+  contender.blocked_ms = [=](const auto& rays, auto& answers, auto&) {
+    return timed(rays, answers, [&](const Ray<double>& ray) { return (*tree)->blocked(ray) ? 1.0 : 0.0; });
+  };
+  return contender;
+}
+#endif
+
+std::vector<Contender> contenders(const dcem::Scene& scene, const dcem::TriangleView& mesh) {
+  std::vector<Contender> all;
+  all.push_back(wide_contender("wide, pairs", scene, mesh, dcem::WideSettings{}.pair_flatness));
+#if defined(DCEM_HAS_EMBREE)
+  all.push_back(embree_contender("embree robust", mesh, {}));
+  all.push_back(embree_contender("embree robust quads", mesh, {.quads = true}));
+  all.push_back(embree_contender("embree medium", mesh, {.robust = false}));
+  all.push_back(embree_contender("embree medium quads", mesh, {.robust = false, .quads = true}));
+#endif
+  all.push_back(wide_contender("wide, triangles", scene, mesh, -1.0));
+  all.push_back(binary_contender(scene));
+  return all;
+}
+
+Vec3 as_float(const Vec3& point) {
+  return {static_cast<double>(static_cast<float>(point.x)), static_cast<double>(static_cast<float>(point.y)),
+          static_cast<double>(static_cast<float>(point.z))};
+}
+
+struct RayKind {
+  std::string name;
+  std::vector<Ray<double>> rays;
+};
+
+/// The rays of a picture from above, rays that leave surfaces in all directions, and segments between points near the
+/// ground. All numbers are single-precision ones, so that everybody gets the same.
+std::vector<RayKind> ray_kinds(const dcem::TriangleView& mesh, const dcem::Aabb<double>& bounds, std::size_t count) {
+  dcem::RandomStream random(3);
+  std::vector<RayKind> kinds{{"primary", {}}, {"bounce", {}}, {"segment", {}}};
+  const Vec3 eye_m = as_float({bounds.center().x, bounds.center().y, bounds.max.z * 1.2});
+  const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
+  for (std::size_t ray = 0; ray < count; ++ray) {
+    const double x = static_cast<double>(ray % side) / static_cast<double>(side) - 0.5;
+    const double y = static_cast<double>(ray / side) / static_cast<double>(side) - 0.5;
+    kinds[0].rays.push_back({eye_m, as_float(glm::normalize(Vec3(2 * x, 2 * y, -0.7)))});
+    const auto triangle = static_cast<std::uint32_t>(random.uniform() * static_cast<double>(mesh.size()));
+    const auto [a, b, c] = mesh.corners_m(triangle);
+    double u = random.uniform(), v = random.uniform();
+    if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+    const Vec3 direction = dcem::bench::direction_on_sphere(random);
+    kinds[1].rays.push_back({as_float(a + u * (b - a) + v * (c - a) + 0.01 * direction), as_float(direction)});
+    Vec3 way = dcem::bench::direction_on_sphere(random);
+    way.z *= 0.2;
+    const Vec3 from_m = as_float(dcem::bench::point_over(bounds, 0.5, 20.0, random));
+    const Vec3 to_m = as_float(from_m + way * dcem::bench::between(random, 5.0, 150.0));
+    kinds[2].rays.push_back(dcem::segment_between(from_m, to_m));
+  }
+  return kinds;
+}
+
+/// N × N copies side by side.
+dcem::TriangleMesh tiled(const dcem::TriangleMesh& mesh, int copies) {
+  dcem::Aabb<double> bounds;
+  for (const Vec3& vertex : mesh.vertices_m) bounds.extend(vertex);
+  dcem::TriangleMesh result = mesh;
+  result.vertices_m.clear();
+  result.triangles.clear();
+  for (int copy = 0; copy < copies * copies; ++copy) {
+    const Vec3 shift_m(bounds.extent().x * (copy % copies), bounds.extent().y * (copy / copies), 0.0);
+    const auto first = static_cast<std::uint32_t>(result.vertices_m.size());
+    for (const Vec3& vertex : mesh.vertices_m) result.vertices_m.push_back(vertex + shift_m);
+    for (auto triangle : mesh.triangles) {
+      for (std::uint32_t& vertex : triangle.vertices) vertex += first;
+      result.triangles.push_back(triangle);
+    }
+  }
+  return result;
+}
+
+/// Rays whose answers differ by more than the distance allows.
+std::size_t count_differences(const std::vector<double>& answers, const std::vector<double>& expected) {
+  std::size_t count = 0;
+  for (std::size_t ray = 0; ray < answers.size(); ++ray) {
+    const bool same =
+        answers[ray] == expected[ray] || std::abs(answers[ray] - expected[ray]) <= 1e-5 * std::abs(expected[ray]);
+    if (!same) ++count;
+  }
+  return count;
+}
+
+struct Row {
+  std::vector<double> ms;
+  std::vector<double> answers;
+  TraversalCounters counters;
+};
+
+bool compare(const std::string& scene_name, std::size_t triangles, std::vector<Contender>& all, const RayKind& kind,
+             bool nearest, std::size_t rounds) {
+  std::vector<Row> rows(all.size());
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (std::size_t turn = 0; turn < all.size(); ++turn) {
+      const std::size_t index = (round + turn) % all.size();
+      Row& row = rows[index];
+      row.answers.resize(kind.rays.size());
+      row.counters = {};
+      row.ms.push_back((nearest ? all[index].nearest_ms : all[index].blocked_ms)(kind.rays, row.answers, row.counters));
+    }
+  }
+  const double count = static_cast<double>(kind.rays.size());
+  const double rival_ms = dcem::median(rows[all.size() > 3 ? 1 : 0].ms);
+  bool same = true;
+  for (std::size_t index = 0; index < all.size(); ++index) {
+    const double ms = dcem::median(rows[index].ms);
+    const std::size_t differences = count_differences(rows[index].answers, rows.back().answers);
+    const bool is_ours = all[index].name.starts_with("wide");
+    same = same && (!is_ours || static_cast<double>(differences) <= 1e-5 * count);
+    std::uint64_t hash = 0;
+    for (const double answer : rows[index].answers) {
+      hash = dcem::hash_values(hash, std::bit_cast<std::uint64_t>(answer));
+    }
+    dcem::bench::CsvRow csv;
+    csv.text(scene_name).count(triangles).text(kind.name).text(nearest ? "closest" : "occluded");
+    csv.text("\"" + all[index].name + "\"").number(rival_ms / ms, 3).number(count / ms / 1e3, 3);
+    csv.number(dcem::median(all[index].build_ms), 2);
+    csv.number(static_cast<double>(rows[index].counters.nodes_visited) / count, 2);
+    csv.number(static_cast<double>(rows[index].counters.primitives_tested) / count, 2);
+    csv.count(differences).hash(hash).print();
+    std::fprintf(stderr, "%-14s %-8s %-8s %-20s %6.2f x  %7.2f Mrays/s  %zu differ\n", scene_name.c_str(),
+                 kind.name.c_str(), nearest ? "closest" : "occluded", all[index].name.c_str(), rival_ms / ms,
+                 count / ms / 1e3, differences);
+  }
+  return same;
+}
+
+struct Options {
+  std::size_t rounds = 5;
+  std::vector<std::string> files;
+  int copies = 1;
+  std::size_t rays = 131'072;
+};
+
+bool bench(const Options& options, const std::string& file) {
+  const dcem::TriangleMesh scenery = tiled(dcem::io::read_obj(file).mesh, options.copies);
+  dcem::Scene scene;
+  for (const std::string& name : scenery.material_names) scene.add_material({name, dcem::PerfectConductor{}});
+  scene.set_scenery(scenery);
+  const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
+  std::vector<Contender> all = contenders(scene, mesh);
+  for (std::size_t round = 0; round < options.rounds; ++round) {
+    for (Contender& each : all) {
+      const Stopwatch watch;
+      each.build();
+      each.build_ms.push_back(watch.elapsed_ms());
+    }
+  }
+  for (const Contender& each : all) {
+    std::fprintf(stderr, "%-20s built in %.1f ms\n", each.name.c_str(), dcem::median(each.build_ms));
+  }
+  dcem::Aabb<double> bounds;
+  for (const Vec3& vertex : mesh.vertices_m) bounds.extend(vertex);
+  const std::string name = std::filesystem::path(file).stem().string() +
+                           (options.copies > 1 ? " x " + std::to_string(options.copies * options.copies) : "");
+  bool same = true;
+  for (const RayKind& kind : ray_kinds(mesh, bounds, options.rays)) {
+    for (const bool nearest : {true, false}) {
+      same = compare(name, mesh.size(), all, kind, nearest, options.rounds) && same;
+    }
+  }
+  if (!same) std::fputs("hits differ\n", stderr);
+  return same;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  Options options;
+  CLI::App app("Times rays through a scene that stands still");
+  app.add_option("ROUNDS", options.rounds, "rounds, in turns")->required()->check(CLI::Range(1, 1000));
+  app.add_option("FILES", options.files, "OBJ files")->required();
+  app.add_option("--copies", options.copies, "N x N copies of the scene")->check(CLI::Range(1, 16));
+  app.add_option("--rays", options.rays, "rays of each kind")->check(CLI::Range(1, 100'000'000));
+  return dcem::bench::run_program(app, count, arguments, [&] {
+    std::puts(
+        "scene,triangles,rays,query,tree,ratio_to_embree_robust,mrays_per_s,build_ms,nodes_per_ray,patches_per_ray,"
+        "differences,hash");
+    bool same = true;
+    for (const std::string& file : options.files) same = bench(options, file) && same;
+    return same;
+  });
+}

@@ -1,0 +1,120 @@
+#pragma once
+/// Embree 3 as a rival in the same process: the same triangles, the same rays. Included where Embree was found
+/// (DCEM_HAS_EMBREE).
+#include <embree3/rtcore.h>
+#include <immintrin.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "dcem/accel/patches.hpp"
+#include "dcem/geometry/ray.hpp"
+
+namespace dcem::bench {
+
+/// What Embree is told about a scene.
+struct EmbreeSettings {
+  bool robust = true;
+  bool quads = false;  ///< pairs as quadrilaterals, the other triangles as quadrilaterals with a corner twice
+  RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
+  unsigned threads = 1;
+};
+
+inline RTCRay embree_ray(const Ray<double>& ray) {
+  RTCRay result{};
+  result.org_x = static_cast<float>(ray.origin.x);
+  result.org_y = static_cast<float>(ray.origin.y);
+  result.org_z = static_cast<float>(ray.origin.z);
+  result.dir_x = static_cast<float>(ray.direction.x);
+  result.dir_y = static_cast<float>(ray.direction.y);
+  result.dir_z = static_cast<float>(ray.direction.z);
+  result.tnear = static_cast<float>(ray.t_min);
+  result.tfar = static_cast<float>(ray.t_max);
+  result.mask = std::numeric_limits<unsigned>::max();
+  return result;
+}
+
+/// A device with a scene of one or more geometries. Flushes denormal numbers to zero, as Embree's manual asks.
+class EmbreeScene {
+ public:
+  explicit EmbreeScene(const EmbreeSettings& settings) : settings_(settings) {
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+    device_ = rtcNewDevice(settings.threads == 1 ? "threads=1" : "");
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_, settings.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneBuildQuality(scene_, settings.quality);
+  }
+  ~EmbreeScene() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  /// Adds triangles (or, with `quads`, the patches made of them) as one geometry.
+  RTCGeometry add(const TriangleView& mesh, std::span<const Patch> patches = {}) {
+    const bool quads = settings_.quads;
+    const RTCGeometry geometry = rtcNewGeometry(device_, quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), mesh.vertices_m.size()));
+    write_vertices(vertices, mesh.vertices_m);
+    const std::size_t corners = quads ? 4 : 3;
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
+                                corners * sizeof(std::uint32_t), quads ? patches.size() : mesh.size()));
+    if (quads) {
+      for (const Patch& patch : patches) {
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+          const auto& [triangle, at] = patch.corner[patch.is_pair() || corner < 3 ? corner : 2];
+          *indices++ = mesh.triangles[triangle][at];
+        }
+      }
+    } else {
+      for (const auto& triangle : mesh.triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
+    }
+    return geometry;
+  }
+  void attach(RTCGeometry geometry) {
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);  // the scene keeps it
+  }
+  void commit() { rtcCommitScene(scene_); }
+  RTCScene handle() const { return scene_; }
+
+  static void write_vertices(float* to, std::span<const Vec3> vertices_m) {
+    for (const Vec3& vertex : vertices_m) {
+      for (int axis = 0; axis < 3; ++axis) *to++ = static_cast<float>(vertex[axis]);
+    }
+  }
+
+  /// Parameter of the nearest hit, infinity where there is none.
+  float nearest(const Ray<double>& ray) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query{};
+    query.ray = embree_ray(ray);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_, &context, &query);
+    return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<float>::infinity() : query.ray.tfar;
+  }
+  bool blocked(const Ray<double>& ray) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay query = embree_ray(ray);
+    rtcOccluded1(scene_, &context, &query);
+    return query.tfar < 0.0F;
+  }
+
+ private:
+  EmbreeSettings settings_;
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+};
+
+}  // namespace dcem::bench

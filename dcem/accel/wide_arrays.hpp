@@ -1,0 +1,275 @@
+#pragma once
+/// The memory of a wide tree, and the writing of its single parts.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "dcem/accel/patches.hpp"
+#include "dcem/accel/wide_collapse.hpp"
+#include "dcem/accel/wide_node.hpp"
+#include "dcem/core/error.hpp"
+#include "dcem/geometry/aabb.hpp"
+#include "dcem/geometry/ray.hpp"
+#include "dcem/geometry/triangle.hpp"
+
+namespace dcem {
+
+/// A plane in double: normal · x = offset. The normal need not have unit length; it is zero where there is no plane.
+struct PatchPlane {
+  Vec3 normal{0.0};
+  double offset = 0.0;
+
+  /// The line of a ray meets it at height / slope.
+  double height(const Ray<double>& ray) const { return offset - glm::dot(normal, ray.origin); }
+  double slope(const Ray<double>& ray) const { return glm::dot(normal, ray.direction); }
+};
+
+/// What a hit on a patch needs: the planes of its two triangles, and which of them is met. A pair is flat to rounding
+/// only, and t must be that of the triangle.
+struct alignas(64) PatchPlanes {
+  std::array<PatchPlane, 2> plane;
+  PatchPlane
+      divider;  ///< through the diagonal; triangle 1 lies where normal · x > offset. A triangle: normal 0, offset 0
+  std::array<std::uint32_t, 2> triangle{Patch::no_triangle, Patch::no_triangle};
+
+  /// Where the line of a ray that meets the patch does so, and in which of the triangles; t is not finite where the
+  /// line lies in the plane.
+  struct Meeting {
+    double t;
+    std::uint32_t side;
+  };
+  Meeting meet(const Ray<double>& ray) const {
+    const double height = plane[0].height(ray), slope = plane[0].slope(ray);
+    // Whether the point at t = height / slope is beyond the diagonal, multiplied by the slope.
+    const double beyond = divider.slope(ray) * height - divider.height(ray) * slope;
+    const std::uint32_t side = (beyond > 0.0) == (slope > 0.0) && beyond != 0.0 ? 1U : 0U;
+    const PatchPlane& met = plane[side];
+    return {met.height(ray) / met.slope(ray), side};
+  }
+};
+
+/// Plain arrays; `WideTree` keeps their promises and `find_wide_defect` checks them.
+///
+/// Node 0 is the root. Nodes and blocks never move; what an edit gives up is used again. A unit is a group that owns a
+/// subtree: one entry of the tree leads to it, and edits above take it as a whole.
+struct WideArrays {
+  static constexpr std::uint32_t no_unit = 0xffffffffU;
+
+  std::vector<WideNode> nodes;
+  std::vector<WidePlace> node_place;     ///< where a node hangs; none for the root and for unused nodes
+  std::vector<std::uint32_t> node_unit;  ///< the unit whose root it is, or no_unit
+  std::vector<PatchBlock> blocks;
+  std::vector<WidePlace> block_place;
+  std::vector<std::uint32_t> block_unit;  ///< the unit whose root it is, or no_unit
+  std::vector<std::uint32_t> group_of_block;
+  std::vector<std::uint32_t> free_nodes;
+
+  std::vector<Patch> patches;  ///< block b holds 8 b … 8 b + 7
+  std::vector<PatchPlanes> planes;
+  std::vector<std::uint32_t> patch_of_triangle;
+  std::vector<Aabb<double>> boxes;         ///< of triangles
+  std::vector<TriangleCorners> corners_m;  ///< of triangles
+  std::vector<WideChild> unit_root;        ///< per group; none for groups without subtree of their own
+
+  Vec3 origin_m{0.0};
+  float extent_m = 0.0F;  ///< no finite bound is larger, from the origin; grows only
+  WideCosts costs;
+  double weighted_area_m2 = 0.0;  ///< Σ cost · half surface over all nodes and blocks but the root
+
+  WidePlace place_of(WideChild child) const {
+    return child.is_block() ? block_place[child.index()] : node_place[child.index()];
+  }
+  std::uint32_t unit_of(WideChild child) const {
+    return child.is_block() ? block_unit[child.index()] : node_unit[child.index()];
+  }
+  Aabb<float> box_at(WidePlace place) const { return nodes[place.node()].box(place.lane()); }
+  WideChild child_at(WidePlace place) const { return nodes[place.node()].child[place.lane()]; }
+
+  std::uint32_t take_node();
+  std::uint32_t add_block(std::uint32_t group);
+
+  /// Puts a child with its box into a lane.
+  void hang(WideChild child, WidePlace place, const Aabb<float>& box);
+  /// Changes the box of a lane; keeps the sum.
+  void set_box(WidePlace place, const Aabb<float>& box);
+  /// Makes the boxes above a node tight again, as far up as they change. Returns how many nodes were looked at.
+  std::size_t tighten_above(std::uint32_t node);
+
+  /// Takes over one triangle.
+  void set_triangle(std::uint32_t triangle, const TriangleCorners& corners, const Aabb<double>& box) {
+    corners_m[triangle] = corners;
+    boxes[triangle] = box;
+  }
+  /// Writes the numbers of a block from the triangles of its patches. Returns the box around it.
+  Aabb<float> write_block(std::uint32_t block);
+
+  /// The single-precision box around a double one, from the tree's origin.
+  Aabb<float> rounded_out(const Aabb<double>& box) const;
+
+  Aabb<double> box_of_patch(const Patch& patch) const {
+    Aabb<double> box;
+    for (const std::uint32_t triangle : patch.triangles()) box.extend(boxes[triangle]);
+    return box;
+  }
+
+ private:
+  double weight(WideChild child, const Aabb<float>& box) const {
+    const double cost = child.is_none() ? 0.0 : child.is_block() ? costs.block : costs.node;
+    return cost * static_cast<double>(box.half_area());
+  }
+  void write_lane(PatchBlock& block, std::uint32_t lane, const Patch& patch, PatchPlanes& planes_of_patch) const;
+  void write_planes(const std::array<Vec3, 4>& world_m, const Patch& patch, PatchPlanes& result) const;
+  std::array<Vec3, 4> quadrilateral(const Patch& patch) const;
+};
+
+inline std::uint32_t WideArrays::take_node() {
+  if (!free_nodes.empty()) {
+    const std::uint32_t node = free_nodes.back();
+    free_nodes.pop_back();
+    return node;
+  }
+  nodes.emplace_back();
+  node_place.emplace_back();
+  node_unit.push_back(no_unit);
+  return static_cast<std::uint32_t>(nodes.size() - 1);
+}
+
+inline std::uint32_t WideArrays::add_block(std::uint32_t group) {
+  blocks.emplace_back();
+  block_place.emplace_back();
+  block_unit.push_back(no_unit);
+  group_of_block.push_back(group);
+  patches.resize(patches.size() + simd_lanes);
+  planes.resize(planes.size() + simd_lanes);
+  return static_cast<std::uint32_t>(blocks.size() - 1);
+}
+
+inline void WideArrays::hang(WideChild child, WidePlace place, const Aabb<float>& box) {
+  WideNode& node = nodes[place.node()];
+  weighted_area_m2 -= weight(node.child[place.lane()], box_at(place));
+  node.child[place.lane()] = child;
+  node.set_box(place.lane(), box);
+  weighted_area_m2 += weight(child, box);
+  if (child.is_none()) return;
+  (child.is_block() ? block_place[child.index()] : node_place[child.index()]) = place;
+}
+
+inline void WideArrays::set_box(WidePlace place, const Aabb<float>& box) {
+  const WideChild child = child_at(place);
+  weighted_area_m2 += weight(child, box) - weight(child, box_at(place));
+  nodes[place.node()].set_box(place.lane(), box);
+}
+
+inline std::size_t WideArrays::tighten_above(std::uint32_t node) {
+  std::size_t visited = 0;
+  for (WidePlace place = node_place[node]; !place.is_none(); place = node_place[place.node()]) {
+    ++visited;
+    const Aabb<float> box = nodes[child_at(place).index()].box();
+    if (box == box_at(place)) break;
+    set_box(place, box);
+  }
+  return visited;
+}
+
+inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
+  if (box.empty()) return {};
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Aabb<float> result;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Two roundings, of the difference and to float; one step outwards is more than both.
+    result.min[axis] = std::nextafter(static_cast<float>(box.min[axis] - origin_m[axis]), -infinity);
+    result.max[axis] = std::nextafter(static_cast<float>(box.max[axis] - origin_m[axis]), infinity);
+  }
+  return result;
+}
+
+/// A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
+inline std::array<Vec3, 4> WideArrays::quadrilateral(const Patch& patch) const {
+  const auto corner = [&](std::size_t index) {
+    const auto& [triangle, at] = patch.corner[index];
+    return corners_m[triangle][at];
+  };
+  const Vec3 a = corner(0), b = corner(1), c = corner(2);
+  return {a, b, c, patch.is_pair() ? corner(3) : 0.5 * (a + c)};
+}
+
+inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
+  PatchBlock& block = blocks[index];
+  const std::span<const Patch> held = std::span(patches).subspan(std::size_t{index} * simd_lanes, simd_lanes);
+  Aabb<double> box;
+  block.lanes = 0;
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    if (held[lane].is_none()) continue;
+    const Aabb<double> own = box_of_patch(held[lane]);
+    if (own.empty()) continue;
+    block.lanes |= 1U << lane;
+    box.extend(own);
+  }
+  if (block.lanes == 0) return {};
+  const Vec3 centre_m = box.center() - origin_m;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    block.centre_m[axis] = static_cast<float>(centre_m[static_cast<int>(axis)]);
+  }
+  block.size_m = 0.0F;
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    if ((block.lanes >> lane & 1U) != 0) write_lane(block, lane, held[lane], planes[index * simd_lanes + lane]);
+  }
+  const Aabb<float> rounded = rounded_out(box);
+  for (int axis = 0; axis < 3; ++axis) {
+    extent_m = std::max({extent_m, std::abs(rounded.min[axis]), std::abs(rounded.max[axis])});
+  }
+  return rounded;
+}
+
+inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& patch,
+                                   PatchPlanes& planes_of_patch) const {
+  const std::array<Vec3, 4> world_m = quadrilateral(patch);
+  write_planes(world_m, patch, planes_of_patch);
+  const Vec3 centre_m = origin_m + Vec3(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
+  std::array<Vec3, 4> corner_m;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    corner_m[corner] = world_m[corner] - centre_m;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<float>(corner_m[corner][axis]);
+      block.corner_m[corner][static_cast<std::size_t>(axis)][lane] = at;
+      block.size_m = std::max(block.size_m, std::abs(at));
+    }
+  }
+  const auto& [a, b, c, d] = corner_m;
+  const auto squared = [](const Vec3& from, const Vec3& to) { return glm::dot(to - from, to - from); };
+  const double diameter_m =
+      std::sqrt(std::max({squared(a, b), squared(b, c), squared(c, d), squared(d, a), squared(a, c), squared(b, d)}));
+  block.reach_m[lane] = static_cast<float>(PatchBlock::edge_error_factor * diameter_m);
+  const Vec3 across = glm::cross(b - a, c - a);
+  const double length = glm::length(across);
+  const Vec3 normal = length > 0.0 ? across / length : Vec3(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    block.normal[static_cast<std::size_t>(axis)][lane] = static_cast<float>(normal[axis]);
+  }
+  block.offset_m[lane] = static_cast<float>(glm::dot(normal, a));
+  // Without a plane nothing is certain, but every ray near it is asked.
+  const double bend_m = length > 0.0 ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
+  block.bend_m[lane] = patch.is_pair() ? static_cast<float>(bend_m) : 0.0F;
+}
+
+inline void WideArrays::write_planes(const std::array<Vec3, 4>& world_m, const Patch& patch,
+                                     PatchPlanes& result) const {
+  const auto& [a, b, c, d] = world_m;
+  const auto through = [](const Vec3& normal, const Vec3& point) {
+    return PatchPlane{normal, glm::dot(normal, point)};
+  };
+  result.triangle = patch.triangle;
+  result.plane[0] = through(glm::cross(b - a, c - a), a);
+  if (!patch.is_pair()) return;
+  result.plane[1] = through(glm::cross(c - a, d - a), a);
+  // Upright on the pair, with d on its positive side.
+  const Vec3 upright = glm::cross(result.plane[0].normal, c - a);
+  result.divider = through(upright, a);
+}
+
+}  // namespace dcem

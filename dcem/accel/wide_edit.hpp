@@ -1,0 +1,184 @@
+#pragma once
+/// How a `WideTree` is built and follows motion; included by wide_tree.hpp.
+#include "dcem/accel/wide_tree.hpp"
+
+namespace dcem {
+
+inline void WideTree::require_input(const TriangleView& mesh, Boxes boxes) const {
+  if (mesh.size() != boxes.size()) throw std::invalid_argument("one box per triangle is needed");
+  require_valid_boxes(boxes);
+}
+
+inline void WideTree::build_grouped(const TriangleView& mesh, Boxes boxes, std::span<const std::uint32_t> group_first,
+                                    const WideSettings& settings) {
+  require_input(mesh, boxes);
+  require_valid_groups(group_first, boxes.size());
+  WideBuilder builder(settings);
+  settings_ = settings;
+  group_first_.assign(group_first.begin(), group_first.end());
+  arrays_ = {};
+  arrays_.costs = settings.costs;
+  arrays_.boxes.resize(boxes.size());
+  arrays_.corners_m.resize(boxes.size());
+  arrays_.patch_of_triangle.resize(boxes.size());
+  for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
+    arrays_.set_triangle(triangle, mesh.corners_m(triangle), canonical_box(boxes[triangle]));
+  }
+  builder.build(arrays_, mesh, group_first_);
+  sah_at_build_ = sah_cost();
+  block_is_dirty_.assign(arrays_.blocks.size(), 0);
+  unit_is_moved_.assign(group_first_.size(), 0);
+  dirty_blocks_.clear();
+  moved_units_.clear();
+  area_when_hung_m2_.assign(group_first_.size(), 0.0F);
+  for (std::size_t group = 0; group < group_first_.size(); ++group) {
+    if (arrays_.unit_root[group].is_none()) continue;
+    area_when_hung_m2_[group] = arrays_.nodes[arrays_.place_of(arrays_.unit_root[group]).node()].box().half_area();
+  }
+}
+
+inline void WideTree::rebuild(const TriangleView& mesh, Boxes boxes) {
+  build_grouped(mesh, boxes, std::vector<std::uint32_t>(group_first_), WideSettings(settings_));
+}
+
+inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes) {
+  if (mesh.size() != primitive_count() || boxes.size() != primitive_count()) {
+    throw std::invalid_argument("one box per triangle of the tree is needed");
+  }
+  for (const std::uint32_t triangle : moved) {
+    if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
+    require_valid_box(boxes[triangle], triangle);
+  }
+  for (const std::uint32_t unit : moved_units_) unit_is_moved_[unit] = 0;
+  moved_units_.clear();
+  WideRefitReport report;
+  for (const std::uint32_t triangle : moved) {
+    arrays_.set_triangle(triangle, mesh.corners_m(triangle), canonical_box(boxes[triangle]));
+    const std::uint32_t block = arrays_.patch_of_triangle[triangle] / simd_lanes;
+    if (block_is_dirty_[block] != 0) continue;
+    block_is_dirty_[block] = 1;
+    dirty_blocks_.push_back(block);
+  }
+  report.blocks_written = dirty_blocks_.size();
+  for (const std::uint32_t block : dirty_blocks_) {
+    block_is_dirty_[block] = 0;
+    const WidePlace place = arrays_.block_place[block];
+    const Aabb<float> box = arrays_.write_block(block);
+    if (box != arrays_.box_at(place)) {
+      arrays_.set_box(place, box);
+      report.nodes_visited += arrays_.tighten_above(place.node());
+    }
+    note_moved_unit(arrays_.group_of_block[block]);
+  }
+  dirty_blocks_.clear();
+  return report;
+}
+
+inline void WideTree::note_moved_unit(std::uint32_t group) {
+  if (arrays_.unit_root[group].is_none() || unit_is_moved_[group] != 0) return;
+  unit_is_moved_[group] = 1;
+  moved_units_.push_back(group);
+}
+
+inline std::size_t WideTree::reinsert_moved(double growth_limit) {
+  std::size_t count = 0;
+  for (const std::uint32_t group : moved_units_) {
+    const WidePlace place = arrays_.place_of(arrays_.unit_root[group]);
+    const double area_m2 = static_cast<double>(arrays_.nodes[place.node()].box().half_area());
+    if (!(area_m2 > growth_limit * static_cast<double>(area_when_hung_m2_[group]))) continue;
+    count += take_out_and_hang(group) ? 1U : 0U;
+  }
+  return count;
+}
+
+inline bool WideTree::take_out_and_hang(std::uint32_t group) {
+  const WideChild root = arrays_.unit_root[group];
+  const WidePlace place = arrays_.place_of(root);
+  const Aabb<float> box = arrays_.box_at(place);
+  if (box.empty()) return false;
+  take_out(place);
+  hang_at(root, box, cheapest_spot(box));
+  area_when_hung_m2_[group] = arrays_.nodes[arrays_.place_of(root).node()].box().half_area();
+  return true;
+}
+
+/// Empties a lane. A node that is left with one entry gives its place to that entry.
+inline void WideTree::take_out(WidePlace place) {
+  arrays_.hang({}, place, {});
+  const std::uint32_t node = place.node();
+  if (node == 0 || arrays_.nodes[node].child_count() > 1) {
+    arrays_.tighten_above(node);
+    return;
+  }
+  const WidePlace above = arrays_.node_place[node];
+  std::uint32_t lane = 0;
+  while (lane < simd_lanes && arrays_.nodes[node].child[lane].is_none()) ++lane;
+  const WideChild left = lane < simd_lanes ? arrays_.nodes[node].child[lane] : WideChild{};
+  const Aabb<float> box = lane < simd_lanes ? arrays_.nodes[node].box(lane) : Aabb<float>{};
+  if (!left.is_none()) arrays_.hang({}, WidePlace::at(node, lane), {});
+  arrays_.hang(left, above, box);
+  arrays_.node_place[node] = {};
+  arrays_.free_nodes.push_back(node);
+  arrays_.tighten_above(above.node());
+}
+
+/// Offers the lanes of one node: a free one, or any entry that is not divided further.
+inline void WideTree::offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best) {
+  const auto& [cost_m2, node, level] = branch;
+  const WideNode& held = arrays_.nodes[node];
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    const WideChild child = held.child[lane];
+    if (child.is_none()) {
+      if (cost_m2 < best.cost_m2) best = {cost_m2, node, lane, false};
+      return;
+    }
+    Aabb<float> both = held.box(lane);
+    const double own_m2 = static_cast<double>(both.half_area());
+    both.extend(box);
+    const double both_m2 = arrays_.costs.node * static_cast<double>(both.half_area());
+    if (child.is_block() || level == edit_levels || arrays_.unit_of(child) != WideArrays::no_unit) {
+      if (cost_m2 + both_m2 < best.cost_m2) best = {cost_m2 + both_m2, node, lane, true};
+      continue;
+    }
+    const double grown_m2 = cost_m2 + both_m2 - arrays_.costs.node * own_m2;
+    if (!(grown_m2 < best.cost_m2)) continue;
+    branches_.push_back({grown_m2, child.index(), level + 1});
+    std::push_heap(branches_.begin(), branches_.end());
+  }
+}
+
+inline WideTree::Spot WideTree::cheapest_spot(const Aabb<float>& box) {
+  Spot best;
+  branches_.clear();
+  branches_.push_back({0.0, 0, 1});
+  while (!branches_.empty()) {
+    std::pop_heap(branches_.begin(), branches_.end());
+    const Branch branch = branches_.back();
+    branches_.pop_back();
+    if (!(branch.cost_m2 < best.cost_m2)) break;
+    offer_spots(branch, box, best);
+  }
+  return best;
+}
+
+inline void WideTree::hang_at(WideChild child, const Aabb<float>& box, const Spot& spot) {
+  WidePlace place = WidePlace::at(spot.node, spot.lane);
+  if (spot.joins) {
+    const WideChild beside = arrays_.child_at(place);
+    const Aabb<float> beside_box = arrays_.box_at(place);
+    const std::uint32_t node = arrays_.take_node();
+    Aabb<float> both = beside_box;
+    both.extend(box);
+    arrays_.hang(WideChild::node(node), place, both);
+    arrays_.hang(beside, WidePlace::at(node, 0), beside_box);
+    place = WidePlace::at(node, 1);
+  }
+  arrays_.hang(child, place, box);
+  arrays_.tighten_above(place.node());
+}
+
+inline std::string WideTree::validate(Boxes boxes) const {
+  return detail::find_wide_defect(arrays_, boxes);
+}
+
+}  // namespace dcem

@@ -1,0 +1,95 @@
+#pragma once
+/// The parts of a wide tree: nodes of eight boxes, and blocks of eight patches in its leaves.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "dcem/accel/simd.hpp"
+#include "dcem/geometry/aabb.hpp"
+
+namespace dcem {
+
+/// What an entry of a node leads to: another node, a block of patches, or nothing.
+struct WideChild {
+  static constexpr std::uint32_t block_flag = 0x80000000U;
+  static constexpr std::uint32_t none_code = 0xffffffffU;
+
+  std::uint32_t code = none_code;
+
+  static WideChild node(std::uint32_t index) { return {index}; }
+  static WideChild block(std::uint32_t index) { return {index | block_flag}; }
+  bool is_none() const { return code == none_code; }
+  bool is_block() const { return (code & block_flag) != 0; }
+  std::uint32_t index() const { return code & ~block_flag; }
+  friend bool operator==(const WideChild&, const WideChild&) = default;
+};
+
+/// A lane of a node, as one number.
+struct WidePlace {
+  static constexpr std::uint32_t none_code = 0xffffffffU;
+
+  std::uint32_t code = none_code;
+
+  static WidePlace at(std::uint32_t node, std::uint32_t lane) { return {node * simd_lanes + lane}; }
+  bool is_none() const { return code == none_code; }
+  std::uint32_t node() const { return code / simd_lanes; }
+  std::uint32_t lane() const { return code % simd_lanes; }
+  friend bool operator==(const WidePlace&, const WidePlace&) = default;
+};
+
+/// Eight boxes and what is in them. Boxes are rounded outwards from the double ones, metres from the tree's origin. A
+/// lane without child has an empty box (+∞, −∞), which no ray meets.
+struct alignas(64) WideNode {
+  /// [2 axis]: the lower, [2 axis + 1]: the upper bounds of all lanes.
+  std::array<std::array<float, simd_lanes>, 6> bounds_m;
+  std::array<WideChild, simd_lanes> child;
+
+  WideNode() {
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) set_box(lane, {});
+  }
+
+  Aabb<float> box(std::uint32_t lane) const {
+    return {{bounds_m[0][lane], bounds_m[2][lane], bounds_m[4][lane]},
+            {bounds_m[1][lane], bounds_m[3][lane], bounds_m[5][lane]}};
+  }
+  void set_box(std::uint32_t lane, const Aabb<float>& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto row = static_cast<std::size_t>(2 * axis);
+      bounds_m[row][lane] = box.min[axis];
+      bounds_m[row + 1][lane] = box.max[axis];
+    }
+  }
+  /// The box around all lanes.
+  Aabb<float> box() const {
+    Aabb<float> all;
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) all.extend(box(lane));
+    return all;
+  }
+  std::uint32_t child_count() const {
+    std::uint32_t count = 0;
+    for (const WideChild& one : child) count += one.is_none() ? 0U : 1U;
+    return count;
+  }
+};
+
+/// Eight patches, each one triangle or two that make a flat convex quadrilateral a b c d. A triangle has d = a.
+///
+/// The numbers serve to say of a ray that it surely misses a patch or surely hits it; where neither is sure, double
+/// precision decides. The patches of block b have the numbers 8 b + lane.
+struct alignas(64) PatchBlock {
+  std::array<float, 3> centre_m{};          ///< from the tree's origin, exact
+  float size_m = 0.0F;                      ///< no corner has a larger coordinate, from the centre
+  std::uint32_t lanes = 0;                  ///< bit i: there is a patch in lane i, and it is in the scene
+  std::array<float, simd_lanes> reach_m{};  ///< edge_error_factor · the longest distance between two corners
+  std::array<float, simd_lanes> bend_m{};   ///< how far d is from the plane of a, b, c
+  /// [corner][axis][lane], from the centre.
+  std::array<std::array<std::array<float, simd_lanes>, 3>, 4> corner_m{};
+  std::array<std::array<float, simd_lanes>, 3> normal{};  ///< of a, b, c; zero where they have none
+  std::array<float, simd_lanes> offset_m{};               ///< normal · a, from the centre
+
+  /// Room for the rounding of the edge functions: see WideRay::meets(const PatchBlock&).
+  static constexpr double edge_error_factor = 10.0;
+};
+
+}  // namespace dcem

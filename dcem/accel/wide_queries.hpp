@@ -1,0 +1,219 @@
+#pragma once
+/// How a `WideTree` answers; included by wide_tree.hpp.
+#include "dcem/accel/wide_tree.hpp"
+
+namespace dcem {
+
+namespace detail {
+
+/// Adds what a query spent to the caller's counters, when there are any.
+class SpentCounters {
+ public:
+  explicit SpentCounters(TraversalCounters* sum) : sum_(sum) {}
+  ~SpentCounters() {
+    if (sum_ != nullptr) *sum_ += spent;
+  }
+  SpentCounters(const SpentCounters&) = delete;
+  SpentCounters& operator=(const SpentCounters&) = delete;
+
+  TraversalCounters spent;
+
+ private:
+  TraversalCounters* sum_;
+};
+
+/// Fetches what will be looked at when the walk is over.
+[[gnu::always_inline]] inline void prefetch(const PatchPlanes& planes) {
+  __builtin_prefetch(&planes);
+  __builtin_prefetch(&planes.divider);
+}
+
+/// Calls `visit(lane)` for the set bits, lowest first, until one returns true. Returns whether one did.
+template <typename Visit>
+[[gnu::always_inline]] inline bool any_lane(std::uint32_t lanes, Visit&& visit) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    if (visit(static_cast<std::uint32_t>(std::countr_zero(lanes)))) return true;
+  }
+  return false;
+}
+
+}  // namespace detail
+
+inline Aabb<double> WideTree::in_world(const Aabb<float>& box) const {
+  if (box.empty()) return {};
+  Aabb<double> result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = static_cast<double>(box.min[axis]), high = static_cast<double>(box.max[axis]);
+    const double origin = arrays_.origin_m[axis];
+    // The sum is rounded once.
+    result.min[axis] = std::nextafter(origin + low, -std::numeric_limits<double>::infinity());
+    result.max[axis] = std::nextafter(origin + high, std::numeric_limits<double>::infinity());
+  }
+  return result;
+}
+
+inline void WideTree::offer(std::uint32_t patch, const Ray<double>& ray, std::optional<WideHit>& best) const {
+  const std::optional<WideHit> hit = hit_on(patch, ray);
+  if (!hit || (best && (hit->t > best->t || (hit->t == best->t && hit->triangle > best->triangle)))) return;
+  best = hit;
+}
+
+template <typename Considers>
+std::optional<WideHit> WideTree::nearest(const Ray<double>& ray, Considers&& considers,
+                                         TraversalCounters* counters) const {
+  detail::SpentCounters sum(counters);
+  if (primitive_count() == 0) return std::nullopt;
+  const WideRay wide(ray, arrays_.origin_m, arrays_.extent_m);
+  if (!wide.usable()) return nearest_of_all(ray, considers, sum.spent);
+  return nearest_among(ray, wide, considers, sum.spent);
+}
+
+/// The walk collects what may be the nearest, and a sure hit shortens it at once; double precision looks at what is
+/// left at the end, which is one patch as a rule.
+template <typename Considers>
+std::optional<WideHit> WideTree::nearest_among(const Ray<double>& ray, const WideRay& wide, Considers& considers,
+                                               TraversalCounters& counters) const {
+  detail::WideCandidates candidates;
+  float limit = WideRay::padded(ray.t_max);
+  std::optional<WideHit> best;
+  const auto look_at = [&](const detail::WideCandidates::Candidate& candidate) {
+    ++counters.primitives_tested;
+    if (candidate.certain || meets_exactly(arrays_.patches[candidate.patch], ray)) offer(candidate.patch, ray, best);
+  };
+  const auto take = [&](std::uint32_t block, std::uint32_t met, const Hits& hits, float& walk_limit) {
+    for (; met != 0; met &= met - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(met));
+      const std::uint32_t patch = block * simd_lanes + lane;
+      if (hits.first[lane] > limit) continue;
+      if (!is_considered(patch, considers)) continue;
+      const bool certain = has(hits.certain, lane);
+      // The plane's t may lie beyond what is asked for by a rounding: then it shortens nothing.
+      if (certain && static_cast<double>(hits.last[lane]) < ray.t_max) limit = std::min(limit, hits.last[lane]);
+      const detail::WideCandidates::Candidate candidate{patch, hits.first[lane], certain};
+      detail::prefetch(arrays_.planes[patch]);
+      if (!candidates.add(candidate, limit)) look_at(candidate);
+    }
+    walk_limit = limit;
+  };
+  detail::walk_wide_nearest(view(), wide, limit, take, counters);
+  candidates.drop_beyond(limit);
+  for (const detail::WideCandidates::Candidate& candidate : candidates.held()) look_at(candidate);
+  return best;
+}
+
+/// For rays that single precision does not follow.
+template <typename Considers>
+std::optional<WideHit> WideTree::nearest_of_all(const Ray<double>& ray, Considers& considers,
+                                                TraversalCounters& counters) const {
+  std::optional<WideHit> best;
+  if (!(glm::length(ray.direction) > 0.0)) return best;
+  for (std::uint32_t patch = 0; patch < arrays_.patches.size(); ++patch) {
+    const Patch& held = arrays_.patches[patch];
+    if (held.is_none() || arrays_.box_of_patch(held).empty()) continue;
+    ++counters.primitives_tested;
+    if (is_considered(patch, considers) && meets_exactly(held, ray)) offer(patch, ray, best);
+  }
+  return best;
+}
+
+template <typename Considers>
+bool WideTree::blocked(const Ray<double>& ray, Considers&& considers, TraversalCounters* counters,
+                       std::optional<std::uint32_t> first_try) const {
+  detail::SpentCounters sum(counters);
+  if (primitive_count() == 0) return false;
+  const auto blocks = [&](std::uint32_t patch, bool certain) {
+    if (!is_considered(patch, considers)) return false;
+    ++sum.spent.primitives_tested;
+    if (certain) return true;
+    return hit_on(patch, ray) && meets_exactly(arrays_.patches[patch], ray);
+  };
+  if (first_try && *first_try < primitive_count() && !arrays_.boxes[*first_try].empty() &&
+      blocks(arrays_.patch_of_triangle[*first_try], false)) {
+    return true;
+  }
+  const WideRay wide(ray, arrays_.origin_m, arrays_.extent_m);
+  if (!wide.usable()) return nearest_of_all(ray, considers, sum.spent).has_value();
+  const auto take = [&](std::uint32_t block, std::uint32_t met, const Hits& hits) {
+    return detail::any_lane(met, [&](std::uint32_t lane) {
+      const bool certain = has(hits.certain, lane) && static_cast<double>(hits.last[lane]) < ray.t_max;
+      return blocks(block * simd_lanes + lane, certain);
+    });
+  };
+  return detail::walk_wide_any(view(), wide, WideRay::padded(ray.t_max), take, sum.spent);
+}
+
+template <typename Leaf>
+void WideTree::closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters) const {
+  detail::SpentCounters sum(counters);
+  if (primitive_count() == 0) return;
+  double t_max = ray.t_max;
+  const auto ask = [&](const Patch& patch) {
+    for (const std::uint32_t triangle : patch.triangles()) {
+      ++sum.spent.primitives_tested;
+      leaf(triangle, t_max);
+    }
+  };
+  const WideRay wide(ray, arrays_.origin_m, arrays_.extent_m);
+  if (!wide.usable()) {
+    for (const Patch& patch : arrays_.patches) {
+      if (!patch.is_none() && !arrays_.box_of_patch(patch).empty()) ask(patch);
+    }
+    return;
+  }
+  const auto take = [&](std::uint32_t block, std::uint32_t met, const Hits& hits, float& limit) {
+    while (met != 0) {
+      auto lane = static_cast<std::uint32_t>(std::countr_zero(met));
+      detail::any_lane(met & (met - 1), [&](std::uint32_t other) {
+        if (hits.first[other] < hits.first[lane]) lane = other;
+        return false;
+      });
+      met &= ~(1U << lane);
+      if (hits.first[lane] > limit) continue;
+      ask(arrays_.patches[block * simd_lanes + lane]);
+      limit = WideRay::padded(t_max);
+    }
+  };
+  detail::walk_wide_nearest(view(), wide, WideRay::padded(t_max), take, sum.spent);
+}
+
+template <typename Leaf>
+bool WideTree::any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters) const {
+  detail::SpentCounters sum(counters);
+  if (primitive_count() == 0) return false;
+  const auto ask = [&](const Patch& patch) {
+    return std::ranges::any_of(patch.triangles(), [&](std::uint32_t triangle) {
+      ++sum.spent.primitives_tested;
+      return leaf(triangle);
+    });
+  };
+  const WideRay wide(ray, arrays_.origin_m, arrays_.extent_m);
+  if (!wide.usable()) {
+    return std::ranges::any_of(arrays_.patches, [&](const Patch& patch) {
+      return !patch.is_none() && !arrays_.box_of_patch(patch).empty() && ask(patch);
+    });
+  }
+  const auto take = [&](std::uint32_t block, std::uint32_t met, const Hits&) {
+    return detail::any_lane(met, [&](std::uint32_t lane) { return ask(arrays_.patches[block * simd_lanes + lane]); });
+  };
+  return detail::walk_wide_any(view(), wide, WideRay::padded(ray.t_max), take, sum.spent);
+}
+
+template <typename Keep, typename Leaf>
+void WideTree::visit(Keep&& keep_box, Leaf&& leaf, TraversalCounters* counters) const {
+  detail::SpentCounters sum(counters);
+  if (primitive_count() == 0) return;
+  const auto take = [&](std::uint32_t block) {
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+      if (!has(arrays_.blocks[block].lanes, lane)) continue;
+      for (const std::uint32_t triangle : arrays_.patches[block * simd_lanes + lane].triangles()) {
+        if (arrays_.boxes[triangle].empty() || !keep_box(arrays_.boxes[triangle])) continue;
+        ++sum.spent.primitives_tested;
+        leaf(triangle);
+      }
+    }
+  };
+  detail::walk_wide_boxes(
+      view(), [&](const Aabb<float>& box) { return keep_box(in_world(box)); }, take, sum.spent);
+}
+
+}  // namespace dcem

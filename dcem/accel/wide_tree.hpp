@@ -1,0 +1,224 @@
+#pragma once
+/// Tree of eight children a node over triangles: the fast one. Boxes and first tests are in single precision and never
+/// decide against double precision, so that its answers are those of `BruteForce`.
+///
+/// Objects own subtrees that edits take as a whole; what moves is followed in place, without allocation.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "dcem/accel/box_check.hpp"
+#include "dcem/accel/counters.hpp"
+#include "dcem/accel/quality.hpp"
+#include "dcem/accel/wide_arrays.hpp"
+#include "dcem/accel/wide_builder.hpp"
+#include "dcem/accel/wide_traversal.hpp"
+#include "dcem/accel/wide_validate.hpp"
+#include "dcem/geometry/aabb.hpp"
+#include "dcem/geometry/ray.hpp"
+#include "dcem/geometry/triangle.hpp"
+
+namespace dcem {
+
+/// The nearest hit of a ray.
+struct WideHit {
+  double t = 0.0;  ///< where the ray meets the plane of the triangle
+  std::uint32_t triangle = Patch::no_triangle;
+};
+
+/// What following a motion took.
+struct WideRefitReport {
+  std::size_t blocks_written = 0;
+  std::size_t nodes_visited = 0;
+  std::size_t units_reinserted = 0;
+};
+
+/// Boxes and triangles are passed in full to every edit, indexed by triangle; a triangle with an empty box is not
+/// there. Edits throw std::invalid_argument, before anything changes, for bad boxes (see Bvh) and numbers out of range.
+/// Queries may run on several threads at once, edits may not.
+class WideTree {
+ public:
+  using Boxes = std::span<const Aabb<double>>;
+
+  // Building.
+
+  /// A new tree. Triangles [group_first[i], group_first[i + 1]) are group i, the last group ends with the triangles.
+  /// Groups of up to WideSettings::unit_limit patches own a subtree.
+  void build_grouped(const TriangleView& mesh, Boxes boxes, std::span<const std::uint32_t> group_first,
+                     const WideSettings& settings = {});
+  void build(const TriangleView& mesh, Boxes boxes, const WideSettings& settings = {}) {
+    const std::uint32_t whole = 0;
+    build_grouped(mesh, boxes, {&whole, 1}, settings);
+  }
+  /// Builds everything anew, with the groups and settings of the last build.
+  void rebuild(const TriangleView& mesh, Boxes boxes);
+
+  // Following motion.
+
+  /// Takes over the corners and boxes of the triangles in `moved` and makes all boxes above them tight again. Vertices
+  /// may move in any way. Allocates nothing once the lists have grown.
+  WideRefitReport refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes);
+
+  /// Takes the units that the last refit moved, and that make the node they hang in larger than `growth_limit` times
+  /// what it was when they came there, out of the tree, and hangs each where it costs least (branch and bound over Σ
+  /// cost · surface: Bittner, Hapala, Havran, "Fast insertion-based optimization of bounding volume hierarchies",
+  /// Computer Graphics Forum 2013). Returns how many were moved.
+  std::size_t reinsert_moved(double growth_limit);
+
+  // Queries. `counters`, when given, is added to.
+
+  /// Considers all.
+  struct EveryTriangle {
+    bool operator()(std::uint32_t) const { return true; }
+  };
+
+  /// The nearest hit from t_min to t_max among the triangles for which `considers(triangle) -> bool` holds, which must
+  /// be the same for all triangles of one surface (TriangleView::surface_of_triangle). Of equally near ones the one
+  /// with the smallest number. t comes from the plane of the triangle, whatever decided that the ray meets it; so it is
+  /// the same for every tree over the same triangles.
+  template <typename Considers>
+  std::optional<WideHit> nearest(const Ray<double>& ray, Considers&& considers,
+                                 TraversalCounters* counters = nullptr) const;
+  std::optional<WideHit> nearest(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
+    return nearest(ray, EveryTriangle{}, counters);
+  }
+
+  /// Whether a triangle for which `considers(triangle) -> bool` holds is met from t_min to t_max. `first_try`: asked
+  /// before the tree, for instance what was in the way a moment ago.
+  template <typename Considers>
+  bool blocked(const Ray<double>& ray, Considers&& considers, TraversalCounters* counters = nullptr,
+               std::optional<std::uint32_t> first_try = {}) const;
+  bool blocked(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
+    return blocked(ray, EveryTriangle{}, counters);
+  }
+
+  /// As Bvh::closest: calls `leaf(triangle, t_max)`, near ones first, for all triangles that the ray may meet.
+  template <typename Leaf>
+  void closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
+
+  /// As Bvh::any: calls `leaf(triangle) -> bool` for triangles that the ray may meet until one returns true.
+  template <typename Leaf>
+  bool any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
+
+  /// Calls `leaf(triangle)` once for every triangle that the ray may meet: all that it meets, and a few beside.
+  template <typename Leaf>
+  void all(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
+    any(
+        ray, [&](std::uint32_t triangle) { return leaf(triangle), false; }, counters);
+  }
+
+  /// Calls `leaf(triangle)` once for every triangle whose box has a point in common with `box`.
+  template <typename Leaf>
+  void overlapping(const Aabb<double>& box, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
+    visit([region = canonical_box(box)](const Aabb<double>& held) { return region.overlaps(held); }, leaf, counters);
+  }
+
+  /// As Bvh::visit: calls `leaf(triangle)` once for every triangle with a box for which `keep_box(box) -> bool` holds.
+  /// It must hold for every box that contains a box for which it holds: half spaces, frusta, beams.
+  template <typename Keep, typename Leaf>
+  void visit(Keep&& keep_box, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
+
+  // Looking inside.
+
+  std::size_t primitive_count() const { return arrays_.boxes.size(); }
+  std::size_t group_count() const { return group_first_.size(); }
+  Aabb<double> bounds() const { return in_world(root_box()); }
+  const WideArrays& arrays() const { return arrays_; }
+  const WideSettings& settings() const { return settings_; }
+
+  /// Expected cost of a long random ray by the surface-area heuristic, no unit; from a sum that every edit keeps.
+  double sah_cost() const {
+    const double root_m2 = static_cast<double>(root_box().half_area());
+    return sah_from_area(arrays_.weighted_area_m2 + arrays_.costs.node * root_m2, root_m2);
+  }
+  BvhQuality quality() const { return {sah_cost(), sah_at_build_}; }
+
+  /// A sentence about the first broken promise, empty when all are kept. `boxes`: the triangles' boxes as they are now.
+  std::string validate(Boxes boxes) const;
+
+ private:
+  using Hits = WideRay::PatchHits;
+  static bool has(std::uint32_t lanes, std::uint32_t lane) { return (lanes >> lane & 1U) != 0; }
+
+  detail::WideView view() const { return {arrays_.nodes, arrays_.blocks}; }
+  Aabb<float> root_box() const { return arrays_.nodes.empty() ? Aabb<float>{} : arrays_.nodes[0].box(); }
+  Aabb<double> in_world(const Aabb<float>& box) const;
+
+  /// Where a ray that meets a patch does so, and in which of its triangles; absent where that is not from t_min to
+  /// t_max. The same whatever has shown that the ray meets the patch.
+  std::optional<WideHit> hit_on(std::uint32_t patch, const Ray<double>& ray) const {
+    const PatchPlanes& planes = arrays_.planes[patch];
+    const auto [t, side] = planes.meet(ray);
+    if (!(t >= ray.t_min && t <= ray.t_max) || !std::isfinite(t)) return std::nullopt;
+    return WideHit{t, planes.triangle[side]};
+  }
+  /// Whether the line of a ray meets a triangle of the patch, in double precision.
+  bool meets_exactly(const Patch& patch, const Ray<double>& ray) const {
+    const WatertightRay exact(ray);
+    return std::ranges::any_of(patch.triangles(), [&](std::uint32_t triangle) {
+      return exact.intersect(arrays_.corners_m[triangle]).has_value();
+    });
+  }
+  template <typename Considers>
+  bool is_considered(std::uint32_t patch, Considers& considers) const {
+    if constexpr (std::is_same_v<std::remove_const_t<Considers>, EveryTriangle>) return true;
+    return considers(arrays_.planes[patch].triangle[0]);
+  }
+  /// Takes over a hit where it is nearer, or as near and of a smaller number.
+  void offer(std::uint32_t patch, const Ray<double>& ray, std::optional<WideHit>& best) const;
+
+  template <typename Considers>
+  std::optional<WideHit> nearest_among(const Ray<double>& ray, const WideRay& wide, Considers& considers,
+                                       TraversalCounters& counters) const;
+  template <typename Considers>
+  std::optional<WideHit> nearest_of_all(const Ray<double>& ray, Considers& considers,
+                                        TraversalCounters& counters) const;
+
+  void require_input(const TriangleView& mesh, Boxes boxes) const;
+  void note_moved_unit(std::uint32_t group);
+  bool take_out_and_hang(std::uint32_t group);
+  void take_out(WidePlace place);
+  /// A node where something might hang, and what the nodes down to it would grow by.
+  struct Branch {
+    double cost_m2;
+    std::uint32_t node;
+    std::uint32_t level;
+    bool operator<(const Branch& other) const { return cost_m2 > other.cost_m2; }  // the cheapest on top
+  };
+  /// No deeper than this does an edit hang anything; units below have their own levels.
+  static constexpr std::uint32_t edit_levels = 40;
+  struct Spot {
+    double cost_m2 = std::numeric_limits<double>::infinity();
+    std::uint32_t node = 0;
+    std::uint32_t lane = simd_lanes;  ///< of a free lane; or of the entry to join, with `joins`
+    bool joins = false;
+  };
+  Spot cheapest_spot(const Aabb<float>& box);
+  void offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best);
+  void hang_at(WideChild child, const Aabb<float>& box, const Spot& spot);
+
+  WideArrays arrays_;
+  WideSettings settings_;
+  std::vector<std::uint32_t> group_first_;
+  double sah_at_build_ = 0.0;
+
+  std::vector<std::uint32_t> dirty_blocks_;
+  std::vector<char> block_is_dirty_;
+  std::vector<std::uint32_t> moved_units_;
+  std::vector<char> unit_is_moved_;
+  std::vector<float> area_when_hung_m2_;  ///< per group: half surface of the node around, when the unit came there
+  std::vector<Branch> branches_;
+};
+
+}  // namespace dcem
+
+#include "dcem/accel/wide_edit.hpp"
+#include "dcem/accel/wide_queries.hpp"
