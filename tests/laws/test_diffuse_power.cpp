@@ -1217,6 +1217,13 @@ TEST_CASE("diffuse power: no point of a tile brings more than the limit that ste
       highest = std::max(highest, scattered.per_m2(path, from, to).power_ratio);
     }
     CHECK(highest <= limit * (1.0 + 1e-12));
+    // e^(−1/2) of a lobe of order α is at √(2/α); what is wider than 1 rad is as good as Lambertian.
+    const int narrowest = wall.scattering.pattern == ScatteringPattern::lambertian ? 1
+                          : wall.scattering.pattern == ScatteringPattern::directive
+                              ? wall.scattering.lobe
+                              : std::max(narrow.lobe, narrow.back_lobe);
+    CHECK(scattered.pattern_width_rad(MaterialId(0)) ==
+          doctest::Approx(std::min(1.0, std::sqrt(2.0 / narrowest))).epsilon(1e-15));
     close += highest > 0.3 * limit;
   }
   CHECK(close > 100);  // a limit that is always far off would be of no use
