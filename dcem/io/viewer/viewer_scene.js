@@ -199,6 +199,8 @@ class Segments {
     }
   }
 
+  ends(index) { return [this.values.start, this.values.stop].map((array) => array.subarray(12 * index, 12 * index + 3)); }
+
   show() {
     this.geometry.setDrawRange(0, 6 * this.count);
     for (const name of ["start", "stop", "tint"]) {
