@@ -24,5 +24,5 @@ build/release/bin/dcem map data/office_map.json -o out/office_map
 step "Done. Results are in $PWD/out; open these:"
 find "$PWD/out/town_drive" -name '*.html'
 find "$PWD/out/office_map" -name '*.png' | sort
-echo "and, for each link of the drive, power over time (plot_*.svg), its delay profile (pdp_*.png) and its paths (taps_*.png):"
-find "$PWD/out/town_drive" -name 'plot_*.svg' -o -name 'pdp_*.png' | sort | head -n 6
+echo "and, for each link of the drive, power over time (plot_*.svg), its delay profile (pdp_*) and its paths (taps_*.png), such as:"
+find "$PWD/out/town_drive" -name '*_roof_on_car1*' | sort

@@ -1,6 +1,9 @@
 #include "program_job.hpp"
 
+#include <unistd.h>
+
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <string_view>
 
@@ -33,6 +36,14 @@ FrameRange parse_frames(const std::string& text, std::size_t available) {
   return {*first, *last};
 }
 
+double memory_of_machine_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+std::string gigabytes(double bytes) {
+  return std::to_string(std::llround(bytes / 1e9)) + " GB";
+}
+
 }  // namespace
 
 Job prepare_job(const ScenarioOptions& options) {
@@ -52,7 +63,20 @@ Simulator<> make_simulator(Job& job, const ScenarioOptions& options) {
   }
 }
 
+void require_grid_memory(const io::Scenario& scenario, const std::string& file, double point_bytes) {
+  const double available_bytes = memory_of_machine_bytes();
+  for (const ReceiverGrid& grid : scenario.grids) {
+    const double needed_bytes = point_bytes * static_cast<double>(grid.size());
+    if (needed_bytes <= available_bytes) continue;
+    throw io::InputError(file, "grid '" + grid.id + "': " + std::to_string(grid.size()) + " points need " +
+                                   gigabytes(needed_bytes) + "; expected less than the " + gigabytes(available_bytes) +
+                                   " of this machine's memory");
+  }
+}
+
 void expand_grids(io::Scenario& scenario, const std::string& file) {
+  const auto transmitters = static_cast<double>(scenario.scene.transmitters().size());
+  require_grid_memory(scenario, file, sizeof(Device) + transmitters * sizeof(LinkResult));
   for (const ReceiverGrid& grid : scenario.grids) {
     for (std::size_t row = 0; row < grid.rows(); ++row) {
       for (std::size_t column = 0; column < grid.columns(); ++column) {

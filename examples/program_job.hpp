@@ -20,6 +20,10 @@ struct Job {
 };
 Job prepare_job(const ScenarioOptions& options);
 
+/// Throws InputError, with the memory that it would take, where a grid whose points take `point_bytes` each is more
+/// than this machine holds.
+void require_grid_memory(const io::Scenario& scenario, const std::string& file, double point_bytes);
+
 /// Every point of every grid becomes a receiver of the scene. Throws InputError with the name of the scenario file.
 void expand_grids(io::Scenario& scenario, const std::string& file);
 

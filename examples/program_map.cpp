@@ -164,6 +164,8 @@ void map_scenario(const ScenarioOptions& options) {
     throw io::InputError(options.scenario, "no receiver is a grid; expected one with the key 'grid' to draw a map of");
   }
   check_names(job, options.scenario);
+  const auto transmitters = static_cast<double>(job.scenario.scene.transmitters().size());
+  require_grid_memory(job.scenario, options.scenario, transmitters * sizeof(RadioMapPoint));
   io::FrameSource frames(job.scenario);
   Simulator<> simulator = make_simulator(job, options);
   io::OutputFolder folder(job.folder);

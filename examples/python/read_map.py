@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Reads a map's arrays (map_<grid>_<tx>.npz of `dcem map`) and draws one of them.
 
-python3 read_map.py out/office_map/map_floor_ap.npz [power_incoherent_dbm [PICTURE.png]]"""
+python3 read_map.py out/office_map/map_floor_corridor.npz [power_incoherent_dbm [PICTURE.png]]"""
 import sys
 
 import matplotlib

@@ -283,9 +283,11 @@ TEST_CASE("a map that cannot be written or held says so in one line") {
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;
   write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1,1],"count":[100000,10000]}})");
-  check_refused(folder, "map street.json", "1000000000 points need");
+  check_refused(folder, "map street.json", "1000000000 points need 368 GB");
   write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1,1],"count":[0,5]}})");
   check_refused(folder, "map street.json", "count");
+  write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1e-7,1],"count":[1,5]}})");
+  check_refused(folder, "map street.json", "spacing_m[0]");
   write_scenario(folder, grid_receiver, R"(,"noise":{"noise_figure_db":3})");
   check_refused(folder, "map street.json", "bandwidth_hz");
   write_scenario(folder, grid_receiver, R"(,"noise":{"bandwidth_hz":-1})");
@@ -324,6 +326,52 @@ TEST_CASE("a map that cannot be written or held says so in one line") {
   CHECK(std::count(error.begin(), error.end(), '\n') == 1);
   CHECK(error.find("; expected ") != std::string::npos);
   CHECK(folder.names() == before);
+}
+
+TEST_CASE("a grid that is beyond the machine's memory is refused with the memory it would need") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1e-3,1e-3],"count":[10000,10000]}})");
+  // A thousand transmitters: tens of terabytes.
+  std::string text = file_bytes(folder / "street.json"), more;
+  for (int index = 0; index < 1000; ++index) {
+    more += R"({"id":"t)" + std::to_string(index) + R"(","position_m":[-20,1,5],"power_dbm":30},)";
+  }
+  text.insert(text.find(R"({"id":"bs")"), more);
+  write(folder / "street.json", text);
+  for (const char* command : {"map", "run", "verify"}) {
+    check_refused(folder, std::string(command) + " street.json", "grid 'area': 100000000 points need ");
+  }
+}
+
+TEST_CASE("maps without a value, or of equal values, are sound") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  // Behind the wall nothing arrives; on the wall nothing can stand; the whole grid within a few micrometres.
+  const std::vector<std::pair<std::string, std::string>> grids{
+      {"nothing", R"("origin_m":[-5,12,1.5],"spacing_m":[2,2],"count":[6,4])"},
+      {"obstructed", R"("origin_m":[-5,10,1.5],"spacing_m":[2,1e-6],"count":[6,4])"},
+      {"equal", R"("origin_m":[-5,2,1.5],"spacing_m":[1e-6,1e-6],"count":[6,4])"},
+      {"single", R"("origin_m":[-5,2,1.5],"spacing_m":[1,1],"count":[1,1])"}};
+  for (const auto& [name, grid] : grids) {
+    CAPTURE(name);
+    write_scenario(folder, R"({"id":"area","grid":{)" + grid + "}}");
+    const Outcome outcome = dcem_program(folder, "map street.json --frames 0:1 --quiet -o " + name);
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.error.empty());
+    const auto result = folder / name;
+    CHECK(file_bytes(result / "map_area_bs.png").starts_with("\x89PNG"));
+    CHECK(file_bytes(result / "map_area_best_server.png").starts_with("\x89PNG"));
+    for (const auto& file : std::filesystem::directory_iterator(result)) {
+      const std::string extension = file.path().extension().string();
+      if (extension != ".csv" && extension != ".asc" && extension != ".svg") continue;
+      const std::string bytes = file_bytes(file.path());
+      CAPTURE(file.path().string());
+      CHECK(bytes.size() > 30);
+      CHECK(bytes.find("nan") == std::string::npos);
+      CHECK(bytes.find("inf") == std::string::npos);
+    }
+  }
 }
 
 TEST_CASE("bad usage and bad input end with one line, exit code 2 and no output") {

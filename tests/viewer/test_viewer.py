@@ -5,6 +5,7 @@
 
 Exits with 77 (skipped) where Chromium is not installed, or the program has no viewer.
 """
+import csv
 import json
 import math
 import pathlib
@@ -260,6 +261,86 @@ class ViewerTest(unittest.TestCase):
         # Drawn in software, 20 frames per second of two processors; how many there are in a second depends on what else
         # runs on the machine, the work of a frame does not.
         self.assertLess(processor_s, 0.1)
+
+
+class MapTest(unittest.TestCase):
+    """The map as ground texture: its colours are those of the CSV, and they go when it is switched off."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        write_case(cls.folder)
+        scenario = json.loads((cls.folder / "street.json").read_text())
+        scenario["receivers"] = [{"id": "area", "grid": {"origin_m": [-48, -38, 1.5], "spacing_m": [2, 2], "count": [49, 39]}}]
+        scenario["propagation"] = {"max_reflections": 1, "max_transmissions": 1, "max_diffractions": 0, "discovery": "exact"}
+        scenario["time"]["frames"] = 1
+        scenario["output"] = {"html": True, "map": ["csv"]}
+        (cls.folder / "area.json").write_text(json.dumps(scenario))
+        subprocess.run([PROGRAM, "map", cls.folder / "area.json", "-o", cls.folder / "out", "--quiet"], check=True)
+        with (cls.folder / "out" / "map_area_mast.csv").open() as lines:
+            cls.points = list(csv.DictReader(lines))
+        cls.page = Browser(1280, 820)
+        cls.page.open(cls.folder / "out" / "viewer.html")
+
+    @classmethod
+    def tearDownClass(cls):
+        if hasattr(cls, "page"):
+            cls.page.close()
+        cls.temporary.cleanup()
+
+    def expected_colours(self):
+        """By point: viridis from the 2nd percentile to the maximum, outwards to 5 dB; grey where nothing can stand."""
+        steps = self.page.evaluate("dcemViewer.head.viridis")
+        powers = sorted(float(point["power_incoherent_dbm"]) for point in self.points if point["power_incoherent_dbm"])
+        low, high = 5 * math.floor(powers[int(0.02 * (len(powers) - 1))] / 5), 5 * math.ceil(powers[-1] / 5)
+        colours = {}
+        for point in self.points:
+            place = (float(point["x_m"]), float(point["y_m"]), float(point["z_m"]))
+            if point["path_count"] == "":
+                colours[place] = (150, 156, 162)
+            elif point["power_incoherent_dbm"]:
+                share = min(max((float(point["power_incoherent_dbm"]) - low) / (high - low), 0), 1) * (len(steps) - 1)
+                below = min(int(share), len(steps) - 2)
+                colours[place] = tuple(a + (share - below) * (b - a) for a, b in zip(steps[below], steps[below + 1]))
+        return colours
+
+    def colours_seen(self, places, name):
+        """The pixel at each place, looking straight down."""
+        picture = self.page.screenshot(self.page.bounds("#view"), SHOTS and SHOTS / f"{name}.png")
+        pixels = self.page.evaluate(
+            f"(() => {{ const c = dcemViewer.head.centre_m; return {json.dumps(places)}.map((p) => {{"
+            "const at = dcemViewer.project(p.map((v, i) => v - c[i])); return [at.x, at.y]; }); })()")
+        return [tuple(picture.rows[int(y)][picture.channels * int(x):][:3]) for x, y in pixels]
+
+    def choose_map(self, index):
+        self.page.evaluate(f"{{ const s = document.querySelector('#map_choice'); s.selectedIndex = {index};"
+                           "s.dispatchEvent(new Event('change')); true }")
+        self.page.settle()
+
+    def test_the_map_lies_on_the_ground_in_its_colours_until_it_is_switched_off(self):
+        self.page.click_on("#view_above")
+        colours = self.expected_colours()
+        # The symbol of the transmitter and its name hide what is under them.
+        places = [place for place in colours if not (-6 < place[0] < 20 and -6 < place[1] < 6)]
+        self.assertGreater(len(places), 1000)
+        self.assertGreater(sum(colours[place] == (150, 156, 162) for place in places), 5)  # in the van and the block, on the wall
+        self.assertGreater(len({tuple(map(round, colours[place])) for place in places}), 100)
+
+        def alike(seen):
+            return sum(max(abs(a - b) for a, b in zip(colour, colours[place])) <= 2 for colour, place in zip(seen, places))
+
+        self.assertEqual(self.page.evaluate("document.querySelector('#map_choice').options[0].text"), "mast over area")
+        with_map = self.colours_seen(places, "map")
+        # Lines of walls and of the van run over some points.
+        self.assertGreater(alike(with_map), 0.95 * len(places))
+        self.choose_map(1)
+        without = self.colours_seen(places, "map_off")
+        self.assertEqual(alike(without), 0)
+        self.assertLess(len(set(without)), 30)
+        self.choose_map(0)
+        self.assertEqual(self.colours_seen(places, "map_again"), with_map)
+        self.assertEqual(self.page.errors, [])
 
 
 frames_per_second = """(async () => {

@@ -13,6 +13,8 @@ namespace {
 
 /// Points of one grid; a map keeps what is written for each of them until it is done.
 constexpr double most_grid_points = 1e8;
+/// What tables and pictures tell apart.
+constexpr double least_grid_spacing_m = 1e-6;
 /// Numbers in the channel matrix of one path: 16 MB.
 constexpr std::size_t most_channel_entries = std::size_t{1} << 20;
 
@@ -34,7 +36,7 @@ ReceiverGrid read_grid(const JsonValue& value) {
   const auto spacing = object.at("spacing_m").elements(2, "two numbers [along x, along y]");
   const auto count = object.at("count").elements(2, "two numbers [columns, rows]");
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    grid.spacing_m[axis] = spacing[axis].number({0.0, 1e6, true});
+    grid.spacing_m[axis] = spacing[axis].number({least_grid_spacing_m, 1e6});
     grid.count[axis] = read_count(count[axis]);
   }
   const double points = static_cast<double>(grid.count[0]) * static_cast<double>(grid.count[1]);

@@ -416,8 +416,7 @@ class Viewer {
   }
 
   segmentDistance(index, x, y) {
-    const { start, stop } = this.rays.values;
-    const a = this.project(start.subarray(3 * index, 3 * index + 3)), b = this.project(stop.subarray(3 * index, 3 * index + 3));
+    const [a, b] = this.rays.ends(index).map((end) => this.project(end));
     if (!a || !b) return Infinity;
     const dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
     const share = square > 0 ? Math.min(Math.max(((x - a.x) * dx + (y - a.y) * dy) / square, 0), 1) : 0;

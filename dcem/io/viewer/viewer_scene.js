@@ -125,7 +125,8 @@ class Surfaces {
   }
 }
 
-// Lines of a width in pixels: each segment is a quad that the vertex shader lays out on the screen.
+// Lines of a width in pixels: each segment is a quad that the vertex shader lays out on the screen. Its four vertices are
+// written out, since a browser that draws in software takes every instance for a picture of its own.
 const rayVertexShader = `
   attribute vec3 start; attribute vec3 stop; attribute vec3 tint;
   uniform vec2 size; uniform float width; uniform float nearest;
@@ -148,10 +149,7 @@ const rayFragmentShader = `
 
 class Segments {
   constructor(scene, layers) {
-    this.geometry = new THREE.InstancedBufferGeometry();
-    const quad = new Float32Array([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0]);
-    this.geometry.setAttribute("position", new THREE.BufferAttribute(quad, 3));
-    this.geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    this.geometry = new THREE.BufferGeometry();
     this.layers = layers.map((layer) => {
       const material = new THREE.ShaderMaterial({
         uniforms: { size: { value: new THREE.Vector2(1, 1) }, width: { value: 2.5 }, nearest: { value: 0.1 },
@@ -169,13 +167,19 @@ class Segments {
   }
 
   reserve(capacity) {
-    const old = this.values;
+    const old = this.values, corners = new Float32Array(12 * capacity), index = new Uint32Array(6 * capacity);
+    for (let i = 0; i < capacity; ++i) {
+      corners.set([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], 12 * i);
+      index.set([0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner), 6 * i);
+    }
     this.capacity = capacity;
+    this.geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
+    this.geometry.setIndex(new THREE.BufferAttribute(index, 1));
     this.values = {};
     for (const name of ["start", "stop", "tint"]) {
-      this.values[name] = new Float32Array(3 * capacity);
+      this.values[name] = new Float32Array(12 * capacity);
       if (old) this.values[name].set(old[name]);
-      const attribute = new THREE.InstancedBufferAttribute(this.values[name], 3);
+      const attribute = new THREE.BufferAttribute(this.values[name], 3);
       attribute.setUsage ? attribute.setUsage(THREE.DynamicDrawUsage) : (attribute.dynamic = true);
       this.geometry.setAttribute(name, attribute);
     }
@@ -185,19 +189,23 @@ class Segments {
 
   add(from, to, tint) {
     if (this.count === this.capacity) this.reserve(2 * this.capacity);
-    const at = 3 * this.count++;
-    for (let i = 0; i < 3; ++i) {
-      this.values.start[at + i] = from[i];
-      this.values.stop[at + i] = to[i];
-      this.values.tint[at + i] = tint[i];
+    const { start, stop, tint: colours } = this.values, first = 12 * this.count++;
+    for (let at = first; at < first + 12; at += 3) {
+      for (let i = 0; i < 3; ++i) {
+        start[at + i] = from[i];
+        stop[at + i] = to[i];
+        colours[at + i] = tint[i];
+      }
     }
   }
 
+  ends(index) { return [this.values.start, this.values.stop].map((array) => array.subarray(12 * index, 12 * index + 3)); }
+
   show() {
-    this.geometry.maxInstancedCount = this.count;
+    this.geometry.setDrawRange(0, 6 * this.count);
     for (const name of ["start", "stop", "tint"]) {
       const attribute = this.geometry.attributes[name];
-      attribute.updateRange = { offset: 0, count: Math.max(3 * this.count, 3) };
+      attribute.updateRange = { offset: 0, count: Math.max(12 * this.count, 3) };
       attribute.needsUpdate = true;
     }
   }
