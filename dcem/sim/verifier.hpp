@@ -87,7 +87,7 @@ class Verifier {
 
   Discovery discovery_;
   Simulator<Surface, BruteForce<double>> alone_;          ///< solves single paths
-  std::optional<Simulator<Surface, Bvh<double>>> rival_;  ///< the other discovery
+  std::optional<Simulator<Surface>> rival_;  ///< the other discovery
   VerificationReport report_;
 };
 
