@@ -80,6 +80,7 @@ class PatchBuilder {
   PatchBuilder(const TriangleView& mesh, double flatness) : mesh_(mesh), flatness_(flatness) {}
 
   void append(std::uint32_t first, std::uint32_t last, std::vector<Patch>& patches) {
+    if (last == first) return;
     collect_edges(first, last);
     collect_pairs();
     taken_.assign(last - first, false);
@@ -97,7 +98,6 @@ class PatchBuilder {
  private:
   struct Edge {
     std::uint32_t low, high, triangle;
-    auto key() const { return std::tuple(low, high, triangle); }
   };
   struct Pair {
     double length_m;
@@ -105,16 +105,29 @@ class PatchBuilder {
     Patch patch;
   };
 
+  /// All edges, by their vertices: a counting sort over the lower one, then short lists.
   void collect_edges(std::uint32_t first, std::uint32_t last) {
-    edges_.clear();
-    for (std::uint32_t triangle = first; triangle < last; ++triangle) {
-      const auto& corners = mesh_.triangles[triangle];
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const std::uint32_t from = corners[corner], to = corners[(corner + 1) % 3];
-        edges_.push_back({std::min(from, to), std::max(from, to), triangle});
+    first_edge_.assign(mesh_.vertices_m.size() + 1, 0);
+    const auto for_each_edge = [&](auto&& visit) {
+      for (std::uint32_t triangle = first; triangle < last; ++triangle) {
+        const auto& corners = mesh_.triangles[triangle];
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          const std::uint32_t from = corners[corner], to = corners[(corner + 1) % 3];
+          visit(Edge{std::min(from, to), std::max(from, to), triangle});
+        }
       }
+    };
+    for_each_edge([&](const Edge& edge) { ++first_edge_[edge.low + 1]; });
+    for (std::size_t vertex = 1; vertex < first_edge_.size(); ++vertex) first_edge_[vertex] += first_edge_[vertex - 1];
+    edges_.resize(3 * std::size_t{last - first});
+    next_edge_.assign(first_edge_.begin(), first_edge_.end() - 1);
+    for_each_edge([&](const Edge& edge) { edges_[next_edge_[edge.low]++] = edge; });
+    for (std::size_t vertex = 0; vertex + 1 < first_edge_.size(); ++vertex) {
+      std::sort(edges_.begin() + first_edge_[vertex], edges_.begin() + first_edge_[vertex + 1],
+                [](const Edge& one, const Edge& other) {
+                  return one.high != other.high ? one.high < other.high : one.triangle < other.triangle;
+                });
     }
-    std::sort(edges_.begin(), edges_.end(), [](const Edge& one, const Edge& other) { return one.key() < other.key(); });
   }
 
   void collect_pairs() {
@@ -166,6 +179,7 @@ class PatchBuilder {
   const TriangleView& mesh_;
   double flatness_;
   std::vector<Edge> edges_;
+  std::vector<std::uint32_t> first_edge_, next_edge_;  ///< per vertex
   std::vector<Pair> pairs_;
   std::vector<bool> taken_;
 };

@@ -81,6 +81,9 @@ struct WideArrays {
   WideCosts costs;
   double weighted_area_m2 = 0.0;  ///< Σ cost · half surface over all nodes and blocks but the root
 
+  /// Empties everything and keeps the memory.
+  void clear();
+
   WidePlace place_of(WideChild child) const {
     return child.is_block() ? block_place[child.index()] : node_place[child.index()];
   }
@@ -105,7 +108,15 @@ struct WideArrays {
     corners_m[triangle] = corners;
     boxes[triangle] = box;
   }
-  /// Writes the numbers of a block from the triangles of its patches. Returns the box around it.
+  /// Keeps `extent_m` a bound of what is written.
+  void note_extent(const Aabb<float>& box) {
+    if (box.empty()) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      extent_m = std::max({extent_m, std::abs(box.min[axis]), std::abs(box.max[axis])});
+    }
+  }
+
+  /// Writes the numbers of a block from the triangles of its patches, and nothing else. Returns the box around it.
   Aabb<float> write_block(std::uint32_t block);
 
   /// The single-precision box around a double one, from the tree's origin.
@@ -126,6 +137,15 @@ struct WideArrays {
   void write_planes(const std::array<Vec3, 4>& world_m, const Patch& patch, PatchPlanes& result) const;
   std::array<Vec3, 4> quadrilateral(const Patch& patch) const;
 };
+
+inline void WideArrays::clear() {
+  const auto empty = [](auto&... lists) { (lists.clear(), ...); };
+  empty(nodes, node_place, node_unit, blocks, block_place, block_unit, group_of_block, free_nodes, patches, planes,
+        patch_of_triangle, boxes, corners_m, unit_root);
+  origin_m = Vec3(0.0);
+  extent_m = 0.0F;
+  weighted_area_m2 = 0.0;
+}
 
 inline std::uint32_t WideArrays::take_node() {
   if (!free_nodes.empty()) {
@@ -178,12 +198,15 @@ inline std::size_t WideArrays::tighten_above(std::uint32_t node) {
 
 inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
   if (box.empty()) return {};
-  constexpr float infinity = std::numeric_limits<float>::infinity();
+  // Two roundings, of the difference and to float: less than one unit of the last place together. What is moved by is
+  // one to two of them. (std::nextafter is a call.)
+  const auto room = [](float value) { return std::abs(value) * 0x1p-23F + std::numeric_limits<float>::min(); };
   Aabb<float> result;
   for (int axis = 0; axis < 3; ++axis) {
-    // Two roundings, of the difference and to float; one step outwards is more than both.
-    result.min[axis] = std::nextafter(static_cast<float>(box.min[axis] - origin_m[axis]), -infinity);
-    result.max[axis] = std::nextafter(static_cast<float>(box.max[axis] - origin_m[axis]), infinity);
+    const auto low = static_cast<float>(box.min[axis] - origin_m[axis]);
+    const auto high = static_cast<float>(box.max[axis] - origin_m[axis]);
+    result.min[axis] = low - room(low);
+    result.max[axis] = high + room(high);
   }
   return result;
 }
@@ -219,11 +242,7 @@ inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
     if ((block.lanes >> lane & 1U) != 0) write_lane(block, lane, held[lane], planes[index * simd_lanes + lane]);
   }
-  const Aabb<float> rounded = rounded_out(box);
-  for (int axis = 0; axis < 3; ++axis) {
-    extent_m = std::max({extent_m, std::abs(rounded.min[axis]), std::abs(rounded.max[axis])});
-  }
-  return rounded;
+  return rounded_out(box);
 }
 
 inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& patch,
@@ -255,6 +274,10 @@ inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const 
   // Without a plane nothing is certain, but every ray near it is asked.
   const double bend_m = length > 0.0 ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
   block.bend_m[lane] = patch.is_pair() ? static_cast<float>(bend_m) : 0.0F;
+  // Vertices may have moved: what is no longer convex is asked of every ray.
+  if (patch.is_pair() && !detail::is_convex(a, b, c, d)) {
+    block.bend_m[lane] = std::numeric_limits<float>::infinity();
+  }
 }
 
 inline void WideArrays::write_planes(const std::array<Vec3, 4>& world_m, const Patch& patch,

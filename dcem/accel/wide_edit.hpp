@@ -13,18 +13,36 @@ inline void WideTree::build_grouped(const TriangleView& mesh, Boxes boxes, std::
                                     const WideSettings& settings) {
   require_input(mesh, boxes);
   require_valid_groups(group_first, boxes.size());
-  WideBuilder builder(settings);
   settings_ = settings;
   group_first_.assign(group_first.begin(), group_first.end());
-  arrays_ = {};
-  arrays_.costs = settings.costs;
+  patches_.clear();
+  first_patch_.assign(1, 0);
+  detail::PatchBuilder pairing(mesh, settings_.pair_flatness);
+  for (std::size_t group = 0; group < group_first.size(); ++group) {
+    const bool is_last = group + 1 == group_first.size();
+    pairing.append(group_first[group], is_last ? static_cast<std::uint32_t>(mesh.size()) : group_first[group + 1],
+                   patches_);
+    first_patch_.push_back(static_cast<std::uint32_t>(patches_.size()));
+  }
+  plant(mesh, boxes);
+}
+
+inline void WideTree::rebuild(const TriangleView& mesh, Boxes boxes) {
+  require_input(mesh, boxes);
+  if (boxes.size() != primitive_count()) throw std::invalid_argument("one box per triangle of the tree is needed");
+  plant(mesh, boxes);
+}
+
+inline void WideTree::plant(const TriangleView& mesh, Boxes boxes) {
+  arrays_.clear();
+  arrays_.costs = settings_.costs;
   arrays_.boxes.resize(boxes.size());
   arrays_.corners_m.resize(boxes.size());
   arrays_.patch_of_triangle.resize(boxes.size());
   for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
     arrays_.set_triangle(triangle, mesh.corners_m(triangle), canonical_box(boxes[triangle]));
   }
-  builder.build(arrays_, mesh, group_first_);
+  WideBuilder(settings_).build(arrays_, patches_, first_patch_);
   sah_at_build_ = sah_cost();
   block_is_dirty_.assign(arrays_.blocks.size(), 0);
   unit_is_moved_.assign(group_first_.size(), 0);
@@ -35,10 +53,6 @@ inline void WideTree::build_grouped(const TriangleView& mesh, Boxes boxes, std::
     if (arrays_.unit_root[group].is_none()) continue;
     area_when_hung_m2_[group] = arrays_.nodes[arrays_.place_of(arrays_.unit_root[group]).node()].box().half_area();
   }
-}
-
-inline void WideTree::rebuild(const TriangleView& mesh, Boxes boxes) {
-  build_grouped(mesh, boxes, std::vector<std::uint32_t>(group_first_), WideSettings(settings_));
 }
 
 inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes) {
@@ -64,6 +78,7 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
     block_is_dirty_[block] = 0;
     const WidePlace place = arrays_.block_place[block];
     const Aabb<float> box = arrays_.write_block(block);
+    arrays_.note_extent(box);
     if (box != arrays_.box_at(place)) {
       arrays_.set_box(place, box);
       report.nodes_visited += arrays_.tighten_above(place.node());

@@ -1,5 +1,6 @@
 #pragma once
-/// Keeps a wide tree fit while the scene moves: follows what moved, and hangs it elsewhere where its old place has grown.
+/// Keeps a wide tree fit while the scene moves: follows what moved, and hangs it elsewhere where its old place has
+/// grown.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,8 +18,8 @@ class WideMaintainer {
 
   const UpkeepSettings& settings() const { return settings_; }
 
-  /// Brings the tree up to date after the triangles in `moved` have got the corners and boxes given here. A unit that was
-  /// hung elsewhere counts as one rebuilt subtree of one node.
+  /// Brings the tree up to date after the triangles in `moved` have got the corners and boxes given here. A unit that
+  /// was hung elsewhere counts as one rebuilt subtree of one node.
   UpkeepReport update(WideTree& tree, std::span<const std::uint32_t> moved, const TriangleView& mesh,
                       WideTree::Boxes boxes) const {
     UpkeepReport report;

@@ -58,7 +58,7 @@ class WideTree {
     const std::uint32_t whole = 0;
     build_grouped(mesh, boxes, {&whole, 1}, settings);
   }
-  /// Builds everything anew, with the groups and settings of the last build.
+  /// Builds everything anew, with the groups, the patches and the settings of the last build.
   void rebuild(const TriangleView& mesh, Boxes boxes);
 
   // Following motion.
@@ -183,6 +183,7 @@ class WideTree {
                                         TraversalCounters& counters) const;
 
   void require_input(const TriangleView& mesh, Boxes boxes) const;
+  void plant(const TriangleView& mesh, Boxes boxes);
   void note_moved_unit(std::uint32_t group);
   bool take_out_and_hang(std::uint32_t group);
   void take_out(WidePlace place);
@@ -208,6 +209,8 @@ class WideTree {
   WideArrays arrays_;
   WideSettings settings_;
   std::vector<std::uint32_t> group_first_;
+  std::vector<Patch> patches_;              ///< by group
+  std::vector<std::uint32_t> first_patch_;  ///< one more entry than groups
   double sah_at_build_ = 0.0;
 
   std::vector<std::uint32_t> dirty_blocks_;
