@@ -48,6 +48,7 @@ class WideBuilder {
     kinds_.clear();
     patches_.clear();
     arrays.unit_root.assign(group_first.size(), WideChild{});
+    arrays.take_node();  // the root is node 0, before the nodes of any unit
     for (std::uint32_t group = 0; group < group_first.size(); ++group) {
       const auto last =
           group + 1 < group_first.size() ? group_first[group + 1] : static_cast<std::uint32_t>(mesh.size());
@@ -55,7 +56,6 @@ class WideBuilder {
       pairing.append(group_first[group], last, patches_);
       if (patches_.size() > first_patch) add_group(group, first_patch, items);
     }
-    arrays.take_node();
     if (!items.empty()) plant_root(items);
   }
 
