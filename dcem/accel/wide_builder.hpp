@@ -41,7 +41,7 @@ class WideBuilder {
     arrays_ = &arrays;
     patches_ = patches;
     place_origin();
-    arrays.take_node();
+    arrays.take_node();  // the root is node 0, before the nodes of any unit
     const std::size_t groups = first_patch.size() - 1;
     arrays.unit_root.assign(groups, WideChild{});
     std::vector<WideItem> items;

@@ -189,7 +189,8 @@ inline void WideTree::hang_at(WideChild child, const Aabb<float>& box, const Spo
     place = WidePlace::at(node, 1);
   }
   arrays_.hang(child, place, box);
-  arrays_.tighten_above(place.node());
+  // From the node that was there: a new one below it is tight already, and the way up would end at it.
+  arrays_.tighten_above(spot.node);
 }
 
 inline std::string WideTree::validate(Boxes boxes) const {
