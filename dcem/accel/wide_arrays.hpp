@@ -134,7 +134,7 @@ struct WideArrays {
     return cost * static_cast<double>(box.half_area());
   }
   void write_lane(PatchBlock& block, std::uint32_t lane, const Patch& patch, PatchPlanes& planes_of_patch) const;
-  void write_planes(const std::array<Vec3, 4>& world_m, const Patch& patch, PatchPlanes& result) const;
+  void write_planes(const Patch& patch, PatchPlanes& result) const;
   std::array<Vec3, 4> quadrilateral(const Patch& patch) const;
 };
 
@@ -248,7 +248,7 @@ inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
 inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& patch,
                                    PatchPlanes& planes_of_patch) const {
   const std::array<Vec3, 4> world_m = quadrilateral(patch);
-  write_planes(world_m, patch, planes_of_patch);
+  write_planes(patch, planes_of_patch);
   const Vec3 centre_m = origin_m + Vec3(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
   std::array<Vec3, 4> corner_m;
   for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -280,19 +280,25 @@ inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const 
   }
 }
 
-inline void WideArrays::write_planes(const std::array<Vec3, 4>& world_m, const Patch& patch,
-                                     PatchPlanes& result) const {
-  const auto& [a, b, c, d] = world_m;
+inline void WideArrays::write_planes(const Patch& patch, PatchPlanes& result) const {
   const auto through = [](const Vec3& normal, const Vec3& point) {
     return PatchPlane{normal, glm::dot(normal, point)};
   };
-  result.triangle = patch.triangle;
-  result.plane[0] = through(glm::cross(b - a, c - a), a);
+  // Every number comes from one triangle in the order of its own corners, the pair's smaller number first: then t does
+  // not feel how pairing has turned or ordered them.
+  const bool swapped = patch.is_pair() && patch.triangle[1] < patch.triangle[0];
+  for (std::size_t side = 0; side < patch.triangles().size(); ++side) {
+    result.triangle[side] = patch.triangle[swapped ? 1 - side : side];
+    const auto& [a, b, c] = corners_m[result.triangle[side]];
+    result.plane[side] = through(glm::cross(b - a, c - a), a);
+  }
   if (!patch.is_pair()) return;
-  result.plane[1] = through(glm::cross(c - a, d - a), a);
-  // Upright on the pair, with d on its positive side.
-  const Vec3 upright = glm::cross(result.plane[0].normal, c - a);
-  result.divider = through(upright, a);
+  // Upright on the first one, with the other one on its positive side.
+  const TriangleCorners& own = corners_m[result.triangle[0]];
+  const std::size_t opposite = patch.corner[swapped ? 3 : 1].at;
+  const Vec3 &from_m = own[(opposite + 2) % 3], &to_m = own[(opposite + 1) % 3];
+  const Vec3 upright = glm::cross(result.plane[0].normal, to_m - from_m);
+  result.divider = through(upright, from_m);
 }
 
 }  // namespace dcem

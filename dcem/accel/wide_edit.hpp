@@ -137,7 +137,8 @@ inline void WideTree::take_out(WidePlace place) {
   arrays_.tighten_above(above.node());
 }
 
-/// Offers the lanes of one node: a free one, or any entry that is not divided further.
+/// Offers the lanes of one node: a free one, or any entry that is not divided further. Free lanes may lie between
+/// others.
 inline void WideTree::offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best) {
   const auto& [cost_m2, node, level] = branch;
   const WideNode& held = arrays_.nodes[node];
@@ -145,7 +146,7 @@ inline void WideTree::offer_spots(const Branch& branch, const Aabb<float>& box, 
     const WideChild child = held.child[lane];
     if (child.is_none()) {
       if (cost_m2 < best.cost_m2) best = {cost_m2, node, lane, false};
-      return;
+      continue;
     }
     Aabb<float> both = held.box(lane);
     const double own_m2 = static_cast<double>(both.half_area());

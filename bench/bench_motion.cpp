@@ -1,0 +1,542 @@
+/// Times a tree that follows driving cars, and rays through it: the wide tree in its ways, the binary tree, and Embree
+/// in its ways where it was found.
+///
+///   bench_motion FILE.obj [--cars V...] [--frames N] [--rays R] [--limit GROWTH | --sweep] [--two-threads]
+///
+/// In each frame all trees follow the motion, in turns, and then the same rays go through each, in turns. One CSV row
+/// per number of cars and tree; a table that a person reads goes to standard error. The wide trees must give the same
+/// hits to the last bit in every frame, and the binary tree the same to 1e-5 of the distance but for one ray in
+/// 100,000: anything else is an error, exit 1. Embree's differences are counted.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/bench_program.hpp"
+#include "bench/moving_boxes.hpp"
+#include "dcem/accel/maintainer.hpp"
+#include "dcem/accel/wide_tree.hpp"
+#include "dcem/core/parallel_for.hpp"
+#include "dcem/core/statistics.hpp"
+#if defined(DCEM_HAS_EMBREE)
+#include "bench/embree_motion.hpp"
+#endif
+
+namespace {
+
+using dcem::Ray;
+using dcem::TraversalCounters;
+using dcem::Vec3;
+using dcem::bench::Stopwatch;
+using Rays = std::vector<Ray<double>>;
+
+constexpr double none = std::numeric_limits<double>::infinity();
+
+/// What a tree says of a ray: where the nearest hit is, or 1 for blocked and 0 for free.
+struct Answer {
+  double t = none;
+  std::uint32_t triangle = 0;
+};
+using Answers = std::vector<Answer>;
+
+struct FrameRays {
+  Rays bounces, segments;
+};
+
+/// What has moved since the last frame.
+struct Moved {
+  std::vector<dcem::BodyId> bodies;
+  std::vector<std::uint32_t> triangles;
+};
+
+/// What an update did; zero where a tree does not say.
+struct Work {
+  std::uint64_t blocks = 0, nodes = 0, restructured = 0;
+};
+
+/// One tree with its way of following motion.
+struct Contender {
+  std::string family;  ///< wide, binary or embree
+  std::string policy;  ///< rebuild, refit, …
+  double limit = 0.0;  ///< of growth, for reinsertion; else 0
+  std::function<void(const Moved&)> prepare = [](const Moved&) {};
+  std::function<Work(const Moved&)> update{};
+  /// Milliseconds for all rays.
+  std::function<double(const Rays&, Answers&, TraversalCounters&)> nearest_ms{}, blocked_ms{};
+  std::function<double()> sah_cost = [] { return 0.0; };
+
+  std::vector<double> update_ms{}, closest_ms{}, occluded_ms{};  ///< of a frame
+  std::vector<double> closest_steps{}, occluded_steps{};         ///< nodes and blocks visited, per ray
+  Work work{};
+  std::uint64_t hash = 0, differences = 0;
+};
+
+/// Asks one question of all rays and keeps the answers; the time is that of the loop.
+template <typename Ask>
+double timed(const Rays& rays, Answers& answers, TraversalCounters& counters, unsigned threads, Ask&& ask) {
+  const std::size_t piece = threads > 1 ? 256 : rays.size();
+  std::vector<TraversalCounters> spent(threads);
+  const Stopwatch watch;
+  dcem::parallel_for((rays.size() + piece - 1) / piece, threads, [&](std::size_t index, unsigned worker) {
+#if defined(DCEM_HAS_EMBREE)
+    if (worker != 0) _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+#endif
+    TraversalCounters sum;
+    const std::size_t end = std::min((index + 1) * piece, rays.size());
+    for (std::size_t ray = index * piece; ray < end; ++ray) answers[ray] = ask(rays[ray], sum);
+    spent[worker] += sum;
+  });
+  const double elapsed_ms = watch.elapsed_ms();
+  for (const TraversalCounters& sum : spent) counters += sum;
+  return elapsed_ms;
+}
+
+/// Gives a contender the two loops over its tree.
+template <typename Nearest, typename Blocked>
+void set_queries(Contender& contender, unsigned threads, Nearest nearest, Blocked blocked) {
+  contender.nearest_ms = [=](const Rays& rays, Answers& answers, TraversalCounters& counters) {
+    return timed(rays, answers, counters, threads, nearest);
+  };
+  contender.blocked_ms = [=](const Rays& rays, Answers& answers, TraversalCounters& counters) {
+    return timed(rays, answers, counters, threads,
+                 [&](const Ray<double>& ray, TraversalCounters& sum) { return Answer{blocked(ray, sum) ? 1.0 : 0.0}; });
+  };
+}
+
+enum class WidePolicy { rebuild, refit, reinsert };
+
+Contender wide_contender(const dcem::Scene& scene, unsigned threads, WidePolicy policy, double limit = 0.0) {
+  const auto tree = std::make_shared<dcem::WideTree>();
+  const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
+  tree->build_grouped(mesh, scene.triangle_boxes(), scene.first_triangles());
+  Contender contender{"wide", "rebuild", limit};
+  if (policy != WidePolicy::rebuild) contender.policy = policy == WidePolicy::refit ? "refit" : "reinsert";
+  contender.update = [=, &scene](const Moved& moved) -> Work {
+    if (policy == WidePolicy::rebuild) {
+      tree->rebuild(mesh, scene.triangle_boxes());
+      return {tree->arrays().blocks.size(), tree->arrays().nodes.size(), 0};
+    }
+    const dcem::WideRefitReport report = tree->refit(moved.triangles, mesh, scene.triangle_boxes());
+    const std::size_t reinserted = policy == WidePolicy::reinsert ? tree->reinsert_moved(limit) : 0;
+    return {report.blocks_written, report.nodes_visited, reinserted};
+  };
+  set_queries(
+      contender, threads,
+      [tree](const Ray<double>& ray, TraversalCounters& sum) {
+        const auto hit = tree->nearest(ray, &sum);
+        return hit ? Answer{hit->t, hit->triangle} : Answer{};
+      },
+      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->blocked(ray, &sum); });
+  contender.sah_cost = [tree] { return tree->sah_cost(); };
+  return contender;
+}
+
+Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
+  const auto tree = std::make_shared<dcem::Bvh<double>>();
+  const auto maintainer = std::make_shared<dcem::BvhMaintainer<double>>();
+  tree->build_grouped(scene.triangle_boxes(), scene.first_triangles());
+  Contender contender{"binary", "adaptive"};
+  contender.update = [=, &scene](const Moved& moved) -> Work {
+    const dcem::UpkeepReport report = maintainer->update(*tree, moved.triangles, scene.triangle_boxes());
+    return {0, report.nodes_refit + report.nodes_rebuilt, report.subtrees_rebuilt};
+  };
+  set_queries(
+      contender, threads,
+      [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
+        const dcem::WatertightRay exact(ray);
+        Answer nearest;
+        const auto leaf = [&](std::uint32_t triangle, double& t_max) {
+          const auto t = exact.intersect(scene.corners_m(triangle));
+          if (t && *t >= ray.t_min && *t <= t_max && *t < nearest.t) nearest = {t_max = *t, triangle};
+        };
+        tree->closest(ray, leaf, &sum);
+        return nearest;
+      },
+      [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
+        const dcem::WatertightRay exact(ray);
+        const auto leaf = [&](std::uint32_t triangle) {
+          const auto t = exact.intersect(scene.corners_m(triangle));
+          return t && *t >= ray.t_min && *t <= ray.t_max;
+        };
+        return tree->any(ray, leaf, &sum);
+      });
+  contender.sah_cost = [tree] { return tree->sah_cost(); };
+  return contender;
+}
+
+#if defined(DCEM_HAS_EMBREE)
+Contender embree_contender(const dcem::Scene& scene, unsigned threads, const char* name,
+                           dcem::bench::EmbreeUpkeep upkeep) {
+  const auto moving = std::make_shared<dcem::bench::MovingEmbree>(scene, upkeep, threads);
+  Contender contender{"embree", name};
+  contender.prepare = [=](const Moved& moved) { moving->prepare(moved.bodies); };
+  contender.update = [=](const Moved&) -> Work {
+    moving->update();
+    return {};
+  };
+  set_queries(
+      contender, threads,
+      [moving](const Ray<double>& ray, TraversalCounters&) {
+        return Answer{static_cast<double>(moving->tree().nearest(ray))};
+      },
+      [moving](const Ray<double>& ray, TraversalCounters&) { return moving->tree().blocked(ray); });
+  return contender;
+}
+#endif
+
+struct Options {
+  std::string file;
+  std::vector<std::size_t> cars{100, 300, 1000};
+  std::size_t frames = 100, rays = 4000;
+  double limit = 1.1;
+  bool sweep = false, two_threads = false;
+  unsigned threads() const { return two_threads ? 2 : 1; }
+};
+
+/// The first is our own rebuild, whose hits the others must have.
+std::vector<Contender> contenders(const dcem::Scene& scene, const Options& options) {
+  const unsigned threads = options.threads();
+  std::vector<Contender> all;
+  all.push_back(wide_contender(scene, threads, WidePolicy::rebuild));
+  all.push_back(wide_contender(scene, threads, WidePolicy::refit));
+  const std::vector<double> one{options.limit}, many{1.0, 1.05, 1.1, 1.2, 1.5};
+  for (const double limit : options.sweep ? many : one) {
+    all.push_back(wide_contender(scene, threads, WidePolicy::reinsert, limit));
+  }
+  all.push_back(binary_contender(scene, threads));
+#if defined(DCEM_HAS_EMBREE)
+  using dcem::bench::EmbreeUpkeep;
+  all.push_back(embree_contender(scene, threads, "rebuild", EmbreeUpkeep::rebuild));
+  all.push_back(embree_contender(scene, threads, "refit", EmbreeUpkeep::refit));
+  all.push_back(embree_contender(scene, threads, "two levels", EmbreeUpkeep::two_levels));
+  all.push_back(embree_contender(scene, threads, "instances", EmbreeUpkeep::instances));
+#endif
+  return all;
+}
+
+Vec3 as_float(const Vec3& point) {
+  return {static_cast<double>(static_cast<float>(point.x)), static_cast<double>(static_cast<float>(point.y)),
+          static_cast<double>(static_cast<float>(point.z))};
+}
+
+/// Makes the rays of a frame: other ones in each frame, because surfaces move. All numbers are single-precision ones.
+class RaySource {
+ public:
+  static constexpr double ground_layer_m = 10.0;  ///< bounces start no higher above the lowest point
+
+  explicit RaySource(const dcem::Scene& scene) : scene_(scene) {
+    for (const Vec3& vertex : scene.vertices_m()) bounds_.extend(vertex);
+    for (std::uint32_t triangle = 0; triangle < scene.triangles().size(); ++triangle) {
+      if (scene.triangle_boxes()[triangle].min.z < bounds_.min.z + 0.5 * ground_layer_m)
+        near_ground_.push_back(triangle);
+    }
+  }
+
+  void make(std::size_t frame, FrameRays& rays) const {
+    dcem::RandomStream random(frame);
+    for (Ray<double>& ray : rays.bounces) {
+      const Vec3 direction = dcem::bench::direction_on_sphere(random);
+      ray = {as_float(surface_point(random) + 0.01 * direction), as_float(direction)};
+    }
+    for (Ray<double>& ray : rays.segments) {
+      const Vec3 from_m = dcem::bench::point_over(bounds_, 0.5, 3.0, random);
+      const double azimuth_rad = dcem::bench::between(random, -dcem::pi, dcem::pi);
+      const double length_m = dcem::bench::between(random, 1.0, dcem::bench::short_leg_m);
+      const Vec3 to_m(from_m.x + length_m * std::cos(azimuth_rad), from_m.y + length_m * std::sin(azimuth_rad),
+                      bounds_.min.z + dcem::bench::between(random, 0.5, 3.0));
+      ray = dcem::segment_between(as_float(from_m), as_float(to_m));
+    }
+  }
+
+ private:
+  Vec3 surface_point(dcem::RandomStream& random) const {
+    while (true) {
+      const double share = random.uniform() * static_cast<double>(near_ground_.size());
+      const auto [a, b, c] = scene_.corners_m(near_ground_[static_cast<std::size_t>(share)]);
+      double u = random.uniform(), v = random.uniform();
+      if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+      const Vec3 point_m = a + u * (b - a) + v * (c - a);
+      if (point_m.z <= bounds_.min.z + ground_layer_m) return point_m;
+    }
+  }
+
+  const dcem::Scene& scene_;
+  dcem::Aabb<double> bounds_;
+  std::vector<std::uint32_t> near_ground_;
+};
+
+void follow(Contender& contender, const Moved& moved) {
+  contender.prepare(moved);
+  const Stopwatch watch;
+  const Work work = contender.update(moved);
+  contender.update_ms.push_back(watch.elapsed_ms());
+  contender.work.blocks += work.blocks;
+  contender.work.nodes += work.nodes;
+  contender.work.restructured += work.restructured;
+}
+
+/// A few rays first, untimed: what another tree has pushed out of the caches is not this one's fault.
+void trace(Contender& contender, const FrameRays& rays, const FrameRays& warm_up, Answers& nearest, Answers& blocked) {
+  TraversalCounters closest, occluded, unused;
+  const double count = static_cast<double>(rays.bounces.size());
+  contender.nearest_ms(warm_up.bounces, nearest, unused);
+  contender.blocked_ms(warm_up.segments, blocked, unused);
+  contender.closest_ms.push_back(contender.nearest_ms(rays.bounces, nearest, closest));
+  contender.occluded_ms.push_back(contender.blocked_ms(rays.segments, blocked, occluded));
+  contender.closest_steps.push_back(static_cast<double>(closest.nodes_visited) / count);
+  contender.occluded_steps.push_back(static_cast<double>(occluded.nodes_visited) / count);
+  for (const Answers* answers : {&nearest, &blocked}) {
+    for (const Answer& answer : *answers) {
+      contender.hash = dcem::hash_values(contender.hash, std::bit_cast<std::uint64_t>(answer.t), answer.triangle);
+    }
+  }
+}
+
+std::size_t count_differences(const Answers& answers, const Answers& expected) {
+  std::size_t count = 0;
+  for (std::size_t ray = 0; ray < answers.size(); ++ray) {
+    const double t = answers[ray].t, right = expected[ray].t;
+    if (!(t == right || std::abs(t - right) <= 1e-5 * std::abs(right))) ++count;
+  }
+  return count;
+}
+
+Moved moved_by(const dcem::Scene& scene, const dcem::ChangeSet& changes) {
+  Moved moved{changes.moved, {}};
+  for (const dcem::BodyId body : changes.moved) {
+    const auto [first, last] = scene.triangle_range(body);
+    for (std::uint32_t triangle = first; triangle < last; ++triangle) moved.triangles.push_back(triangle);
+  }
+  return moved;
+}
+
+struct FrameAnswers {
+  Answers nearest, blocked;
+};
+
+/// False where a tree of ours hits what the first one does not.
+bool check(std::size_t frame, std::vector<Contender>& all, const std::vector<FrameAnswers>& answers) {
+  for (std::size_t index = 1; index < all.size(); ++index) {
+    Contender& each = all[index];
+    each.differences += count_differences(answers[index].nearest, answers[0].nearest) +
+                        count_differences(answers[index].blocked, answers[0].blocked);
+    if (each.family != "wide" || each.hash == all[0].hash) continue;
+    std::fprintf(stderr, "frame %zu: wide %s %.2f does not hit what wide rebuild hits\n", frame, each.policy.c_str(),
+                 each.limit);
+    return false;
+  }
+  return true;
+}
+
+bool drive(dcem::Scene& scene, const Options& options, std::vector<Contender>& all) {
+  const RaySource source(scene);
+  FrameRays rays{Rays(options.rays), Rays(options.rays)};
+  FrameRays warm_up{Rays(options.rays / 4), Rays(options.rays / 4)};
+  std::vector<FrameAnswers> answers(all.size(), {Answers(options.rays), Answers(options.rays)});
+  for (std::size_t frame = 1; frame <= options.frames; ++frame) {
+    const dcem::ChangeSet changes =
+        scene.apply(scene.frame_at(dcem::bench::step_s * static_cast<double>(frame), frame));
+    const Moved moved = moved_by(scene, changes);
+    source.make(2 * frame, rays);
+    source.make(2 * frame + 1, warm_up);
+    const auto in_turns = [&](auto&& act) {
+      for (std::size_t turn = 0; turn < all.size(); ++turn) act((frame + turn) % all.size());
+    };
+    in_turns([&](std::size_t index) { follow(all[index], moved); });
+    in_turns(
+        [&](std::size_t index) { trace(all[index], rays, warm_up, answers[index].nearest, answers[index].blocked); });
+    if (!check(frame, all, answers)) return false;
+  }
+  for (const Contender& each : all) {
+    const double asked = 2.0 * static_cast<double>(options.rays * options.frames);
+    if (each.family != "binary" || static_cast<double>(each.differences) <= 1e-5 * asked) continue;
+    std::fprintf(stderr, "binary %s: %llu hits differ\n", each.policy.c_str(),
+                 static_cast<unsigned long long>(each.differences));
+    return false;
+  }
+  return true;
+}
+
+/// A tenth of the frames, at the begin, in the middle or at the end.
+enum class Window { first, middle, last };
+
+double median_in(const std::vector<double>& series, Window window) {
+  const std::size_t length = std::max<std::size_t>(1, series.size() / 10);
+  const std::size_t rest = series.size() - length;
+  const std::size_t begin = window == Window::first ? 0 : window == Window::middle ? rest / 2 : rest;
+  const auto from = series.begin() + static_cast<std::ptrdiff_t>(begin);
+  return dcem::median(std::vector<double>(from, from + static_cast<std::ptrdiff_t>(length)));
+}
+
+/// How many times as fast `one` is as `other` at the end, from the ratios of single frames.
+double speed_up(const std::vector<double>& one_ms, const std::vector<double>& other_ms) {
+  std::vector<double> ratio;
+  for (std::size_t frame = 0; frame < one_ms.size(); ++frame) ratio.push_back(other_ms[frame] / one_ms[frame]);
+  return median_in(ratio, Window::last);
+}
+
+/// Mean of both kinds of rays, milliseconds, at the end.
+double ray_ms(const Contender& contender, double rays) {
+  return 0.5 * (median_in(contender.closest_ms, Window::last) + median_in(contender.occluded_ms, Window::last)) / rays;
+}
+
+/// How many rays a frame make up for the dearer updates of `better`; absent where they never do.
+std::optional<double> break_even_rays(const Contender& plain, const Contender& better, double rays) {
+  const double price_ms = dcem::median(better.update_ms) - dcem::median(plain.update_ms);
+  const double gain_ms = ray_ms(plain, rays) - ray_ms(better, rays);
+  if (&plain == &better || !(gain_ms > 0.0)) return std::nullopt;
+  return std::max(0.0, price_ms / gain_ms);
+}
+
+/// One drive, ready to be printed.
+class Report {
+ public:
+  Report(std::string scene_name, std::size_t triangles, std::size_t cars, const Options& options,
+         const std::vector<Contender>& all)
+      : scene_name_(std::move(scene_name)), triangles_(triangles), cars_(cars), options_(options), all_(all) {}
+
+  void print() const {
+    std::fprintf(stderr,
+                 "%s, %zu cars, %zu frames, %zu rays of each kind, %u thread(s); rates: Mrays/s in the last tenth\n"
+                 "%-16s %9s %9s %9s | %9s %9s | %8s %8s %7s %7s | %7s %7s %7s | %7s\n",
+                 scene_name_.c_str(), cars_, options_.frames, options_.rays, options_.threads(), "", "update ms", "p95",
+                 "worst", "/embree2", "/rebuild", "closest", "occluded", "x embr2", "x embr2", "x fresh", "x fresh",
+                 "SAH", "differ");
+    for (const Contender& row : all_) print(row);
+  }
+
+ private:
+  const Contender* find(const std::string& family, const char* policy) const {
+    for (const Contender& each : all_) {
+      if (each.family == family && each.policy == policy) return &each;
+    }
+    return nullptr;
+  }
+  double count() const { return static_cast<double>(options_.rays); }
+  double rate(const std::vector<double>& ms, Window window) const { return count() / median_in(ms, window) / 1e3; }
+  static std::string title(const Contender& row) {
+    char limit[16] = "";
+    if (row.limit != 0.0) std::snprintf(limit, sizeof limit, " %.2f", row.limit);
+    return row.family + " " + row.policy + limit;
+  }
+
+  void print(const Contender& row) const {
+    using dcem::median;
+    const Contender* rival = find("embree", "two levels");
+    const Contender* rebuilt = find(row.family, "rebuild");
+    const Contender* refit = find(row.family, "refit");
+    const double update_ms = median(row.update_ms);
+    dcem::bench::CsvRow csv;
+    csv.text(scene_name_).count(triangles_).count(cars_).count(options_.frames).count(options_.rays);
+    csv.count(options_.threads()).text(row.family).text(row.policy);
+    optional(csv, row.limit != 0.0 ? std::optional(row.limit) : std::nullopt, 2);
+    const auto ratio = [&](const Contender* to, auto&& of, int decimals = 3) {
+      optional(csv, to != nullptr ? std::optional(of(*to)) : std::nullopt, decimals);
+    };
+    const auto update_ratio = [&](const Contender& to) { return update_ms / median(to.update_ms); };
+    const auto closest_ratio = [&](const Contender& to) { return speed_up(row.closest_ms, to.closest_ms); };
+    const auto occluded_ratio = [&](const Contender& to) { return speed_up(row.occluded_ms, to.occluded_ms); };
+    ratio(rival, update_ratio, 4);
+    ratio(rebuilt, update_ratio, 4);
+    ratio(
+        rebuilt, [&](const Contender& to) { return dcem::quantile(row.update_ms, 1.0) / median(to.update_ms); }, 4);
+    ratio(rival, closest_ratio);
+    ratio(rival, occluded_ratio);
+    ratio(rebuilt, closest_ratio);
+    ratio(rebuilt, occluded_ratio);
+    const bool has_sah = row.sah_cost() > 0.0;
+    ratio(has_sah ? rebuilt : nullptr, [&](const Contender& to) { return row.sah_cost() / to.sah_cost(); });
+    csv.number(update_ms + count() * ray_ms(row, count()), 3);
+    optional(csv, rebuilt != nullptr ? break_even_rays(row, *rebuilt, count()) : std::nullopt, 0);
+    optional(csv, refit != nullptr ? break_even_rays(*refit, row, count()) : std::nullopt, 0);
+    csv.number(update_ms, 4).number(dcem::quantile(row.update_ms, 0.95), 4);
+    csv.number(dcem::quantile(row.update_ms, 1.0), 4);
+    for (const std::vector<double>* ms : {&row.closest_ms, &row.occluded_ms}) {
+      for (const Window window : {Window::first, Window::middle, Window::last}) csv.number(rate(*ms, window), 3);
+    }
+    for (const std::vector<double>* steps : {&row.closest_steps, &row.occluded_steps}) {
+      for (const Window window : {Window::first, Window::middle, Window::last}) {
+        optional(csv, row.family != "embree" ? std::optional(median_in(*steps, window)) : std::nullopt, 2);
+      }
+    }
+    optional(csv, has_sah ? std::optional(row.sah_cost()) : std::nullopt, 3);
+    csv.count(row.work.blocks).count(row.work.nodes).count(row.work.restructured).count(row.differences);
+    csv.hash(row.hash).print();
+    print_line(row, rival, rebuilt);
+  }
+
+  void print_line(const Contender& row, const Contender* rival, const Contender* rebuilt) const {
+    using dcem::median;
+    const double update_ms = median(row.update_ms);
+    const auto over = [&](const Contender* to) { return to != nullptr ? update_ms / median(to->update_ms) : 0.0; };
+    const auto faster = [&](const Contender* to, std::vector<double> Contender::*ms) {
+      return to != nullptr ? speed_up(row.*ms, to->*ms) : 0.0;
+    };
+    std::fprintf(stderr,
+                 "%-16s %9.4f %9.4f %9.4f | %9.4f %9.4f | %8.2f %8.2f %7.3f %7.3f | %7.3f %7.3f %7.2f | %7llu\n",
+                 title(row).c_str(), update_ms, dcem::quantile(row.update_ms, 0.95), dcem::quantile(row.update_ms, 1.0),
+                 over(rival), over(rebuilt), rate(row.closest_ms, Window::last), rate(row.occluded_ms, Window::last),
+                 faster(rival, &Contender::closest_ms), faster(rival, &Contender::occluded_ms),
+                 faster(rebuilt, &Contender::closest_ms), faster(rebuilt, &Contender::occluded_ms), row.sah_cost(),
+                 static_cast<unsigned long long>(row.differences));
+  }
+
+  static void optional(dcem::bench::CsvRow& csv, std::optional<double> value, int decimals) {
+    if (value) {
+      csv.number(*value, decimals);
+    } else {
+      csv.empty();
+    }
+  }
+
+  std::string scene_name_;
+  std::size_t triangles_, cars_;
+  const Options& options_;
+  const std::vector<Contender>& all_;
+};
+
+bool bench(const Options& options) {
+  const dcem::TriangleMesh scenery = dcem::io::read_obj(options.file).mesh;
+  const std::string name = std::filesystem::path(options.file).stem().string();
+  for (const std::size_t cars : options.cars) {
+    const double duration_s = dcem::bench::step_s * static_cast<double>(options.frames);
+    dcem::Scene scene = dcem::bench::scene_with_cars(scenery, cars, duration_s, 1);
+    std::vector<Contender> all = contenders(scene, options);
+    if (!drive(scene, options, all)) return false;
+    Report(name, scene.triangles().size(), cars, options, all).print();
+  }
+  return true;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  Options options;
+  CLI::App app("Times a tree that follows driving cars, and rays through it");
+  app.add_option("FILE", options.file, "OBJ file")->required();
+  app.add_option("--cars", options.cars, "numbers of cars")->check(CLI::Range(1, 100'000));
+  app.add_option("--frames", options.frames, "frames of each drive")->check(CLI::Range(1, 1'000'000));
+  app.add_option("--rays", options.rays, "rays of each kind in a frame")->check(CLI::Range(4, 100'000'000));
+  auto* limit = app.add_option("--limit", options.limit, "growth from which on a car is reinserted; default 1.1");
+  app.add_flag("--sweep", options.sweep, "the limits 1.0, 1.05, 1.1, 1.2 and 1.5")->excludes(limit);
+  app.add_flag("--two-threads", options.two_threads, "rays on two threads, and what Embree builds");
+  return dcem::bench::run_program(app, count, arguments, [&] {
+    std::puts(
+        "scene,triangles,cars,frames,rays,threads,tree,policy,growth_limit,update_to_embree_two_levels,"
+        "update_to_rebuild,worst_update_to_rebuild,closest_rate_to_embree_two_levels,"
+        "occluded_rate_to_embree_two_levels,closest_rate_to_rebuild,occluded_rate_to_rebuild,sah_to_rebuild,frame_ms,"
+        "break_even_rays_of_rebuild,break_even_rays_over_refit,update_median_ms,update_p95_ms,update_maximum_ms,"
+        "closest_mrays_first,closest_mrays_middle,closest_mrays_last,occluded_mrays_first,occluded_mrays_middle,"
+        "occluded_mrays_last,closest_steps_first,closest_steps_middle,closest_steps_last,occluded_steps_first,"
+        "occluded_steps_middle,occluded_steps_last,sah_cost,blocks_written,nodes_visited,restructured,differences,"
+        "hash");
+    return bench(options);
+  });
+}
