@@ -14,7 +14,7 @@ using namespace dcem;
 
 namespace {
 
-constexpr std::uint32_t by_itself = WideCollapse::no_kind;
+constexpr std::uint32_t by_itself = WideItem::no_kind;
 
 /// A binary tree of one item a leaf, and the kind of each item.
 struct Binary {
@@ -36,9 +36,28 @@ struct Binary {
       kinds.push_back(alone ? by_itself : region % kind_count);
     }
   }
-  auto kind_of() const {
-    return [this](std::uint32_t position) { return kinds[position]; };
+  /// The same tree as the collapse reads it: slots keep their numbers.
+  std::vector<WideSplit> splits() const {
+    std::vector<WideSplit> result;
+    for (const BvhNode<double>& node : nodes) {
+      const auto area = static_cast<float>(node.box.half_area());
+      result.push_back(node.is_leaf() ? WideSplit{area, 0, 0, node.first, node.count}
+                                      : WideSplit{area, node.left(), node.right(), 0, 0});
+    }
+    return result;
   }
+  std::vector<WideItem> items() const {
+    std::vector<WideItem> result;
+    for (const std::uint32_t kind : kinds) result.push_back({Float4{}, Float4{}, 0, kind});
+    return result;
+  }
+  /// What a collapse reads must outlive it.
+  struct Planned {
+    std::vector<WideSplit> splits;
+    WideCollapse plan;
+    Planned(const Binary& binary, const WideCosts& costs)
+        : splits(binary.splits()), plan(splits, binary.items(), costs) {}
+  };
   double area(std::uint32_t slot) const { return nodes[slot].box.half_area(); }
   void leaves_below(std::uint32_t slot, std::vector<std::uint32_t>& positions) const {
     if (nodes[slot].is_leaf()) {
@@ -130,7 +149,8 @@ TEST_CASE("at most eight entries, blocks of one kind, every item once; no dearer
       for (const WideCosts& costs : {WideCosts{}, WideCosts{1.0, 0.3}, WideCosts{1.0, 4.0}}) {
         CAPTURE(count);
         const Binary binary(count, kinds, ++seed);
-        const WideCollapse plan(binary.nodes, costs, binary.kind_of());
+        const Binary::Planned planned(binary, costs);
+        const WideCollapse& plan = planned.plan;
         std::multiset<std::uint32_t> found;
         const double cost = cost_of_plan(binary, plan, costs, 0, found);
         REQUIRE(found.size() == count);
@@ -147,7 +167,8 @@ TEST_CASE("the plan of a small tree is the cheapest there is") {
     CAPTURE(seed);
     const Binary binary(5 + seed % 8, 1 + static_cast<std::uint32_t>(seed % 3), 1000 + seed);
     for (const WideCosts& costs : {WideCosts{}, WideCosts{1.0, 0.4}, WideCosts{0.5, 2.0}}) {
-      const WideCollapse plan(binary.nodes, costs, binary.kind_of());
+      const Binary::Planned planned(binary, costs);
+      const WideCollapse& plan = planned.plan;
       std::multiset<std::uint32_t> found;
       CHECK(cost_of_plan(binary, plan, costs, 0, found) == doctest::Approx(least_cost(binary, costs, 0)).epsilon(1e-5));
     }
@@ -165,7 +186,8 @@ TEST_CASE("items by themselves never share a block, and what has no size still h
   binary.nodes = SahBuilder<double>(settings).build(items);
   for (const std::uint32_t kind : {by_itself, 0U}) {
     binary.kinds.assign(100, kind);
-    const WideCollapse plan(binary.nodes, {}, binary.kind_of());
+    const Binary::Planned planned(binary, {});
+    const WideCollapse& plan = planned.plan;
     std::multiset<std::uint32_t> found;
     CHECK(cost_of_plan(binary, plan, {}, 0, found) == 0.0);
     CHECK(found.size() == 100);
