@@ -34,8 +34,9 @@ class WideRay {
   ///
   /// Formula: the slab method, each bound as b·r − o·r with one multiply_add. o·r is rounded: an error of the origin by
   /// a few units of its last place. Therefore the origin is moved outwards for the near and for the far planes, by
-  /// 4 units of |o| + extent, which holds without fused operations too; the far bounds are scaled by 1 + 12 units for
-  /// the roundings of r, of the direction and of the product.
+  /// 4 units of the largest |o| + extent, which holds without fused operations too; the far bounds are scaled by 1 + 12
+  /// units for the roundings of r, of the direction and of the product. A direction that is all but zero on an axis is
+  /// taken for 1e-20, which leads astray by at most 1e-8 of that length, because the longest is at least 1e-12.
   std::uint32_t meets(const WideNode& node, float t_max, Float8& entry) const;
 
   /// What is known of a ray and the patches of a block.
@@ -116,7 +117,8 @@ namespace detail {
   const Float4 least = Float4{} + least_slope;
   const Float4 reciprocal = 1.0F / detail::with_sign(size > least ? size : least, sign);
   const Float4 far_reciprocal = reciprocal * (1.0F + 12 * unit);
-  const Float4 step = detail::with_sign((distance + extent_m) * (4 * unit) + 1e-20F, sign);
+  const float farthest = std::max(distance[0], std::max(distance[1], distance[2]));
+  const Float4 step = detail::with_sign(Float4{} + ((farthest + extent_m) * (4 * unit) + 1e-20F), sign);
   const Float4 near_offset = -(from + step) * reciprocal, far_offset = -(from - step) * far_reciprocal;
   std::memcpy(reciprocal_.data(), &reciprocal, sizeof reciprocal);
   std::memcpy(far_reciprocal_.data(), &far_reciprocal, sizeof far_reciprocal);
@@ -126,7 +128,6 @@ namespace detail {
     near_[axis] = static_cast<std::uint32_t>(2 * axis) + (static_cast<std::uint32_t>(sign[axis]) >> 31U);
   }
   const float longest = std::max(size[0], std::max(size[1], size[2]));
-  const float farthest = std::max(distance[0], std::max(distance[1], distance[2]));
   // Without branches, because rays point everywhere; NaN fails every comparison.
   usable_ = ((longest > 1e-12F) & (longest < 1e12F) & (farthest < 1e12F) & (ray.t_min >= 0.0) &
              (ray.t_min <= ray.t_max) & (size[0] <= longest) & (size[1] <= longest) & (size[2] <= longest) &
