@@ -196,10 +196,10 @@ namespace detail {
   edge(bx, by, cx, cy, bc);
   edge(cx, cy, dx, dy, cd);
   edge(dx, dy, ax, ay, da);
-  Float8 bend, error;
+  Float8 bend, reach;
   simd::load(bend, block.bend_m.data());
-  simd::load(error, block.reach_m.data());
-  error = error * (error_m + bend) + 2 * error_m * error_m;
+  simd::load(reach, block.reach_m.data());
+  const Float8 error = reach * (error_m + bend) + 2 * error_m * error_m;
   Float8 low = ab, high = ab;
   simd::set_minimum(low, bc);
   simd::set_maximum(high, bc);
@@ -222,8 +222,9 @@ namespace detail {
   margin = margin < 0.0F ? -margin : margin;
   hits.first = t - margin;
   hits.last = t + margin;
-  // A triangle's fourth edge has no length: its function is zero and says nothing.
-  hits.certain = candidates & simd::bits(((low > error) | (high < -error)) & (hits.first > t_min_));
+  // Far beside a patch the products are rounded by more than the error allows for.
+  const Int8 is_near = (ax < reach) & (ax > -reach) & (ay < reach) & (ay > -reach);
+  hits.certain = candidates & simd::bits(((low > error) | (high < -error)) & is_near & (hits.first > t_min_));
   return candidates & ~simd::bits((hits.first > t_max) | (hits.last < t_min_));
 }
 
