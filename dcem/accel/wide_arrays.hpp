@@ -230,10 +230,11 @@ inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const 
                                    PatchPlanes& planes_of_patch) const {
   const std::array<Vec3, 4> world_m = quadrilateral(patch);
   write_planes(world_m, patch, planes_of_patch);
-  const Vec3 centre_m = origin_m + Vec3(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
+  const Vec3 centre_m(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
   std::array<Vec3, 4> corner_m;
   for (std::size_t corner = 0; corner < 4; ++corner) {
-    corner_m[corner] = world_m[corner] - centre_m;
+    // The centre in the world would be rounded, far from zero by more than the patch is large.
+    corner_m[corner] = (world_m[corner] - origin_m) - centre_m;
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<float>(corner_m[corner][axis]);
       block.corner_m[corner][static_cast<std::size_t>(axis)][lane] = at;
