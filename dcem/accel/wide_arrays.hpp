@@ -253,8 +253,10 @@ inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const 
     block.normal[static_cast<std::size_t>(axis)][lane] = static_cast<float>(normal[axis]);
   }
   block.offset_m[lane] = static_cast<float>(glm::dot(normal, a));
-  // Without a plane nothing is certain, but every ray near it is asked.
-  const double bend_m = length > 0.0 ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
+  // Without a plane, or where the vertices have moved until the pair is not convex, nothing is certain, but every ray
+  // near it is asked.
+  const bool is_sound = length > 0.0 && detail::is_convex(a, b, c, d);
+  const double bend_m = is_sound ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
   block.bend_m[lane] = patch.is_pair() ? static_cast<float>(bend_m) : 0.0F;
 }
 
