@@ -66,11 +66,12 @@ inline double distance_from_plane_m(const Vec3& a, const Vec3& b, const Vec3& c,
 /// Whether a b c d, all but flat, turns the same way at every corner, and enough to survive rounding.
 inline bool is_convex(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 normal = glm::cross(b - a, c - a) + glm::cross(c - a, d - a);
-  const double least = 1e-3 * glm::length(normal);
+  const double least = 1e-3 * glm::dot(normal, normal);
   const auto turn = [&](const Vec3& from, const Vec3& at, const Vec3& to) {
-    return glm::dot(normal, glm::cross(at - from, to - at)) >= least * glm::length(normal);
+    return glm::dot(normal, glm::cross(at - from, to - at)) >= least;
   };
-  return turn(a, b, c) && turn(b, c, d) && turn(c, d, a) && turn(d, a, b);
+  // Two triangles that lie on each other have normals that cancel.
+  return least > 0.0 && turn(a, b, c) && turn(b, c, d) && turn(c, d, a) && turn(d, a, b);
 }
 
 /// Pairs the triangles [first, last) greedily, the longest shared edge first.

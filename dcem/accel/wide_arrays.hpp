@@ -249,10 +249,11 @@ inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const 
                                    PatchPlanes& planes_of_patch) const {
   const std::array<Vec3, 4> world_m = quadrilateral(patch);
   write_planes(patch, planes_of_patch);
-  const Vec3 centre_m = origin_m + Vec3(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
+  const Vec3 centre_m(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
   std::array<Vec3, 4> corner_m;
   for (std::size_t corner = 0; corner < 4; ++corner) {
-    corner_m[corner] = world_m[corner] - centre_m;
+    // The centre in the world would be rounded, far from zero by more than the patch is large.
+    corner_m[corner] = (world_m[corner] - origin_m) - centre_m;
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<float>(corner_m[corner][axis]);
       block.corner_m[corner][static_cast<std::size_t>(axis)][lane] = at;
@@ -271,13 +272,11 @@ inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const 
     block.normal[static_cast<std::size_t>(axis)][lane] = static_cast<float>(normal[axis]);
   }
   block.offset_m[lane] = static_cast<float>(glm::dot(normal, a));
-  // Without a plane nothing is certain, but every ray near it is asked.
-  const double bend_m = length > 0.0 ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
+  // Without a plane, or where the vertices have moved until the pair is not convex, nothing is certain, but every ray
+  // near it is asked.
+  const bool is_sound = length > 0.0 && detail::is_convex(a, b, c, d);
+  const double bend_m = is_sound ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
   block.bend_m[lane] = patch.is_pair() ? static_cast<float>(bend_m) : 0.0F;
-  // Vertices may have moved: what is no longer convex is asked of every ray.
-  if (patch.is_pair() && !detail::is_convex(a, b, c, d)) {
-    block.bend_m[lane] = std::numeric_limits<float>::infinity();
-  }
 }
 
 inline void WideArrays::write_planes(const Patch& patch, PatchPlanes& result) const {

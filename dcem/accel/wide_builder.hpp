@@ -1,9 +1,12 @@
 #pragma once
 /// Builds a wide tree: a binary tree over patches and units, collapsed to eight children a node.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "dcem/accel/patches.hpp"
@@ -30,6 +33,18 @@ struct WideSettings {
   /// Threads of a build (number); 0: as many as the machine has. The tree does not depend on it. Default 1.
   unsigned threads = 1;
 };
+
+/// Throws std::invalid_argument for settings outside the ranges written above.
+inline void validate(const WideSettings& settings) {
+  const auto positive = [](double cost) { return cost > 0.0 && std::isfinite(cost); };
+  if (!positive(settings.costs.node) || !positive(settings.costs.block)) {
+    throw std::invalid_argument("costs of a wide tree must be positive and finite");
+  }
+  if (std::isnan(settings.pair_flatness)) throw std::invalid_argument("pair_flatness: expected a number");
+  if (settings.leaf_limit < 1 || settings.leaf_limit > simd_lanes) {
+    throw std::invalid_argument("leaf_limit: expected 1 to 8");
+  }
+}
 
 /// Fills the arrays of one tree.
 class WideBuilder {

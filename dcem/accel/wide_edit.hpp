@@ -13,6 +13,7 @@ inline void WideTree::build_grouped(const TriangleView& mesh, Boxes boxes, std::
                                     const WideSettings& settings) {
   require_input(mesh, boxes);
   require_valid_groups(group_first, boxes.size());
+  dcem::validate(settings);
   settings_ = settings;
   group_first_.assign(group_first.begin(), group_first.end());
   patches_.clear();

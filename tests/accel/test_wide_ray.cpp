@@ -257,7 +257,9 @@ TEST_CASE("a box that the ray meets is met, whatever the direction and however c
     for (int axis = 0; axis < 3; ++axis) {
       const double kind = random.uniform();
       const Aabb<double>& box = boxes[lane];
-      aim[axis] = kind < 0.4 ? box.min[axis] : kind < 0.8 ? box.max[axis] : between(random, box.min[axis], box.max[axis]);
+      aim[axis] = kind < 0.4   ? box.min[axis]
+                  : kind < 0.8 ? box.max[axis]
+                               : between(random, box.min[axis], box.max[axis]);
       origin[axis] = random.uniform() < 0.3 ? aim[axis] : aim[axis] + between(random, -distance, distance);
     }
     const double speed = exponent_between(random, -11, 11) / distance;
@@ -336,22 +338,33 @@ TEST_CASE("a padded t is never rounded down") {
 }
 
 TEST_CASE("vector operations are those of their lanes") {
-  Float8 one{1, -2, 3, 0, -0.0F, 5, 6, 7}, other{2, -3, 3, 1, 0.0F, NAN, 5, 8};
-  Float8 lesser = one, greater = one, sum = one;
-  simd::set_minimum(lesser, other);
-  simd::set_maximum(greater, other);
-  simd::multiply_add(sum, other, Float8{} + 0.5F);
+  using Lanes = std::array<float, 8>;
+  const Lanes first{1, -2, 3, 0, -0.0F, 5, 6, 7}, second{2, -3, 3, 1, 0.0F, NAN, 5, 8};
+  const Float8 one(first), other(second);
+  const Float8 lesser = simd::minimum(one, other), greater = simd::maximum(one, other);
+  const Float8 sum = simd::multiply_add(one, other, 0.5F), size = simd::absolute(one);
   for (std::size_t lane = 0; lane < 8; ++lane) {
+    CHECK(size[lane] == std::abs(first[lane]));
+    CHECK(Float8(2.5F)[lane] == 2.5F);
     if (lane == 5) continue;
-    CHECK(lesser[lane] == std::min(one[lane], other[lane]));
-    CHECK(greater[lane] == std::max(one[lane], other[lane]));
-    CHECK(sum[lane] == one[lane] * other[lane] + 0.5F);
+    CHECK(lesser[lane] == std::min(first[lane], second[lane]));
+    CHECK(greater[lane] == std::max(first[lane], second[lane]));
+    CHECK(sum[lane] == first[lane] * second[lane] + 0.5F);
+    CHECK((one + other)[lane] == first[lane] + second[lane]);
+    CHECK((one - other)[lane] == first[lane] - second[lane]);
+    CHECK((one / Float8(4.0F))[lane] == first[lane] / 4.0F);
+    CHECK((-one)[lane] == -first[lane]);
   }
   CHECK(std::isnan(lesser[5]));
   CHECK(std::isnan(greater[5]));
+  CHECK((one <= other).bits() == 0b10011101);
+  CHECK((one > other).bits() == 0b01000010);
   for (std::uint32_t pattern = 0; pattern < 256; ++pattern) {
-    Float8 lanes{};
+    Lanes lanes;
     for (std::size_t lane = 0; lane < 8; ++lane) lanes[lane] = (pattern >> lane & 1U) != 0 ? 1.0F : -1.0F;
-    REQUIRE(simd::bits(lanes > 0.0F) == pattern);
+    const Mask8 positive = Float8(0.0F) < Float8(lanes);
+    REQUIRE(positive.bits() == pattern);
+    REQUIRE((positive & (one < 3.5F)).bits() == (pattern & 0b00011111U));
+    REQUIRE((positive | (one < 3.5F)).bits() == (pattern | 0b00011111U));
   }
 }
