@@ -19,37 +19,58 @@
 
 namespace dcem {
 
-/// A plane in double: normal · x = offset. The normal need not have unit length; it is zero where there is no plane.
+/// The plane of a triangle in double, from the triangle's own corners in their own order: the same whatever patch the
+/// triangle is in, but for the sign of the normal. The normal is zero where there is no plane.
 struct PatchPlane {
-  Vec3 normal{0.0};
-  double offset = 0.0;
+  Vec3 normal{0.0};   ///< of unit length
+  Vec3 point_m{0.0};  ///< first corner of the triangle; far from zero an offset would be rounded too much
 
   /// The line of a ray meets it at height / slope.
-  double height(const Ray<double>& ray) const { return offset - glm::dot(normal, ray.origin); }
+  double height(const Ray<double>& ray) const { return glm::dot(normal, point_m - ray.origin); }
   double slope(const Ray<double>& ray) const { return glm::dot(normal, ray.direction); }
 };
 
-/// What a hit on a patch needs: the planes of its two triangles, and which of them is met. A pair is flat to rounding
-/// only, and t must be that of the triangle.
+/// What a hit on a patch needs: the planes of its two triangles, and which of them is met. A pair is flat within a
+/// limit only, and bends when its vertices move; t must be that of the triangle.
 struct alignas(64) PatchPlanes {
   std::array<PatchPlane, 2> plane;
-  PatchPlane
-      divider;  ///< through the diagonal; triangle 1 lies where normal · x > offset. A triangle: normal 0, offset 0
+  /// The diagonal as a line u x + v y = w, seen along the axis on which the first normal is longest; x and y follow
+  /// that axis in turn and count from the first plane's point. Triangle 1 lies where u x + v y > w.
+  double u = 0.0, v = 0.0, w = 0.0;
   std::array<std::uint32_t, 2> triangle{Patch::no_triangle, Patch::no_triangle};
 
-  /// Where the line of a ray that meets the patch does so, and in which of the triangles; t is not finite where the
-  /// line lies in the plane.
+  bool is_pair() const { return triangle[1] != Patch::no_triangle; }
+  std::span<const std::uint32_t> triangles() const { return {triangle.data(), is_pair() ? 2U : 1U}; }
+  double t_of(std::size_t side, const Ray<double>& ray) const {
+    return plane[side].height(ray) / plane[side].slope(ray);
+  }
+
+  /// Which axis is left out of the diagonal.
+  int axis() const {
+    const Vec3 size = glm::abs(plane[0].normal);
+    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  }
+
+  /// Where the line of a ray that meets the patch does so, and in which of the triangles.
   struct Meeting {
     double t;
     std::uint32_t side;
+    /// Whether that is so. A ray along the patch, by less than some 0.06 degrees, may meet a fold in both triangles or
+    /// one plane far outside: then each triangle is asked by itself.
+    bool is_sure;
   };
   Meeting meet(const Ray<double>& ray) const {
     const double height = plane[0].height(ray), slope = plane[0].slope(ray);
+    if (!is_pair()) return {height / slope, 0, true};
+    const double other_slope = plane[1].slope(ray);
+    const bool is_sure = slope * other_slope > 1e-6 * glm::dot(ray.direction, ray.direction);
     // Whether the point at t = height / slope is beyond the diagonal, multiplied by the slope.
-    const double beyond = divider.slope(ray) * height - divider.height(ray) * slope;
+    const int x = (axis() + 1) % 3, y = (axis() + 2) % 3;
+    const Vec3 from = ray.origin - plane[0].point_m;
+    const double beyond = u * (ray.direction[x] * height + from[x] * slope) +
+                          v * (ray.direction[y] * height + from[y] * slope) - w * slope;
     const std::uint32_t side = (beyond > 0.0) == (slope > 0.0) && beyond != 0.0 ? 1U : 0U;
-    const PatchPlane& met = plane[side];
-    return {met.height(ray) / met.slope(ray), side};
+    return {side == 0 ? height / slope : plane[1].height(ray) / other_slope, side, is_sure};
   }
 };
 
@@ -133,8 +154,9 @@ struct WideArrays {
     const double cost = child.is_none() ? 0.0 : child.is_block() ? costs.block : costs.node;
     return cost * static_cast<double>(box.half_area());
   }
-  void write_lane(PatchBlock& block, std::uint32_t lane, const Patch& patch, PatchPlanes& planes_of_patch) const;
-  void write_planes(const Patch& patch, PatchPlanes& result) const;
+  void write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held, PatchPlanes& planes_of_patch) const;
+  PatchPlanes planes_of(const std::array<Vec3, 4>& world_m, const Patch& patch) const;
+  Patch present_part(const Patch& patch) const;
   std::array<Vec3, 4> quadrilateral(const Patch& patch) const;
 };
 
@@ -245,10 +267,18 @@ inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   return rounded_out(box);
 }
 
-inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& patch,
+/// A pair of which one triangle is not there is the other.
+inline Patch WideArrays::present_part(const Patch& patch) const {
+  if (!patch.is_pair() || (!boxes[patch.triangle[0]].empty() && !boxes[patch.triangle[1]].empty())) return patch;
+  const std::uint32_t left = boxes[patch.triangle[0]].empty() ? patch.triangle[1] : patch.triangle[0];
+  return {{left, Patch::no_triangle}, {{{left, 0}, {left, 1}, {left, 2}, {}}}};
+}
+
+inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held,
                                    PatchPlanes& planes_of_patch) const {
+  const Patch patch = present_part(held);
   const std::array<Vec3, 4> world_m = quadrilateral(patch);
-  write_planes(patch, planes_of_patch);
+  planes_of_patch = planes_of(world_m, patch);
   const Vec3 centre_m(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
   std::array<Vec3, 4> corner_m;
   for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -279,25 +309,28 @@ inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const 
   block.bend_m[lane] = patch.is_pair() ? static_cast<float>(bend_m) : 0.0F;
 }
 
-inline void WideArrays::write_planes(const Patch& patch, PatchPlanes& result) const {
-  const auto through = [](const Vec3& normal, const Vec3& point) {
-    return PatchPlane{normal, glm::dot(normal, point)};
-  };
-  // Every number comes from one triangle in the order of its own corners, the pair's smaller number first: then t does
-  // not feel how pairing has turned or ordered them.
-  const bool swapped = patch.is_pair() && patch.triangle[1] < patch.triangle[0];
-  for (std::size_t side = 0; side < patch.triangles().size(); ++side) {
-    result.triangle[side] = patch.triangle[swapped ? 1 - side : side];
-    const auto& [a, b, c] = corners_m[result.triangle[side]];
-    result.plane[side] = through(glm::cross(b - a, c - a), a);
+inline PatchPlanes WideArrays::planes_of(const std::array<Vec3, 4>& world_m, const Patch& patch) const {
+  PatchPlanes result;
+  result.triangle = patch.triangle;
+  for (const std::uint32_t triangle : patch.triangles()) {
+    const auto& [a, b, c] = corners_m[triangle];
+    const Vec3 across = glm::cross(b - a, c - a);
+    const double length = glm::length(across);
+    result.plane[triangle == patch.triangle[0] ? 0 : 1] = {length > 0.0 ? across / length : Vec3(0.0), a};
   }
-  if (!patch.is_pair()) return;
-  // Upright on the first one, with the other one on its positive side.
-  const TriangleCorners& own = corners_m[result.triangle[0]];
-  const std::size_t opposite = patch.corner[swapped ? 3 : 1].at;
-  const Vec3 &from_m = own[(opposite + 2) % 3], &to_m = own[(opposite + 1) % 3];
-  const Vec3 upright = glm::cross(result.plane[0].normal, to_m - from_m);
-  result.divider = through(upright, from_m);
+  if (!patch.is_pair()) return result;
+  // Both normals to one side: a b c d turns the same way in both triangles.
+  const auto& [a, b, c, d] = world_m;
+  if (glm::dot(result.plane[1].normal, glm::cross(c - a, d - a)) < 0.0) result.plane[1].normal *= -1.0;
+  if (glm::dot(result.plane[0].normal, glm::cross(b - a, c - a)) < 0.0) result.plane[0].normal *= -1.0;
+  const int axis = result.axis(), x = (axis + 1) % 3, y = (axis + 2) % 3;
+  // b lies where u x + v y < w.
+  const double turn = result.plane[0].normal[axis] < 0.0 ? -1.0 : 1.0;
+  const Vec3 from = a - result.plane[0].point_m;
+  result.u = -turn * (c[y] - a[y]);
+  result.v = turn * (c[x] - a[x]);
+  result.w = result.u * from[x] + result.v * from[y];
+  return result;
 }
 
 }  // namespace dcem
