@@ -46,7 +46,8 @@ void check_promises(const WideMesh& mesh, const std::vector<Patch>& patches, dou
     REQUIRE(patch.corner[3].triangle == patch.triangle[1]);
     REQUIRE(mesh.view().same_surface(patch.triangle[0], patch.triangle[1]));
     // The second triangle is c, a, d in some order.
-    std::multiset<std::uint32_t> second(mesh.triangles[patch.triangle[1]].begin(), mesh.triangles[patch.triangle[1]].end());
+    std::multiset<std::uint32_t> second(mesh.triangles[patch.triangle[1]].begin(),
+                                        mesh.triangles[patch.triangle[1]].end());
     const std::uint32_t a = vertex_of(mesh, patch, 0), c = vertex_of(mesh, patch, 2), d = vertex_of(mesh, patch, 3);
     REQUIRE(second == std::multiset<std::uint32_t>{a, c, d});
     REQUIRE(a != c);
@@ -74,10 +75,9 @@ void check_promises(const WideMesh& mesh, const std::vector<Patch>& patches, dou
 TEST_CASE("pairs share an edge, are flat and convex; every triangle is in one patch") {
   std::uint64_t seed = 0;
   for (const double flatness : {1e-3, 1e-6, 0.1}) {
-    for (const WideMesh& mesh :
-         {dcem_test::boxes_mesh(40, ++seed), dcem_test::ball(Vec3(1), 2.0, 9), dcem_test::dirty_mesh(60, ++seed),
-          dcem_test::bent_ground(12, 0.3 * flatness, ++seed), dcem_test::bent_ground(12, 3 * flatness, ++seed),
-          dcem_test::soup(50, ++seed)}) {
+    for (const WideMesh& mesh : {dcem_test::boxes_mesh(40, ++seed), dcem_test::ball(Vec3(1), 2.0, 9),
+                                 dcem_test::dirty_mesh(60, ++seed), dcem_test::bent_ground(12, 0.3 * flatness, ++seed),
+                                 dcem_test::bent_ground(12, 3 * flatness, ++seed), dcem_test::soup(50, ++seed)}) {
       check_promises(mesh, patches_of(mesh, flatness), flatness);
     }
   }

@@ -257,7 +257,9 @@ TEST_CASE("a box that the ray meets is met, whatever the direction and however c
     for (int axis = 0; axis < 3; ++axis) {
       const double kind = random.uniform();
       const Aabb<double>& box = boxes[lane];
-      aim[axis] = kind < 0.4 ? box.min[axis] : kind < 0.8 ? box.max[axis] : between(random, box.min[axis], box.max[axis]);
+      aim[axis] = kind < 0.4   ? box.min[axis]
+                  : kind < 0.8 ? box.max[axis]
+                               : between(random, box.min[axis], box.max[axis]);
       origin[axis] = random.uniform() < 0.3 ? aim[axis] : aim[axis] + between(random, -distance, distance);
     }
     const double speed = exponent_between(random, -11, 11) / distance;
