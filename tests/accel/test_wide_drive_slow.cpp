@@ -27,33 +27,42 @@ namespace {
 
 thread_local std::size_t allocations = 0;
 
-void* counted_allocation(std::size_t size, std::size_t alignment) {
+void* counted_allocation(std::size_t size, std::size_t alignment) noexcept {
   ++allocations;
   // aligned_alloc wants a multiple of the alignment.
-  void* memory = std::aligned_alloc(alignment, (size + alignment) / alignment * alignment);
+  return std::aligned_alloc(alignment, (size + alignment) / alignment * alignment);
+}
+void* or_throw(void* memory) {
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
 
 }  // namespace
 
-// Counts what the program allocates; the rest of the test program is served as before.
-void* operator new(std::size_t size) {
+// Counts what the program allocates; the rest of the test program is served as before. Never inlined: compilers and
+// sanitizers would see free() beside an operator new.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  return or_throw(counted_allocation(size, alignof(std::max_align_t)));
+}
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+  return or_throw(counted_allocation(size, static_cast<std::size_t>(alignment)));
+}
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return counted_allocation(size, alignof(std::max_align_t));
 }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return counted_allocation(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::align_val_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t&) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
   std::free(memory);
 }
 

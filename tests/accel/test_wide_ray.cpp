@@ -164,7 +164,7 @@ TEST_CASE("of a patch, single precision never says what double precision denies"
           CAPTURE(distance_m);
           CAPTURE(thinness);
           CAPTURE(bend);
-          check_kind(kind, 60, 30, ++seed);
+          check_kind(kind, 300, 30, ++seed);
         }
       }
     }
@@ -344,13 +344,17 @@ TEST_CASE("vector operations are those of their lanes") {
   simd::set_maximum(greater, other);
   simd::multiply_add(sum, other, Float8{} + 0.5F);
   for (std::size_t lane = 0; lane < 8; ++lane) {
-    if (lane == 5) continue;
-    CHECK(lesser[lane] == std::min(one[lane], other[lane]));
-    CHECK(greater[lane] == std::max(one[lane], other[lane]));
-    CHECK(sum[lane] == one[lane] * other[lane] + 0.5F);
+    const float least = lesser[lane], most = greater[lane], total = sum[lane];
+    const float first = one[lane], second = other[lane];
+    if (lane == 5) {
+      CHECK(std::isnan(least));
+      CHECK(std::isnan(most));
+      continue;
+    }
+    CHECK(least == std::min(first, second));
+    CHECK(most == std::max(first, second));
+    CHECK(total == first * second + 0.5F);
   }
-  CHECK(std::isnan(lesser[5]));
-  CHECK(std::isnan(greater[5]));
   for (std::uint32_t pattern = 0; pattern < 256; ++pattern) {
     Float8 lanes{};
     for (std::size_t lane = 0; lane < 8; ++lane) lanes[lane] = (pattern >> lane & 1U) != 0 ? 1.0F : -1.0F;
