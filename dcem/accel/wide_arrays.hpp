@@ -56,20 +56,25 @@ struct alignas(64) PatchPlanes {
     double t;
     std::uint32_t side;
     /// Whether that is so. A ray along the patch, by less than some 0.06 degrees, may meet a fold in both triangles or
-    /// one plane far outside: then each triangle is asked by itself.
+    /// one plane far outside, and one through the diagonal is on both sides of it: then each triangle is asked by
+    /// itself.
     bool is_sure;
   };
   Meeting meet(const Ray<double>& ray) const {
     const double height = plane[0].height(ray), slope = plane[0].slope(ray);
     if (!is_pair()) return {height / slope, 0, true};
     const double other_slope = plane[1].slope(ray);
-    const bool is_sure = slope * other_slope > 1e-6 * glm::dot(ray.direction, ray.direction);
     // Whether the point at t = height / slope is beyond the diagonal, multiplied by the slope.
     const int x = (axis() + 1) % 3, y = (axis() + 2) % 3;
     const Vec3 from = ray.origin - plane[0].point_m;
-    const double beyond = u * (ray.direction[x] * height + from[x] * slope) +
-                          v * (ray.direction[y] * height + from[y] * slope) - w * slope;
-    const std::uint32_t side = (beyond > 0.0) == (slope > 0.0) && beyond != 0.0 ? 1U : 0U;
+    const double along_x = ray.direction[x] * height, from_x = from[x] * slope;
+    const double along_y = ray.direction[y] * height, from_y = from[y] * slope;
+    const double beyond = u * (along_x + from_x) + v * (along_y + from_y) - w * slope;
+    const double size = std::abs(u) * (std::abs(along_x) + std::abs(from_x)) +
+                        std::abs(v) * (std::abs(along_y) + std::abs(from_y)) + std::abs(w * slope);
+    const bool is_sure =
+        slope * other_slope > 1e-6 * glm::dot(ray.direction, ray.direction) && std::abs(beyond) > 1e-10 * size;
+    const std::uint32_t side = (beyond > 0.0) == (slope > 0.0) ? 1U : 0U;
     return {side == 0 ? height / slope : plane[1].height(ray) / other_slope, side, is_sure};
   }
 };

@@ -4,9 +4,21 @@
 
 namespace dcem {
 
-inline void WideTree::require_input(const TriangleView& mesh, Boxes boxes) const {
+inline void WideTree::require_input(const TriangleView& mesh, Boxes boxes) {
   if (mesh.size() != boxes.size()) throw std::invalid_argument("one box per triangle is needed");
+  if (!mesh.surface_of_triangle.empty() && mesh.surface_of_triangle.size() != mesh.size()) {
+    throw std::invalid_argument("one surface per triangle is needed, or none at all");
+  }
   require_valid_boxes(boxes);
+  for (std::uint32_t triangle = 0; triangle < mesh.size(); ++triangle) require_corners(mesh, triangle);
+}
+
+inline void WideTree::require_corners(const TriangleView& mesh, std::uint32_t triangle) {
+  for (const std::uint32_t vertex : mesh.triangles[triangle]) {
+    if (vertex >= mesh.vertices_m.size()) {
+      throw std::invalid_argument("triangle " + std::to_string(triangle) + " has a corner that is no vertex");
+    }
+  }
 }
 
 inline void WideTree::build_grouped(const TriangleView& mesh, Boxes boxes, std::span<const std::uint32_t> group_first,
@@ -63,6 +75,7 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
   for (const std::uint32_t triangle : moved) {
     if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
     require_valid_box(boxes[triangle], triangle);
+    require_corners(mesh, triangle);
   }
   for (const std::uint32_t unit : moved_units_) unit_is_moved_[unit] = 0;
   moved_units_.clear();

@@ -107,7 +107,7 @@ template <typename Considers>
 std::optional<WideHit> WideTree::nearest_of_all(const Ray<double>& ray, Considers& considers,
                                                 TraversalCounters& counters) const {
   std::optional<WideHit> best;
-  if (!(glm::length(ray.direction) > 0.0)) return best;
+  if (!has_direction(ray)) return best;
   for (std::uint32_t patch = 0; patch < arrays_.patches.size(); ++patch) {
     const Patch& held = arrays_.patches[patch];
     if (held.is_none() || arrays_.box_of_patch(held).empty()) continue;
@@ -127,7 +127,7 @@ bool WideTree::blocked(const Ray<double>& ray, Considers&& considers, TraversalC
     ++sum.spent.primitives_tested;
     return certain || hit_on(patch, ray, false);
   };
-  if (first_try && *first_try < primitive_count() && !arrays_.boxes[*first_try].empty() &&
+  if (first_try && *first_try < primitive_count() && !arrays_.boxes[*first_try].empty() && has_direction(ray) &&
       blocks(arrays_.patch_of_triangle[*first_try], false)) {
     return true;
   }

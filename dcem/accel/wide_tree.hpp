@@ -152,6 +152,12 @@ class WideTree {
   Aabb<float> root_box() const { return arrays_.nodes.empty() ? Aabb<float>{} : arrays_.nodes[0].box(); }
   Aabb<double> in_world(const Aabb<float>& box) const;
 
+  /// Whether a ray leads anywhere; an infinite direction would meet every plane at t = 0.
+  static bool has_direction(const Ray<double>& ray) {
+    const Vec3 size = glm::abs(ray.direction);
+    const bool is_finite = std::isfinite(size.x) && std::isfinite(size.y) && std::isfinite(size.z);
+    return is_finite && ray.direction != Vec3(0.0);
+  }
   static bool is_in_range(double t, const Ray<double>& ray) {
     return t >= ray.t_min && t <= ray.t_max && std::isfinite(t);
   }
@@ -198,7 +204,8 @@ class WideTree {
   std::optional<WideHit> nearest_of_all(const Ray<double>& ray, Considers& considers,
                                         TraversalCounters& counters) const;
 
-  void require_input(const TriangleView& mesh, Boxes boxes) const;
+  static void require_input(const TriangleView& mesh, Boxes boxes);
+  static void require_corners(const TriangleView& mesh, std::uint32_t triangle);
   void plant(const TriangleView& mesh, Boxes boxes);
   void note_moved_unit(std::uint32_t group);
   bool take_out_and_hang(std::uint32_t group);

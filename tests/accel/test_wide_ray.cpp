@@ -164,7 +164,7 @@ TEST_CASE("of a patch, single precision never says what double precision denies"
           CAPTURE(distance_m);
           CAPTURE(thinness);
           CAPTURE(bend);
-          check_kind(kind, 60, 30, ++seed);
+          check_kind(kind, 300, 30, ++seed);
         }
       }
     }

@@ -104,8 +104,8 @@ inline WideMesh soup(std::size_t count, std::uint64_t seed, double size = 3.0) {
 inline WideMesh box_mesh(const Vec3& low, const Vec3& high) {
   WideMesh mesh;
   for (int corner = 0; corner < 8; ++corner) {
-    mesh.add_vertex({(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
-                     (corner & 4) != 0 ? high.z : low.z});
+    mesh.add_vertex(
+        {(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y, (corner & 4) != 0 ? high.z : low.z});
   }
   const std::array<std::array<std::uint32_t, 4>, 6> sides{
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
@@ -159,8 +159,8 @@ inline WideMesh bent_ground(std::uint32_t count, double bend_m, std::uint64_t se
   WideMesh mesh;
   for (std::uint32_t row = 0; row <= count; ++row) {
     for (std::uint32_t column = 0; column <= count; ++column) {
-      mesh.add_vertex({column - 0.5 * count + between(random, -0.2, 0.2), row - 0.5 * count + between(random, -0.2, 0.2),
-                       between(random, -bend_m, bend_m)});
+      mesh.add_vertex({column - 0.5 * count + between(random, -0.2, 0.2),
+                       row - 0.5 * count + between(random, -0.2, 0.2), between(random, -bend_m, bend_m)});
     }
   }
   for (std::uint32_t row = 0; row < count; ++row) {
