@@ -2,6 +2,7 @@
 /// The memory of a wide tree, and the writing of its single parts.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "dcem/accel/patch_planes.hpp"
 #include "dcem/accel/patches.hpp"
+#include "dcem/accel/wide_block.hpp"
 #include "dcem/accel/wide_collapse.hpp"
 #include "dcem/accel/wide_node.hpp"
 #include "dcem/core/error.hpp"
@@ -19,39 +22,16 @@
 
 namespace dcem {
 
-/// A plane in double: normal · x = offset. The normal need not have unit length; it is zero where there is no plane.
-struct PatchPlane {
-  Vec3 normal{0.0};
-  double offset = 0.0;
+namespace detail {
 
-  /// The line of a ray meets it at height / slope.
-  double height(const Ray<double>& ray) const { return offset - glm::dot(normal, ray.origin); }
-  double slope(const Ray<double>& ray) const { return glm::dot(normal, ray.direction); }
-};
+/// The next smaller number, as std::nextafter says for finite ones, without a call.
+inline float next_below(float value) {
+  const auto bits = std::bit_cast<std::int32_t>(value);
+  if (bits == 0 || value == 0.0F) return -std::numeric_limits<float>::denorm_min();
+  return std::bit_cast<float>(bits < 0 ? bits + 1 : bits - 1);
+}
 
-/// What a hit on a patch needs: the planes of its two triangles, and which of them is met. A pair is flat to rounding
-/// only, and t must be that of the triangle.
-struct alignas(64) PatchPlanes {
-  std::array<PatchPlane, 2> plane;
-  PatchPlane
-      divider;  ///< through the diagonal; triangle 1 lies where normal · x > offset. A triangle: normal 0, offset 0
-  std::array<std::uint32_t, 2> triangle{Patch::no_triangle, Patch::no_triangle};
-
-  /// Where the line of a ray that meets the patch does so, and in which of the triangles; t is not finite where the
-  /// line lies in the plane.
-  struct Meeting {
-    double t;
-    std::uint32_t side;
-  };
-  Meeting meet(const Ray<double>& ray) const {
-    const double height = plane[0].height(ray), slope = plane[0].slope(ray);
-    // Whether the point at t = height / slope is beyond the diagonal, multiplied by the slope.
-    const double beyond = divider.slope(ray) * height - divider.height(ray) * slope;
-    const std::uint32_t side = (beyond > 0.0) == (slope > 0.0) && beyond != 0.0 ? 1U : 0U;
-    const PatchPlane& met = plane[side];
-    return {met.height(ray) / met.slope(ray), side};
-  }
-};
+}  // namespace detail
 
 /// Plain arrays; `WideTree` keeps their promises and `find_wide_defect` checks them.
 ///
@@ -122,9 +102,6 @@ struct WideArrays {
     const double cost = child.is_none() ? 0.0 : child.is_block() ? costs.block : costs.node;
     return cost * static_cast<double>(box.half_area());
   }
-  void write_lane(PatchBlock& block, std::uint32_t lane, const Patch& patch, PatchPlanes& planes_of_patch) const;
-  void write_planes(const Patch& patch, PatchPlanes& result) const;
-  std::array<Vec3, 4> quadrilateral(const Patch& patch) const;
 };
 
 inline std::uint32_t WideArrays::take_node() {
@@ -178,104 +155,45 @@ inline std::size_t WideArrays::tighten_above(std::uint32_t node) {
 
 inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
   if (box.empty()) return {};
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   Aabb<float> result;
   for (int axis = 0; axis < 3; ++axis) {
     // Two roundings, of the difference and to float; one step outwards is more than both.
-    result.min[axis] = std::nextafter(static_cast<float>(box.min[axis] - origin_m[axis]), -infinity);
-    result.max[axis] = std::nextafter(static_cast<float>(box.max[axis] - origin_m[axis]), infinity);
+    result.min[axis] = detail::next_below(static_cast<float>(box.min[axis] - origin_m[axis]));
+    result.max[axis] = -detail::next_below(-static_cast<float>(box.max[axis] - origin_m[axis]));
   }
   return result;
-}
-
-/// A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
-inline std::array<Vec3, 4> WideArrays::quadrilateral(const Patch& patch) const {
-  const auto corner = [&](std::size_t index) {
-    const auto& [triangle, at] = patch.corner[index];
-    return corners_m[triangle][at];
-  };
-  const Vec3 a = corner(0), b = corner(1), c = corner(2);
-  return {a, b, c, patch.is_pair() ? corner(3) : 0.5 * (a + c)};
 }
 
 inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   PatchBlock& block = blocks[index];
   const std::span<const Patch> held = std::span(patches).subspan(std::size_t{index} * simd_lanes, simd_lanes);
+  // All boxes at once: an empty one grows nothing.
   Aabb<double> box;
-  block.lanes = 0;
-  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    if (held[lane].is_none()) continue;
-    const Aabb<double> own = box_of_patch(held[lane]);
-    if (own.empty()) continue;
-    block.lanes |= 1U << lane;
-    box.extend(own);
+  std::uint32_t there = 0;
+  for (std::uint32_t lane = 0; lane < simd_lanes && !held[lane].is_none(); ++lane) {
+    for (const std::uint32_t triangle : held[lane].triangles()) {
+      const Aabb<double>& own = boxes[triangle];
+      box.extend(own);
+      there |= (own.min.x <= own.max.x ? 1U : 0U) << lane;
+    }
   }
-  if (block.lanes == 0) return {};
+  block.lanes = there;
+  if (there == 0) return {};
   const Vec3 centre_m = box.center() - origin_m;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     block.centre_m[axis] = static_cast<float>(centre_m[static_cast<int>(axis)]);
   }
-  block.size_m = 0.0F;
+  const Vec3 rounded_centre_m(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
+  detail::BlockWriter writer(corners_m, origin_m + rounded_centre_m);
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    if ((block.lanes >> lane & 1U) != 0) write_lane(block, lane, held[lane], planes[index * simd_lanes + lane]);
+    if ((block.lanes >> lane & 1U) != 0) writer.add(lane, held[lane]);
   }
+  writer.write(block, held, std::span(planes).subspan(std::size_t{index} * simd_lanes, simd_lanes));
   const Aabb<float> rounded = rounded_out(box);
   for (int axis = 0; axis < 3; ++axis) {
     extent_m = std::max({extent_m, std::abs(rounded.min[axis]), std::abs(rounded.max[axis])});
   }
   return rounded;
-}
-
-inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& patch,
-                                   PatchPlanes& planes_of_patch) const {
-  const std::array<Vec3, 4> world_m = quadrilateral(patch);
-  write_planes(patch, planes_of_patch);
-  const Vec3 centre_m = origin_m + Vec3(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
-  std::array<Vec3, 4> corner_m;
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    corner_m[corner] = world_m[corner] - centre_m;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto at = static_cast<float>(corner_m[corner][axis]);
-      block.corner_m[corner][static_cast<std::size_t>(axis)][lane] = at;
-      block.size_m = std::max(block.size_m, std::abs(at));
-    }
-  }
-  const auto& [a, b, c, d] = corner_m;
-  const auto squared = [](const Vec3& from, const Vec3& to) { return glm::dot(to - from, to - from); };
-  const double diameter_m =
-      std::sqrt(std::max({squared(a, b), squared(b, c), squared(c, d), squared(d, a), squared(a, c), squared(b, d)}));
-  block.reach_m[lane] = static_cast<float>(PatchBlock::edge_error_factor * diameter_m);
-  const Vec3 across = glm::cross(b - a, c - a);
-  const double length = glm::length(across);
-  const Vec3 normal = length > 0.0 ? across / length : Vec3(0.0);
-  for (int axis = 0; axis < 3; ++axis) {
-    block.normal[static_cast<std::size_t>(axis)][lane] = static_cast<float>(normal[axis]);
-  }
-  block.offset_m[lane] = static_cast<float>(glm::dot(normal, a));
-  // Without a plane nothing is certain, but every ray near it is asked.
-  const double bend_m = length > 0.0 ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
-  block.bend_m[lane] = patch.is_pair() ? static_cast<float>(bend_m) : 0.0F;
-}
-
-inline void WideArrays::write_planes(const Patch& patch, PatchPlanes& result) const {
-  const auto through = [](const Vec3& normal, const Vec3& point) {
-    return PatchPlane{normal, glm::dot(normal, point)};
-  };
-  // Every number comes from one triangle in the order of its own corners, the pair's smaller number first: then t does
-  // not feel how pairing has turned or ordered them.
-  const bool swapped = patch.is_pair() && patch.triangle[1] < patch.triangle[0];
-  for (std::size_t side = 0; side < patch.triangles().size(); ++side) {
-    result.triangle[side] = patch.triangle[swapped ? 1 - side : side];
-    const auto& [a, b, c] = corners_m[result.triangle[side]];
-    result.plane[side] = through(glm::cross(b - a, c - a), a);
-  }
-  if (!patch.is_pair()) return;
-  // Upright on the first one, with the other one on its positive side.
-  const TriangleCorners& own = corners_m[result.triangle[0]];
-  const std::size_t opposite = patch.corner[swapped ? 3 : 1].at;
-  const Vec3 &from_m = own[(opposite + 2) % 3], &to_m = own[(opposite + 1) % 3];
-  const Vec3 upright = glm::cross(result.plane[0].normal, to_m - from_m);
-  result.divider = through(upright, from_m);
 }
 
 }  // namespace dcem
