@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
@@ -180,11 +181,12 @@ inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   block.lanes = there;
   if (there == 0) return {};
   const Vec3 centre_m = box.center() - origin_m;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    block.centre_m[axis] = static_cast<float>(centre_m[static_cast<int>(axis)]);
-  }
-  const Vec3 rounded_centre_m(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
-  detail::BlockWriter writer(corners_m, origin_m + rounded_centre_m);
+  // To float and back as explicit vectors: with plain numbers g++ 12 (-O2) vectorises the way there and back away, and
+  // corners would be counted from another centre than queries use.
+  const Float4 rounded_centre = __builtin_convertvector((Double4{centre_m.x, centre_m.y, centre_m.z, 0.0}), Float4);
+  const Double4 exact_centre = __builtin_convertvector(rounded_centre, Double4);
+  std::memcpy(block.centre_m.data(), &rounded_centre, sizeof block.centre_m);
+  detail::BlockWriter writer(corners_m, origin_m + Vec3(exact_centre[0], exact_centre[1], exact_centre[2]));
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
     if ((block.lanes >> lane & 1U) != 0) writer.add(lane, held[lane]);
   }
