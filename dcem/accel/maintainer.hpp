@@ -34,6 +34,9 @@ struct UpkeepSettings {
   /// groups is therefore built anew whenever refits have visited this many times as many nodes as it has (no unit,
   /// above 0; infinity switches it off). At 64 that adds about a quarter to the cost of the refits.
   double renewal_ratio = 64.0;
+  /// Of the wide tree: an object that moved is hung elsewhere when the node around it has grown to more than this many
+  /// times what it was when the object came there (no unit, at least 1; infinity switches it off).
+  double reinsertion_growth = 1.1;
 };
 
 /// Throws std::invalid_argument for limits outside the ranges written above.
@@ -41,6 +44,9 @@ inline void validate(const UpkeepSettings& settings) {
   if (!(settings.sah_growth_limit > 1.0)) throw std::invalid_argument("sah_growth_limit: expected a number above 1");
   if (!(settings.deformation_limit > 0.0)) throw std::invalid_argument("deformation_limit: expected a number above 0");
   if (!(settings.renewal_ratio > 0.0)) throw std::invalid_argument("renewal_ratio: expected a number above 0");
+  if (!(settings.reinsertion_growth >= 1.0)) {
+    throw std::invalid_argument("reinsertion_growth: expected a number of at least 1");
+  }
 }
 
 /// What keeping a tree took in one frame. Every node is kept, refit or rebuilt; one that was both counts as rebuilt.

@@ -66,11 +66,12 @@ inline double distance_from_plane_m(const Vec3& a, const Vec3& b, const Vec3& c,
 /// Whether a b c d, all but flat, turns the same way at every corner, and enough to survive rounding.
 inline bool is_convex(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 normal = glm::cross(b - a, c - a) + glm::cross(c - a, d - a);
-  const double least = 1e-3 * glm::length(normal);
+  const double least = 1e-3 * glm::dot(normal, normal);
   const auto turn = [&](const Vec3& from, const Vec3& at, const Vec3& to) {
-    return glm::dot(normal, glm::cross(at - from, to - at)) >= least * glm::length(normal);
+    return glm::dot(normal, glm::cross(at - from, to - at)) >= least;
   };
-  return turn(a, b, c) && turn(b, c, d) && turn(c, d, a) && turn(d, a, b);
+  // Two triangles that lie on each other have normals that cancel.
+  return least > 0.0 && turn(a, b, c) && turn(b, c, d) && turn(c, d, a) && turn(d, a, b);
 }
 
 /// Pairs the triangles [first, last) greedily, the longest shared edge first.
@@ -80,6 +81,7 @@ class PatchBuilder {
   PatchBuilder(const TriangleView& mesh, double flatness) : mesh_(mesh), flatness_(flatness) {}
 
   void append(std::uint32_t first, std::uint32_t last, std::vector<Patch>& patches) {
+    if (last == first) return;
     collect_edges(first, last);
     collect_pairs();
     taken_.assign(last - first, false);
@@ -97,7 +99,6 @@ class PatchBuilder {
  private:
   struct Edge {
     std::uint32_t low, high, triangle;
-    auto key() const { return std::tuple(low, high, triangle); }
   };
   struct Pair {
     double length_m;
@@ -105,16 +106,29 @@ class PatchBuilder {
     Patch patch;
   };
 
+  /// All edges, by their vertices: a counting sort over the lower one, then short lists.
   void collect_edges(std::uint32_t first, std::uint32_t last) {
-    edges_.clear();
-    for (std::uint32_t triangle = first; triangle < last; ++triangle) {
-      const auto& corners = mesh_.triangles[triangle];
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const std::uint32_t from = corners[corner], to = corners[(corner + 1) % 3];
-        edges_.push_back({std::min(from, to), std::max(from, to), triangle});
+    first_edge_.assign(mesh_.vertices_m.size() + 1, 0);
+    const auto for_each_edge = [&](auto&& visit) {
+      for (std::uint32_t triangle = first; triangle < last; ++triangle) {
+        const auto& corners = mesh_.triangles[triangle];
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          const std::uint32_t from = corners[corner], to = corners[(corner + 1) % 3];
+          visit(Edge{std::min(from, to), std::max(from, to), triangle});
+        }
       }
+    };
+    for_each_edge([&](const Edge& edge) { ++first_edge_[edge.low + 1]; });
+    for (std::size_t vertex = 1; vertex < first_edge_.size(); ++vertex) first_edge_[vertex] += first_edge_[vertex - 1];
+    edges_.resize(3 * std::size_t{last - first});
+    next_edge_.assign(first_edge_.begin(), first_edge_.end() - 1);
+    for_each_edge([&](const Edge& edge) { edges_[next_edge_[edge.low]++] = edge; });
+    for (std::size_t vertex = 0; vertex + 1 < first_edge_.size(); ++vertex) {
+      std::sort(edges_.begin() + first_edge_[vertex], edges_.begin() + first_edge_[vertex + 1],
+                [](const Edge& one, const Edge& other) {
+                  return one.high != other.high ? one.high < other.high : one.triangle < other.triangle;
+                });
     }
-    std::sort(edges_.begin(), edges_.end(), [](const Edge& one, const Edge& other) { return one.key() < other.key(); });
   }
 
   void collect_pairs() {
@@ -166,6 +180,7 @@ class PatchBuilder {
   const TriangleView& mesh_;
   double flatness_;
   std::vector<Edge> edges_;
+  std::vector<std::uint32_t> first_edge_, next_edge_;  ///< per vertex
   std::vector<Pair> pairs_;
   std::vector<bool> taken_;
 };

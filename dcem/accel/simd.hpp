@@ -1,10 +1,11 @@
 #pragma once
-/// Several numbers at once: the compiler's vector types (g++, clang), and the few operations that they lack.
+/// Eight numbers at once: the compiler's vector types (g++, clang), in as many registers as the machine needs.
 ///
-/// Sums, products, comparisons and `a < b ? a : b` on these types become the instructions of whatever machine is
-/// compiled for: eight lanes with AVX, two halves with SSE2 or NEON. Two operations have no portable form that compiles
-/// well, collecting the signs of a comparison and multiplying and adding in one step: x86 has an instruction for each,
-/// elsewhere plain code does it.
+/// No intrinsics: sums, products, comparisons and `a < b ? a : b` on vector types become the instructions of whatever
+/// is compiled for. Two operations have no portable form that compiles well, collecting the signs of a comparison, and
+/// multiplying and adding in one step: x86 has an instruction for each, elsewhere plain code does it.
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -13,51 +14,169 @@ namespace dcem {
 
 inline constexpr std::uint32_t simd_lanes = 8;
 
-using Float8 = float __attribute__((vector_size(32)));
-using Int8 = std::int32_t __attribute__((vector_size(32)));
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
-using Double4 = double __attribute__((vector_size(32)));
 
-/// All functions take references: a vector of 32 bytes passed by value would tie callers to one instruction set.
-namespace simd {
+namespace detail {
 
-[[gnu::always_inline]] inline void load(Float8& lanes, const float* from) {
-  std::memcpy(&lanes, from, sizeof lanes);
-}
+#if defined(__AVX__)
+using FloatPart = float __attribute__((vector_size(32)));
+using IntPart = std::int32_t __attribute__((vector_size(32)));
 
-/// The smaller one of each lane; that of `other` where one of them is NaN.
-[[gnu::always_inline]] inline void set_minimum(Float8& one, const Float8& other) {
-  one = one < other ? one : other;
-}
-/// The larger one of each lane; that of `other` where one of them is NaN.
-[[gnu::always_inline]] inline void set_maximum(Float8& one, const Float8& other) {
-  one = one > other ? one : other;
-}
+/// Lanes in one register.
+template <typename Part>
+struct SimdLanes {
+  Part low;
 
-/// one · other + addend, in one rounding where the machine can.
-[[gnu::always_inline]] inline void multiply_add(Float8& one, const Float8& other, const Float8& addend) {
-#if defined(__AVX__) && defined(__FMA__)
-  one = __builtin_ia32_vfmaddps256(one, other, addend);
+  template <typename Operation>
+  [[gnu::always_inline]] void each(Operation&& operation) {
+    operation(low);
+  }
+  template <typename Other, typename Operation>
+  [[gnu::always_inline]] void with(const SimdLanes<Other>& other, Operation&& operation) {
+    operation(low, other.low);
+  }
+};
 #else
-  one = one * other + addend;
+using FloatPart = float __attribute__((vector_size(16)));
+using IntPart = std::int32_t __attribute__((vector_size(16)));
+
+/// Lanes in two registers: a vector wider than a register is taken apart lane by lane by g++.
+template <typename Part>
+struct SimdLanes {
+  Part low, high;
+
+  template <typename Operation>
+  [[gnu::always_inline]] void each(Operation&& operation) {
+    operation(low);
+    operation(high);
+  }
+  template <typename Other, typename Operation>
+  [[gnu::always_inline]] void with(const SimdLanes<Other>& other, Operation&& operation) {
+    operation(low, other.low);
+    operation(high, other.high);
+  }
+};
+#endif
+
+inline constexpr std::size_t simd_part_lanes = sizeof(FloatPart) / sizeof(float);
+
+/// Bit i is set where lane i, all ones or all zeros, is all ones.
+[[gnu::always_inline]] inline std::uint32_t part_bits(const IntPart& lanes) {
+#if defined(__AVX__)
+  return static_cast<std::uint32_t>(__builtin_ia32_movmskps256(std::bit_cast<FloatPart>(lanes)));
+#elif defined(__SSE2__)
+  return static_cast<std::uint32_t>(__builtin_ia32_movmskps(std::bit_cast<FloatPart>(lanes)));
+#else
+  std::uint32_t result = 0;
+  for (std::size_t lane = 0; lane < simd_part_lanes; ++lane) result |= (lanes[lane] != 0 ? 1U : 0U) << lane;
+  return result;
 #endif
 }
 
-/// Bit i is set where lane i of a comparison holds.
-[[gnu::always_inline]] inline std::uint32_t bits(const Int8& comparison) {
+}  // namespace detail
+
+/// The result of a comparison: all bits of a lane are set where it holds.
+struct Mask8 {
+  detail::SimdLanes<detail::IntPart> lanes;
+
+  [[gnu::always_inline]] friend Mask8 operator&(Mask8 one, const Mask8& other) {
+    one.lanes.with(other.lanes, [](auto& part, const auto& by) { part &= by; });
+    return one;
+  }
+  [[gnu::always_inline]] friend Mask8 operator|(Mask8 one, const Mask8& other) {
+    one.lanes.with(other.lanes, [](auto& part, const auto& by) { part |= by; });
+    return one;
+  }
+
+  /// Bit i is set where lane i holds.
+  [[gnu::always_inline]] std::uint32_t bits() const {
 #if defined(__AVX__)
-  Float8 signs;
-  std::memcpy(&signs, &comparison, sizeof signs);
-  return static_cast<std::uint32_t>(__builtin_ia32_movmskps256(signs));
-#elif defined(__SSE2__)
-  Float4 halves[2];
-  std::memcpy(halves, &comparison, sizeof halves);
-  return static_cast<std::uint32_t>(__builtin_ia32_movmskps(halves[0]) | (__builtin_ia32_movmskps(halves[1]) << 4));
+    return detail::part_bits(lanes.low);
 #else
-  std::uint32_t result = 0;
-  for (std::size_t lane = 0; lane < simd_lanes; ++lane) result |= (comparison[lane] != 0 ? 1U : 0U) << lane;
-  return result;
+    return detail::part_bits(lanes.low) | (detail::part_bits(lanes.high) << detail::simd_part_lanes);
+#endif
+  }
+};
+
+/// Eight single-precision numbers. A plain number stands for eight times itself.
+struct Float8 {
+  detail::SimdLanes<detail::FloatPart> lanes;
+
+  Float8() = default;  // no initial value: it would cost where the lanes are written next
+  [[gnu::always_inline]] Float8(float all) {
+    lanes.each([all](auto& part) { part = detail::FloatPart{} + all; });
+  }
+  [[gnu::always_inline]] explicit Float8(const std::array<float, simd_lanes>& numbers) {
+    std::memcpy(&lanes, numbers.data(), sizeof lanes);
+  }
+  [[gnu::always_inline]] void store(std::array<float, simd_lanes>& numbers) const {
+    std::memcpy(numbers.data(), &lanes, sizeof lanes);
+  }
+  float operator[](std::size_t lane) const {
+    std::array<float, simd_lanes> numbers;
+    store(numbers);
+    return numbers[lane];
+  }
+
+  [[gnu::always_inline]] friend Float8 operator+(Float8 one, const Float8& other) {
+    one.lanes.with(other.lanes, [](auto& part, const auto& by) { part += by; });
+    return one;
+  }
+  [[gnu::always_inline]] friend Float8 operator-(Float8 one, const Float8& other) {
+    one.lanes.with(other.lanes, [](auto& part, const auto& by) { part -= by; });
+    return one;
+  }
+  [[gnu::always_inline]] friend Float8 operator*(Float8 one, const Float8& other) {
+    one.lanes.with(other.lanes, [](auto& part, const auto& by) { part *= by; });
+    return one;
+  }
+  [[gnu::always_inline]] friend Float8 operator/(Float8 one, const Float8& other) {
+    one.lanes.with(other.lanes, [](auto& part, const auto& by) { part /= by; });
+    return one;
+  }
+  [[gnu::always_inline]] friend Float8 operator-(Float8 one) {
+    one.lanes.each([](auto& part) { part = -part; });
+    return one;
+  }
+  [[gnu::always_inline]] friend Mask8 operator<(Float8 one, const Float8& other) {
+    one.lanes.with(other.lanes, [](auto& part, const auto& by) { part = std::bit_cast<detail::FloatPart>(part < by); });
+    return std::bit_cast<Mask8>(one.lanes);
+  }
+  [[gnu::always_inline]] friend Mask8 operator<=(Float8 one, const Float8& other) {
+    one.lanes.with(other.lanes,
+                   [](auto& part, const auto& by) { part = std::bit_cast<detail::FloatPart>(part <= by); });
+    return std::bit_cast<Mask8>(one.lanes);
+  }
+  [[gnu::always_inline]] friend Mask8 operator>(const Float8& one, const Float8& other) { return other < one; }
+};
+
+/// Operations on Float8 that have no sign of their own.
+namespace simd {
+
+/// The smaller one in each lane; that of `other` where one of them is NaN.
+[[gnu::always_inline]] inline Float8 minimum(Float8 one, const Float8& other) {
+  one.lanes.with(other.lanes, [](auto& part, const auto& by) { part = part < by ? part : by; });
+  return one;
+}
+/// The larger one in each lane; that of `other` where one of them is NaN.
+[[gnu::always_inline]] inline Float8 maximum(Float8 one, const Float8& other) {
+  one.lanes.with(other.lanes, [](auto& part, const auto& by) { part = part > by ? part : by; });
+  return one;
+}
+[[gnu::always_inline]] inline Float8 absolute(Float8 value) {
+  value.lanes.each([](auto& part) {
+    part = std::bit_cast<detail::FloatPart>(std::bit_cast<detail::IntPart>(part) & std::int32_t{0x7fffffff});
+  });
+  return value;
+}
+/// one · other + addend, in one rounding where the machine can.
+[[gnu::always_inline]] inline Float8 multiply_add(Float8 one, const Float8& other, const Float8& addend) {
+#if defined(__AVX__) && defined(__FMA__)
+  one.lanes.low = __builtin_ia32_vfmaddps256(one.lanes.low, other.lanes.low, addend.lanes.low);
+  return one;
+#else
+  return one * other + addend;
 #endif
 }
 

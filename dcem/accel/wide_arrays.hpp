@@ -2,18 +2,14 @@
 /// The memory of a wide tree, and the writing of its single parts.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
 
-#include "dcem/accel/patch_planes.hpp"
 #include "dcem/accel/patches.hpp"
-#include "dcem/accel/wide_block.hpp"
 #include "dcem/accel/wide_collapse.hpp"
 #include "dcem/accel/wide_node.hpp"
 #include "dcem/core/error.hpp"
@@ -23,16 +19,60 @@
 
 namespace dcem {
 
-namespace detail {
+/// The plane of a triangle in double, from the triangle's own corners in their own order: the same whatever patch the
+/// triangle is in, but for the sign of the normal. The normal is zero where there is no plane.
+struct PatchPlane {
+  Vec3 normal{0.0};   ///< of unit length
+  Vec3 point_m{0.0};  ///< first corner of the triangle; far from zero an offset would be rounded too much
 
-/// The next smaller number, as std::nextafter says for finite ones, without a call.
-inline float next_below(float value) {
-  const auto bits = std::bit_cast<std::int32_t>(value);
-  if (bits == 0 || value == 0.0F) return -std::numeric_limits<float>::denorm_min();
-  return std::bit_cast<float>(bits < 0 ? bits + 1 : bits - 1);
-}
+  /// The line of a ray meets it at height / slope.
+  double height(const Ray<double>& ray) const { return glm::dot(normal, point_m - ray.origin); }
+  double slope(const Ray<double>& ray) const { return glm::dot(normal, ray.direction); }
+};
 
-}  // namespace detail
+/// What a hit on a patch needs: the planes of its two triangles, and which of them is met. A pair is flat within a
+/// limit only, and bends when its vertices move; t must be that of the triangle.
+struct alignas(64) PatchPlanes {
+  std::array<PatchPlane, 2> plane;
+  /// The diagonal as a line u x + v y = w, seen along the axis on which the first normal is longest; x and y follow
+  /// that axis in turn and count from the first plane's point. Triangle 1 lies where u x + v y > w.
+  double u = 0.0, v = 0.0, w = 0.0;
+  std::array<std::uint32_t, 2> triangle{Patch::no_triangle, Patch::no_triangle};
+
+  bool is_pair() const { return triangle[1] != Patch::no_triangle; }
+  std::span<const std::uint32_t> triangles() const { return {triangle.data(), is_pair() ? 2U : 1U}; }
+  double t_of(std::size_t side, const Ray<double>& ray) const {
+    return plane[side].height(ray) / plane[side].slope(ray);
+  }
+
+  /// Which axis is left out of the diagonal.
+  int axis() const {
+    const Vec3 size = glm::abs(plane[0].normal);
+    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  }
+
+  /// Where the line of a ray that meets the patch does so, and in which of the triangles.
+  struct Meeting {
+    double t;
+    std::uint32_t side;
+    /// Whether that is so. A ray along the patch, by less than some 0.06 degrees, may meet a fold in both triangles or
+    /// one plane far outside: then each triangle is asked by itself.
+    bool is_sure;
+  };
+  Meeting meet(const Ray<double>& ray) const {
+    const double height = plane[0].height(ray), slope = plane[0].slope(ray);
+    if (!is_pair()) return {height / slope, 0, true};
+    const double other_slope = plane[1].slope(ray);
+    const bool is_sure = slope * other_slope > 1e-6 * glm::dot(ray.direction, ray.direction);
+    // Whether the point at t = height / slope is beyond the diagonal, multiplied by the slope.
+    const int x = (axis() + 1) % 3, y = (axis() + 2) % 3;
+    const Vec3 from = ray.origin - plane[0].point_m;
+    const double beyond = u * (ray.direction[x] * height + from[x] * slope) +
+                          v * (ray.direction[y] * height + from[y] * slope) - w * slope;
+    const std::uint32_t side = (beyond > 0.0) == (slope > 0.0) && beyond != 0.0 ? 1U : 0U;
+    return {side == 0 ? height / slope : plane[1].height(ray) / other_slope, side, is_sure};
+  }
+};
 
 /// Plain arrays; `WideTree` keeps their promises and `find_wide_defect` checks them.
 ///
@@ -62,6 +102,9 @@ struct WideArrays {
   WideCosts costs;
   double weighted_area_m2 = 0.0;  ///< Σ cost · half surface over all nodes and blocks but the root
 
+  /// Empties everything and keeps the memory.
+  void clear();
+
   WidePlace place_of(WideChild child) const {
     return child.is_block() ? block_place[child.index()] : node_place[child.index()];
   }
@@ -86,7 +129,15 @@ struct WideArrays {
     corners_m[triangle] = corners;
     boxes[triangle] = box;
   }
-  /// Writes the numbers of a block from the triangles of its patches. Returns the box around it.
+  /// Keeps `extent_m` a bound of what is written.
+  void note_extent(const Aabb<float>& box) {
+    if (box.empty()) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      extent_m = std::max({extent_m, std::abs(box.min[axis]), std::abs(box.max[axis])});
+    }
+  }
+
+  /// Writes the numbers of a block from the triangles of its patches, and nothing else. Returns the box around it.
   Aabb<float> write_block(std::uint32_t block);
 
   /// The single-precision box around a double one, from the tree's origin.
@@ -103,7 +154,20 @@ struct WideArrays {
     const double cost = child.is_none() ? 0.0 : child.is_block() ? costs.block : costs.node;
     return cost * static_cast<double>(box.half_area());
   }
+  void write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held, PatchPlanes& planes_of_patch) const;
+  PatchPlanes planes_of(const std::array<Vec3, 4>& world_m, const Patch& patch) const;
+  Patch present_part(const Patch& patch) const;
+  std::array<Vec3, 4> quadrilateral(const Patch& patch) const;
 };
+
+inline void WideArrays::clear() {
+  const auto empty = [](auto&... lists) { (lists.clear(), ...); };
+  empty(nodes, node_place, node_unit, blocks, block_place, block_unit, group_of_block, free_nodes, patches, planes,
+        patch_of_triangle, boxes, corners_m, unit_root);
+  origin_m = Vec3(0.0);
+  extent_m = 0.0F;
+  weighted_area_m2 = 0.0;
+}
 
 inline std::uint32_t WideArrays::take_node() {
   if (!free_nodes.empty()) {
@@ -156,46 +220,117 @@ inline std::size_t WideArrays::tighten_above(std::uint32_t node) {
 
 inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
   if (box.empty()) return {};
+  // Two roundings, of the difference and to float: less than one unit of the last place together. What is moved by is
+  // one to two of them. (std::nextafter is a call.)
+  const auto room = [](float value) { return std::abs(value) * 0x1p-23F + std::numeric_limits<float>::min(); };
   Aabb<float> result;
   for (int axis = 0; axis < 3; ++axis) {
-    // Two roundings, of the difference and to float; one step outwards is more than both.
-    result.min[axis] = detail::next_below(static_cast<float>(box.min[axis] - origin_m[axis]));
-    result.max[axis] = -detail::next_below(-static_cast<float>(box.max[axis] - origin_m[axis]));
+    const auto low = static_cast<float>(box.min[axis] - origin_m[axis]);
+    const auto high = static_cast<float>(box.max[axis] - origin_m[axis]);
+    result.min[axis] = low - room(low);
+    result.max[axis] = high + room(high);
   }
   return result;
+}
+
+/// A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
+inline std::array<Vec3, 4> WideArrays::quadrilateral(const Patch& patch) const {
+  const auto corner = [&](std::size_t index) {
+    const auto& [triangle, at] = patch.corner[index];
+    return corners_m[triangle][at];
+  };
+  const Vec3 a = corner(0), b = corner(1), c = corner(2);
+  return {a, b, c, patch.is_pair() ? corner(3) : 0.5 * (a + c)};
 }
 
 inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   PatchBlock& block = blocks[index];
   const std::span<const Patch> held = std::span(patches).subspan(std::size_t{index} * simd_lanes, simd_lanes);
-  // All boxes at once: an empty one grows nothing.
   Aabb<double> box;
-  std::uint32_t there = 0;
-  for (std::uint32_t lane = 0; lane < simd_lanes && !held[lane].is_none(); ++lane) {
-    for (const std::uint32_t triangle : held[lane].triangles()) {
-      const Aabb<double>& own = boxes[triangle];
-      box.extend(own);
-      there |= (own.min.x <= own.max.x ? 1U : 0U) << lane;
+  block.lanes = 0;
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    if (held[lane].is_none()) continue;
+    const Aabb<double> own = box_of_patch(held[lane]);
+    if (own.empty()) continue;
+    block.lanes |= 1U << lane;
+    box.extend(own);
+  }
+  if (block.lanes == 0) return {};
+  const Vec3 centre_m = box.center() - origin_m;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    block.centre_m[axis] = static_cast<float>(centre_m[static_cast<int>(axis)]);
+  }
+  block.size_m = 0.0F;
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    if ((block.lanes >> lane & 1U) != 0) write_lane(block, lane, held[lane], planes[index * simd_lanes + lane]);
+  }
+  return rounded_out(box);
+}
+
+/// A pair of which one triangle is not there is the other.
+inline Patch WideArrays::present_part(const Patch& patch) const {
+  if (!patch.is_pair() || (!boxes[patch.triangle[0]].empty() && !boxes[patch.triangle[1]].empty())) return patch;
+  const std::uint32_t left = boxes[patch.triangle[0]].empty() ? patch.triangle[1] : patch.triangle[0];
+  return {{left, Patch::no_triangle}, {{{left, 0}, {left, 1}, {left, 2}, {}}}};
+}
+
+inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held,
+                                   PatchPlanes& planes_of_patch) const {
+  const Patch patch = present_part(held);
+  const std::array<Vec3, 4> world_m = quadrilateral(patch);
+  planes_of_patch = planes_of(world_m, patch);
+  const Vec3 centre_m(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
+  std::array<Vec3, 4> corner_m;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    // The centre in the world would be rounded, far from zero by more than the patch is large.
+    corner_m[corner] = (world_m[corner] - origin_m) - centre_m;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<float>(corner_m[corner][axis]);
+      block.corner_m[corner][static_cast<std::size_t>(axis)][lane] = at;
+      block.size_m = std::max(block.size_m, std::abs(at));
     }
   }
-  block.lanes = there;
-  if (there == 0) return {};
-  const Vec3 centre_m = box.center() - origin_m;
-  // To float and back as explicit vectors: with plain numbers g++ 12 (-O2) vectorises the way there and back away, and
-  // corners would be counted from another centre than queries use.
-  const Float4 rounded_centre = __builtin_convertvector((Double4{centre_m.x, centre_m.y, centre_m.z, 0.0}), Float4);
-  const Double4 exact_centre = __builtin_convertvector(rounded_centre, Double4);
-  std::memcpy(block.centre_m.data(), &rounded_centre, sizeof block.centre_m);
-  detail::BlockWriter writer(corners_m, origin_m + Vec3(exact_centre[0], exact_centre[1], exact_centre[2]));
-  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    if ((block.lanes >> lane & 1U) != 0) writer.add(lane, held[lane]);
-  }
-  writer.write(block, held, std::span(planes).subspan(std::size_t{index} * simd_lanes, simd_lanes));
-  const Aabb<float> rounded = rounded_out(box);
+  const auto& [a, b, c, d] = corner_m;
+  const auto squared = [](const Vec3& from, const Vec3& to) { return glm::dot(to - from, to - from); };
+  const double diameter_m =
+      std::sqrt(std::max({squared(a, b), squared(b, c), squared(c, d), squared(d, a), squared(a, c), squared(b, d)}));
+  block.reach_m[lane] = static_cast<float>(PatchBlock::edge_error_factor * diameter_m);
+  const Vec3 across = glm::cross(b - a, c - a);
+  const double length = glm::length(across);
+  const Vec3 normal = length > 0.0 ? across / length : Vec3(0.0);
   for (int axis = 0; axis < 3; ++axis) {
-    extent_m = std::max({extent_m, std::abs(rounded.min[axis]), std::abs(rounded.max[axis])});
+    block.normal[static_cast<std::size_t>(axis)][lane] = static_cast<float>(normal[axis]);
   }
-  return rounded;
+  block.offset_m[lane] = static_cast<float>(glm::dot(normal, a));
+  // Without a plane, or where the vertices have moved until the pair is not convex, nothing is certain, but every ray
+  // near it is asked.
+  const bool is_sound = length > 0.0 && detail::is_convex(a, b, c, d);
+  const double bend_m = is_sound ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
+  block.bend_m[lane] = patch.is_pair() ? static_cast<float>(bend_m) : 0.0F;
+}
+
+inline PatchPlanes WideArrays::planes_of(const std::array<Vec3, 4>& world_m, const Patch& patch) const {
+  PatchPlanes result;
+  result.triangle = patch.triangle;
+  for (const std::uint32_t triangle : patch.triangles()) {
+    const auto& [a, b, c] = corners_m[triangle];
+    const Vec3 across = glm::cross(b - a, c - a);
+    const double length = glm::length(across);
+    result.plane[triangle == patch.triangle[0] ? 0 : 1] = {length > 0.0 ? across / length : Vec3(0.0), a};
+  }
+  if (!patch.is_pair()) return result;
+  // Both normals to one side: a b c d turns the same way in both triangles.
+  const auto& [a, b, c, d] = world_m;
+  if (glm::dot(result.plane[1].normal, glm::cross(c - a, d - a)) < 0.0) result.plane[1].normal *= -1.0;
+  if (glm::dot(result.plane[0].normal, glm::cross(b - a, c - a)) < 0.0) result.plane[0].normal *= -1.0;
+  const int axis = result.axis(), x = (axis + 1) % 3, y = (axis + 2) % 3;
+  // b lies where u x + v y < w.
+  const double turn = result.plane[0].normal[axis] < 0.0 ? -1.0 : 1.0;
+  const Vec3 from = a - result.plane[0].point_m;
+  result.u = -turn * (c[y] - a[y]);
+  result.v = turn * (c[x] - a[x]);
+  result.w = result.u * from[x] + result.v * from[y];
+  return result;
 }
 
 }  // namespace dcem

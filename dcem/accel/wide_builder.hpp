@@ -1,26 +1,24 @@
 #pragma once
-/// Builds a wide tree: patches, a binary tree by surface-area heuristic, collapsed to eight children a node.
+/// Builds a wide tree: a binary tree over patches and units, collapsed to eight children a node.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
-#include "dcem/accel/build_item.hpp"
 #include "dcem/accel/patches.hpp"
-#include "dcem/accel/sah_builder.hpp"
 #include "dcem/accel/wide_arrays.hpp"
+#include "dcem/accel/wide_binner.hpp"
 #include "dcem/accel/wide_collapse.hpp"
+#include "dcem/core/parallel_for.hpp"
 
 namespace dcem {
 
 /// How a wide tree is built.
 struct WideSettings {
-  /// Bins, sweeps and costs of the binary tree; leaf sizes are set here and ignored there.
-  SahSettings sah;
   /// Relative costs of nodes and blocks, by which the binary tree is collapsed.
   WideCosts costs;
   /// Two triangles become one patch where the fourth corner is no further from the plane of the others than this times
@@ -29,155 +27,173 @@ struct WideSettings {
   /// A group of at most this many patches owns a subtree that moves as a whole; a larger one, such as a city, is mixed
   /// with its surroundings (number). Default 512.
   std::uint32_t unit_limit = 512;
+  /// Splitting ends at this many patches of one group where it gains little (number, 1 … 8). Default 8; 1 leaves it to
+  /// the collapse alone.
+  std::uint32_t leaf_limit = 8;
+  /// Threads of a build (number); 0: as many as the machine has. The tree does not depend on it. Default 1.
+  unsigned threads = 1;
 };
+
+/// Throws std::invalid_argument for settings outside the ranges written above.
+inline void validate(const WideSettings& settings) {
+  const auto positive = [](double cost) { return cost > 0.0 && std::isfinite(cost); };
+  if (!positive(settings.costs.node) || !positive(settings.costs.block)) {
+    throw std::invalid_argument("costs of a wide tree must be positive and finite");
+  }
+  if (std::isnan(settings.pair_flatness)) throw std::invalid_argument("pair_flatness: expected a number");
+  if (settings.leaf_limit < 1 || settings.leaf_limit > simd_lanes) {
+    throw std::invalid_argument("leaf_limit: expected 1 to 8");
+  }
+}
 
 /// Fills the arrays of one tree.
 class WideBuilder {
  public:
-  explicit WideBuilder(const WideSettings& settings) : settings_(settings) {
-    settings_.sah.leaf_limit = settings_.sah.leaf_maximum = 1;
-    require_valid_settings(settings_.sah);
-  }
+  explicit WideBuilder(const WideSettings& settings) : settings_(settings) {}
 
-  /// `group_first` as in Bvh::build_grouped. Boxes and corners of `arrays` are set.
-  void build(WideArrays& arrays, const TriangleView& mesh, std::span<const std::uint32_t> group_first) {
+  /// Group i has the patches [first_patch[i], first_patch[i + 1]). Boxes and corners of `arrays` are set.
+  void build(WideArrays& arrays, std::span<const Patch> patches, std::span<const std::uint32_t> first_patch) {
     arrays_ = &arrays;
+    patches_ = patches;
     place_origin();
-    detail::PatchBuilder pairing(mesh, settings_.pair_flatness);
-    std::vector<BuildItem<double>> items;
-    kinds_.clear();
-    patches_.clear();
-    arrays.unit_root.assign(group_first.size(), WideChild{});
-    for (std::uint32_t group = 0; group < group_first.size(); ++group) {
-      const auto last =
-          group + 1 < group_first.size() ? group_first[group + 1] : static_cast<std::uint32_t>(mesh.size());
-      const std::size_t first_patch = patches_.size();
-      pairing.append(group_first[group], last, patches_);
-      if (patches_.size() > first_patch) add_group(group, first_patch, items);
+    arrays.take_node();  // the root is node 0, before the nodes of any unit
+    const std::size_t groups = first_patch.size() - 1;
+    arrays.unit_root.assign(groups, WideChild{});
+    std::vector<WideItem> items;
+    for (std::uint32_t group = 0; group < groups; ++group) {
+      if (first_patch[group + 1] - first_patch[group] > settings_.unit_limit) {
+        for (std::uint32_t patch = first_patch[group]; patch < first_patch[group + 1]; ++patch) {
+          items.push_back(patch_item(patch, group));
+        }
+      } else if (first_patch[group + 1] > first_patch[group]) {
+        items.push_back(plant_unit(group, first_patch[group], first_patch[group + 1]));
+      }
     }
-    arrays.take_node();
-    if (!items.empty()) plant_root(items);
+    if (items.empty()) return;
+    plant_root(items);
+    write_boxes();
   }
 
  private:
-  /// An item of the tree over all: a patch, or a unit.
-  struct Kind {
-    std::uint32_t group;
-    std::uint32_t patch;  ///< in patches_; no_patch for a unit
-  };
-  static constexpr std::uint32_t no_patch = 0xffffffffU;
-
   void place_origin() {
     Aabb<double> all;
     for (const Aabb<double>& box : arrays_->boxes) all.extend(box);
     arrays_->origin_m = all.empty() ? Vec3(0.0) : all.center();
   }
 
-  void add_group(std::uint32_t group, std::size_t first_patch, std::vector<BuildItem<double>>& items) {
-    const std::size_t count = patches_.size() - first_patch;
-    if (count > settings_.unit_limit) {
-      for (std::size_t patch = first_patch; patch < patches_.size(); ++patch) {
-        items.emplace_back(arrays_->box_of_patch(patches_[patch]), static_cast<std::uint32_t>(kinds_.size()));
-        kinds_.push_back({group, static_cast<std::uint32_t>(patch)});
-      }
-      return;
+  WideItem item_around(const Aabb<double>& box, std::uint32_t index, std::uint32_t kind) const {
+    WideItem item{Float4{}, Float4{}, index, kind};
+    const Aabb<float> rounded = arrays_->rounded_out(box);
+    for (int axis = 0; axis < 3 && !rounded.empty(); ++axis) {
+      item.low[axis] = rounded.min[axis];
+      item.high[axis] = rounded.max[axis];
     }
-    std::vector<BuildItem<double>> own;
-    const auto first_kind = static_cast<std::uint32_t>(kinds_.size());
-    for (std::size_t patch = first_patch; patch < patches_.size(); ++patch) {
-      own.emplace_back(arrays_->box_of_patch(patches_[patch]), static_cast<std::uint32_t>(kinds_.size()));
-      kinds_.push_back({group, static_cast<std::uint32_t>(patch)});
-    }
-    static_cast<void>(first_kind);
-    const auto [root, box] = plant(own);
-    arrays_->unit_root[group] = root;
-    (root.is_block() ? arrays_->block_unit[root.index()] : arrays_->node_unit[root.index()]) = group;
-    items.emplace_back(bounds_of<double>(own), static_cast<std::uint32_t>(kinds_.size()));
-    kinds_.push_back({group, no_patch});
-    unit_box_.resize(arrays_->unit_root.size());
-    unit_box_[group] = box;
+    return item;
+  }
+  WideItem patch_item(std::uint32_t patch, std::uint32_t group) const {
+    return item_around(arrays_->box_of_patch(patches_[patch]), patch, group);
   }
 
-  struct Planted {
-    WideChild child;
-    Aabb<float> box;
-  };
+  /// Makes a group's own subtree and the item that stands for it.
+  WideItem plant_unit(std::uint32_t group, std::uint32_t first, std::uint32_t last) {
+    std::vector<WideItem> own;
+    Aabb<double> box;
+    for (std::uint32_t patch = first; patch < last; ++patch) {
+      own.push_back(patch_item(patch, group));
+      box.extend(arrays_->box_of_patch(patches_[patch]));
+    }
+    const WideChild root = own.size() <= simd_lanes ? plant_block(own, group) : plant_tree(own);
+    arrays_->unit_root[group] = root;
+    (root.is_block() ? arrays_->block_unit[root.index()] : arrays_->node_unit[root.index()]) = group;
+    return item_around(box, group, WideItem::no_kind);
+  }
 
-  Planted plant(std::span<BuildItem<double>> items) {
-    const std::vector<BvhNode<double>> binary = SahBuilder<double>(settings_.sah).build(items);
-    const WideCollapse collapse(binary, settings_.costs, [&](std::uint32_t position) {
-      const Kind& kind = kinds_[items[position].index];
-      return kind.patch == no_patch ? WideCollapse::no_kind : kind.group;
-    });
+  WideChild plant_tree(std::span<WideItem> items) {
+    const std::vector<WideSplit> binary = WideBinner().build(items, settings_.leaf_limit, settings_.threads);
+    const WideCollapse collapse(binary, items, settings_.costs);
     return plant_entry(binary, collapse, items, 0);
   }
 
-  void plant_root(std::span<BuildItem<double>> items) {
-    const std::vector<BvhNode<double>> binary = SahBuilder<double>(settings_.sah).build(items);
-    const WideCollapse collapse(binary, settings_.costs, [&](std::uint32_t position) {
-      const Kind& kind = kinds_[items[position].index];
-      return kind.patch == no_patch ? WideCollapse::no_kind : kind.group;
-    });
+  void plant_root(std::span<WideItem> items) {
+    const std::vector<WideSplit> binary = WideBinner().build(items, settings_.leaf_limit, settings_.threads);
+    const WideCollapse collapse(binary, items, settings_.costs);
     if (collapse.is_block(0)) {
-      const Planted only = plant_entry(binary, collapse, items, 0);
-      arrays_->hang(only.child, WidePlace::at(0, 0), only.box);
+      hang(plant_entry(binary, collapse, items, 0), WidePlace::at(0, 0));
     } else {
       fill_node(0, binary, collapse, items, 0);
     }
   }
 
-  Planted plant_entry(std::span<const BvhNode<double>> binary, const WideCollapse& collapse,
-                      std::span<const BuildItem<double>> items, std::uint32_t slot) {
+  WideChild plant_entry(std::span<const WideSplit> binary, const WideCollapse& collapse,
+                        std::span<const WideItem> items, std::uint32_t slot) {
     if (!collapse.is_block(slot)) {
       const std::uint32_t node = arrays_->take_node();
       fill_node(node, binary, collapse, items, slot);
-      return {WideChild::node(node), arrays_->nodes[node].box()};
+      return WideChild::node(node);
     }
-    const BvhNode<double>& held = binary[slot];
-    const Kind* kind = held.is_leaf() ? &kinds_[items[held.first].index] : nullptr;
-    if (kind != nullptr && kind->patch == no_patch) return {arrays_->unit_root[kind->group], unit_box_[kind->group]};
-    members_.clear();
-    collect(binary, items, slot);
-    const std::uint32_t block = arrays_->add_block(kinds_[members_.front()].group);
-    for (std::uint32_t lane = 0; lane < members_.size(); ++lane) {
-      const Patch& patch = patches_[kinds_[members_[lane]].patch];
+    const std::span<const WideItem> held = items.subspan(binary[slot].first, binary[slot].count);
+    if (held.front().kind == WideItem::no_kind) return arrays_->unit_root[held.front().index];
+    return plant_block(held, held.front().kind);
+  }
+
+  WideChild plant_block(std::span<const WideItem> held, std::uint32_t group) {
+    const std::uint32_t block = arrays_->add_block(group);
+    for (std::uint32_t lane = 0; lane < held.size(); ++lane) {
+      const Patch& patch = patches_[held[lane].index];
       arrays_->patches[block * simd_lanes + lane] = patch;
       for (const std::uint32_t triangle : patch.triangles()) {
         arrays_->patch_of_triangle[triangle] = block * simd_lanes + lane;
       }
     }
-    return {WideChild::block(block), arrays_->write_block(block)};
+    return WideChild::block(block);
   }
 
-  void fill_node(std::uint32_t node, std::span<const BvhNode<double>> binary, const WideCollapse& collapse,
-                 std::span<const BuildItem<double>> items, std::uint32_t slot) {
-    std::vector<std::uint32_t> entries;
-    collapse.for_each_entry(slot, [&](std::uint32_t entry) { entries.push_back(entry); });
+  void fill_node(std::uint32_t node, std::span<const WideSplit> binary, const WideCollapse& collapse,
+                 std::span<const WideItem> items, std::uint32_t slot) {
+    std::array<std::uint32_t, simd_lanes> entries;
+    std::size_t count = 0;
+    collapse.for_each_entry(slot, [&](std::uint32_t entry) { entries[count++] = entry; });
     // Any-hit queries take the lanes as they come: the largest box is the most likely to be in the way.
-    std::stable_sort(entries.begin(), entries.end(), [&](std::uint32_t one, std::uint32_t other) {
-      return binary[one].box.half_area() > binary[other].box.half_area();
-    });
-    for (std::uint32_t lane = 0; lane < entries.size(); ++lane) {
-      const Planted planted = plant_entry(binary, collapse, items, entries[lane]);
-      arrays_->hang(planted.child, WidePlace::at(node, lane), planted.box);
+    std::stable_sort(
+        entries.begin(), entries.begin() + static_cast<std::ptrdiff_t>(count),
+        [&](std::uint32_t one, std::uint32_t other) { return binary[one].half_area_m2 > binary[other].half_area_m2; });
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      hang(plant_entry(binary, collapse, items, entries[lane]), WidePlace::at(node, lane));
     }
   }
 
-  void collect(std::span<const BvhNode<double>> binary, std::span<const BuildItem<double>> items, std::uint32_t slot) {
-    if (!binary[slot].is_leaf()) {
-      collect(binary, items, binary[slot].left());
-      collect(binary, items, binary[slot].right());
-      return;
+  /// Boxes come last, all at once.
+  void hang(WideChild child, WidePlace place) { arrays_->hang(child, place, {}); }
+
+  void write_boxes() {
+    std::vector<Aabb<float>> boxes(arrays_->blocks.size());
+    parallel_for(boxes.size() / blocks_at_a_time + 1, settings_.threads, [&](std::size_t part, unsigned) {
+      const std::size_t last = std::min(boxes.size(), (part + 1) * blocks_at_a_time);
+      for (std::size_t block = part * blocks_at_a_time; block < last; ++block) {
+        boxes[block] = arrays_->write_block(static_cast<std::uint32_t>(block));
+      }
+    });
+    for (std::uint32_t block = 0; block < boxes.size(); ++block) {
+      arrays_->note_extent(boxes[block]);
+      arrays_->set_box(arrays_->block_place[block], boxes[block]);
     }
-    members_.push_back(items[binary[slot].first].index);
+    tighten_below(0);
   }
+
+  void tighten_below(std::uint32_t node) {
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+      const WideChild child = arrays_->nodes[node].child[lane];
+      if (child.is_none() || child.is_block()) continue;
+      tighten_below(child.index());
+      arrays_->set_box(WidePlace::at(node, lane), arrays_->nodes[child.index()].box());
+    }
+  }
+
+  static constexpr std::size_t blocks_at_a_time = 256;
 
   WideSettings settings_;
   WideArrays* arrays_ = nullptr;
-  std::vector<Patch> patches_;
-  std::vector<Kind> kinds_;  ///< by item
-  std::vector<Aabb<float>> unit_box_;
-  std::vector<std::uint32_t> members_;
+  std::span<const Patch> patches_;
 };
 
 }  // namespace dcem

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "dcem/accel/bvh_node.hpp"
 #include "dcem/accel/simd.hpp"
+#include "dcem/accel/wide_binner.hpp"
 
 namespace dcem {
 
@@ -28,17 +28,12 @@ struct WideCosts {
 class WideCollapse {
  public:
   static constexpr std::uint32_t most = simd_lanes;
-  static constexpr std::uint32_t no_kind = 0xffffffffU;  ///< of an item that is an entry by itself
-
-  /// A binary tree in the layout of `SahBuilder::build`, one item a leaf. `kind_of(position) -> std::uint32_t` says
-  /// which items may share a block: those of one kind.
-  template <typename KindOf>
-  WideCollapse(std::span<const BvhNode<double>> nodes, const WideCosts& costs, KindOf&& kind_of)
+  WideCollapse(std::span<const WideSplit> nodes, std::span<const WideItem> items, const WideCosts& costs)
       : nodes_(nodes), costs_(costs), plans_(nodes.size()) {
-    // Children stand behind their parents in the builder's order.
+    // Children stand behind their parents.
     for (std::size_t slot = nodes.size(); slot-- > 0;) {
       if (nodes[slot].is_leaf()) {
-        plan_leaf(slot, kind_of(nodes[slot].first));
+        plan_leaf(slot, items[nodes[slot].first].kind);
       } else {
         plan_inner(slot);
       }
@@ -60,28 +55,27 @@ class WideCollapse {
     std::array<std::uint8_t, most> left{};  ///< [i − 1]: entries of the left child; 0: as with one entry less
     std::uint8_t count = 0;                 ///< items of one kind below, most + 1 when more or mixed
     bool block = false;
-    std::uint32_t kind = no_kind;
+    std::uint32_t kind = WideItem::no_kind;
   };
 
   void plan_leaf(std::size_t slot, std::uint32_t kind) {
     Plan& own = plans_[slot];
     own.kind = kind;
-    own.count = kind == no_kind ? most + 1 : 1;
+    own.count = static_cast<std::uint8_t>(kind == WideItem::no_kind ? most + 1 : nodes_[slot].count);
     own.block = true;
-    own.cost.fill(static_cast<float>(costs_.block * nodes_[slot].box.half_area()));
+    own.cost.fill(static_cast<float>(costs_.block) * nodes_[slot].half_area_m2);
   }
 
   void plan_inner(std::size_t slot) {
-    const BvhNode<double>& node = nodes_[slot];
-    const Plan &left = plans_[node.left()], &right = plans_[node.right()];
+    const WideSplit& node = nodes_[slot];
+    const Plan &left = plans_[node.left], &right = plans_[node.right];
     Plan& own = plans_[slot];
     own.kind = left.kind;
     const std::uint32_t count = std::uint32_t{left.count} + right.count;
     own.count = static_cast<std::uint8_t>(left.kind == right.kind ? std::min(count, most + 1) : most + 1);
     for (std::uint32_t entries = 2; entries <= most; ++entries) share_out(own, left, right, entries);
-    const double area_m2 = node.box.half_area();
-    const float as_node = static_cast<float>(costs_.node * area_m2) + own.cost[most - 1];
-    const float as_block = static_cast<float>(costs_.block * area_m2);
+    const float as_node = static_cast<float>(costs_.node) * node.half_area_m2 + own.cost[most - 1];
+    const float as_block = static_cast<float>(costs_.block) * node.half_area_m2;
     own.block = own.count <= most && as_block <= as_node;
     own.cost[0] = own.block ? as_block : as_node;
   }
@@ -106,11 +100,11 @@ class WideCollapse {
       return;
     }
     const std::uint32_t share = own.left[entries - 1];
-    divide(nodes_[slot].left(), share, visit);
-    divide(nodes_[slot].right(), entries - share, visit);
+    divide(nodes_[slot].left, share, visit);
+    divide(nodes_[slot].right, entries - share, visit);
   }
 
-  std::span<const BvhNode<double>> nodes_;
+  std::span<const WideSplit> nodes_;
   WideCosts costs_;
   std::vector<Plan> plans_;
 };

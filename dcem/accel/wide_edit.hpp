@@ -4,18 +4,6 @@
 
 namespace dcem {
 
-namespace detail {
-
-/// Whether a box is surely valid and not empty: without branches, NaN fails every comparison.
-inline bool is_plain_box(const Aabb<double>& box) {
-  constexpr double limit_m = maximum_coordinate_m;
-  return ((box.min.x >= -limit_m) & (box.min.y >= -limit_m) & (box.min.z >= -limit_m) & (box.max.x <= limit_m) &
-          (box.max.y <= limit_m) & (box.max.z <= limit_m) & (box.min.x <= box.max.x) & (box.min.y <= box.max.y) &
-          (box.min.z <= box.max.z)) != 0;
-}
-
-}  // namespace detail
-
 inline void WideTree::require_input(const TriangleView& mesh, Boxes boxes) const {
   if (mesh.size() != boxes.size()) throw std::invalid_argument("one box per triangle is needed");
   require_valid_boxes(boxes);
@@ -25,18 +13,37 @@ inline void WideTree::build_grouped(const TriangleView& mesh, Boxes boxes, std::
                                     const WideSettings& settings) {
   require_input(mesh, boxes);
   require_valid_groups(group_first, boxes.size());
-  WideBuilder builder(settings);
+  dcem::validate(settings);
   settings_ = settings;
   group_first_.assign(group_first.begin(), group_first.end());
-  arrays_ = {};
-  arrays_.costs = settings.costs;
+  patches_.clear();
+  first_patch_.assign(1, 0);
+  detail::PatchBuilder pairing(mesh, settings_.pair_flatness);
+  for (std::size_t group = 0; group < group_first.size(); ++group) {
+    const bool is_last = group + 1 == group_first.size();
+    pairing.append(group_first[group], is_last ? static_cast<std::uint32_t>(mesh.size()) : group_first[group + 1],
+                   patches_);
+    first_patch_.push_back(static_cast<std::uint32_t>(patches_.size()));
+  }
+  plant(mesh, boxes);
+}
+
+inline void WideTree::rebuild(const TriangleView& mesh, Boxes boxes) {
+  require_input(mesh, boxes);
+  if (boxes.size() != primitive_count()) throw std::invalid_argument("one box per triangle of the tree is needed");
+  plant(mesh, boxes);
+}
+
+inline void WideTree::plant(const TriangleView& mesh, Boxes boxes) {
+  arrays_.clear();
+  arrays_.costs = settings_.costs;
   arrays_.boxes.resize(boxes.size());
   arrays_.corners_m.resize(boxes.size());
   arrays_.patch_of_triangle.resize(boxes.size());
   for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
     arrays_.set_triangle(triangle, mesh.corners_m(triangle), canonical_box(boxes[triangle]));
   }
-  builder.build(arrays_, mesh, group_first_);
+  WideBuilder(settings_).build(arrays_, patches_, first_patch_);
   sah_at_build_ = sah_cost();
   block_is_dirty_.assign(arrays_.blocks.size(), 0);
   unit_is_moved_.assign(group_first_.size(), 0);
@@ -49,17 +56,13 @@ inline void WideTree::build_grouped(const TriangleView& mesh, Boxes boxes, std::
   }
 }
 
-inline void WideTree::rebuild(const TriangleView& mesh, Boxes boxes) {
-  build_grouped(mesh, boxes, std::vector<std::uint32_t>(group_first_), WideSettings(settings_));
-}
-
 inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes) {
   if (mesh.size() != primitive_count() || boxes.size() != primitive_count()) {
     throw std::invalid_argument("one box per triangle of the tree is needed");
   }
   for (const std::uint32_t triangle : moved) {
     if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
-    if (!detail::is_plain_box(boxes[triangle])) require_valid_box(boxes[triangle], triangle);
+    require_valid_box(boxes[triangle], triangle);
   }
   for (const std::uint32_t unit : moved_units_) unit_is_moved_[unit] = 0;
   moved_units_.clear();
@@ -76,6 +79,7 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
     block_is_dirty_[block] = 0;
     const WidePlace place = arrays_.block_place[block];
     const Aabb<float> box = arrays_.write_block(block);
+    arrays_.note_extent(box);
     if (box != arrays_.box_at(place)) {
       arrays_.set_box(place, box);
       report.nodes_visited += arrays_.tighten_above(place.node());
@@ -187,7 +191,7 @@ inline void WideTree::hang_at(WideChild child, const Aabb<float>& box, const Spo
     place = WidePlace::at(node, 1);
   }
   arrays_.hang(child, place, box);
-  // A new node is tight already: what is above it begins at the node that it hangs in.
+  // From the node that was there: a new one below it is tight already, and the way up would end at it.
   arrays_.tighten_above(spot.node);
 }
 

@@ -25,7 +25,7 @@ class SpentCounters {
 /// Fetches what will be looked at when the walk is over.
 [[gnu::always_inline]] inline void prefetch(const PatchPlanes& planes) {
   __builtin_prefetch(&planes);
-  __builtin_prefetch(&planes.divider);
+  __builtin_prefetch(&planes.u);
 }
 
 /// Calls `visit(lane)` for the set bits, lowest first, until one returns true. Returns whether one did.
@@ -52,8 +52,9 @@ inline Aabb<double> WideTree::in_world(const Aabb<float>& box) const {
   return result;
 }
 
-inline void WideTree::offer(std::uint32_t patch, const Ray<double>& ray, std::optional<WideHit>& best) const {
-  const std::optional<WideHit> hit = hit_on(patch, ray);
+inline void WideTree::offer(std::uint32_t patch, const Ray<double>& ray, bool is_met,
+                            std::optional<WideHit>& best) const {
+  const std::optional<WideHit> hit = hit_on(patch, ray, is_met);
   if (!hit || (best && (hit->t > best->t || (hit->t == best->t && hit->triangle > best->triangle)))) return;
   best = hit;
 }
@@ -78,7 +79,7 @@ std::optional<WideHit> WideTree::nearest_among(const Ray<double>& ray, const Wid
   std::optional<WideHit> best;
   const auto look_at = [&](const detail::WideCandidates::Candidate& candidate) {
     ++counters.primitives_tested;
-    if (candidate.certain || meets_exactly(arrays_.patches[candidate.patch], ray)) offer(candidate.patch, ray, best);
+    offer(candidate.patch, ray, candidate.certain, best);
   };
   const auto take = [&](std::uint32_t block, std::uint32_t met, const Hits& hits, float& walk_limit) {
     for (; met != 0; met &= met - 1) {
@@ -111,7 +112,7 @@ std::optional<WideHit> WideTree::nearest_of_all(const Ray<double>& ray, Consider
     const Patch& held = arrays_.patches[patch];
     if (held.is_none() || arrays_.box_of_patch(held).empty()) continue;
     ++counters.primitives_tested;
-    if (is_considered(patch, considers) && meets_exactly(held, ray)) offer(patch, ray, best);
+    if (is_considered(patch, considers)) offer(patch, ray, false, best);
   }
   return best;
 }
@@ -124,8 +125,7 @@ bool WideTree::blocked(const Ray<double>& ray, Considers&& considers, TraversalC
   const auto blocks = [&](std::uint32_t patch, bool certain) {
     if (!is_considered(patch, considers)) return false;
     ++sum.spent.primitives_tested;
-    if (certain) return true;
-    return hit_on(patch, ray) && meets_exactly(arrays_.patches[patch], ray);
+    return certain || hit_on(patch, ray, false);
   };
   if (first_try && *first_try < primitive_count() && !arrays_.boxes[*first_try].empty() &&
       blocks(arrays_.patch_of_triangle[*first_try], false)) {
@@ -149,6 +149,7 @@ void WideTree::closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* c
   double t_max = ray.t_max;
   const auto ask = [&](const Patch& patch) {
     for (const std::uint32_t triangle : patch.triangles()) {
+      if (arrays_.boxes[triangle].empty()) continue;
       ++sum.spent.primitives_tested;
       leaf(triangle, t_max);
     }
@@ -182,6 +183,7 @@ bool WideTree::any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* count
   if (primitive_count() == 0) return false;
   const auto ask = [&](const Patch& patch) {
     return std::ranges::any_of(patch.triangles(), [&](std::uint32_t triangle) {
+      if (arrays_.boxes[triangle].empty()) return false;
       ++sum.spent.primitives_tested;
       return leaf(triangle);
     });

@@ -34,8 +34,9 @@ class WideRay {
   ///
   /// Formula: the slab method, each bound as b·r − o·r with one multiply_add. o·r is rounded: an error of the origin by
   /// a few units of its last place. Therefore the origin is moved outwards for the near and for the far planes, by
-  /// 4 units of |o| + extent, which holds without fused operations too; the far bounds are scaled by 1 + 12 units for
-  /// the roundings of r, of the direction and of the product.
+  /// 4 units of the largest |o| + extent, which holds without fused operations too; the far bounds are scaled by 1 + 12
+  /// units for the roundings of r, of the direction and of the product. A direction that is all but zero on an axis is
+  /// taken for 1e-20, which leads astray by at most 1e-8 of that length, because the longest is at least 1e-12.
   std::uint32_t meets(const WideNode& node, float t_max, Float8& entry) const;
 
   /// What is known of a ray and the patches of a block.
@@ -58,25 +59,18 @@ class WideRay {
   static constexpr float unit = 0x1p-24F;  ///< relative error of one rounding
   static constexpr float least_slope = 1e-20F;
 
-  void shear(const PatchBlock& block, std::size_t corner, float x_shift, float y_shift, Float8& x, Float8& y) const {
-    simd::load(x, block.corner_m[corner][axis_[0]].data());
-    simd::load(y, block.corner_m[corner][axis_[1]].data());
-    Float8 z;
-    simd::load(z, block.corner_m[corner][axis_[2]].data());
-    Float8 sheared = z;
-    simd::multiply_add(sheared, Float8{} - shear_[0], x + x_shift);
-    x = sheared;
-    sheared = z;
-    simd::multiply_add(sheared, Float8{} - shear_[1], y + y_shift);
-    y = sheared;
+  /// A corner as the ray sees it: moved so that the ray runs through 0, 0.
+  struct Sheared {
+    Float8 x, y;
+  };
+  Sheared shear(const PatchBlock& block, std::size_t corner, float x_shift, float y_shift) const {
+    const auto& at_m = block.corner_m[corner];
+    const Float8 z(at_m[axis_[2]]);
+    return {simd::multiply_add(z, -shear_[0], Float8(at_m[axis_[0]]) + x_shift),
+            simd::multiply_add(z, -shear_[1], Float8(at_m[axis_[1]]) + y_shift)};
   }
-
-  /// p × q of two sheared corners: positive on one side of the edge between them.
-  [[gnu::always_inline]] static void edge(const Float8& px, const Float8& py, const Float8& qx, const Float8& qy,
-                                          Float8& result) {
-    result = qx;
-    simd::multiply_add(result, py, -qy * px);
-  }
+  /// Positive on one side of the edge between two corners.
+  static Float8 edge(const Sheared& p, const Sheared& q) { return simd::multiply_add(q.x, p.y, -(q.y * p.x)); }
 
   void prepare_patches(const Float4& from, const Float4& from_low, const Float4& direction, std::uint32_t z);
 
@@ -105,6 +99,7 @@ namespace detail {
 }  // namespace detail
 
 [[gnu::always_inline]] inline WideRay::WideRay(const Ray<double>& ray, const Vec3& tree_origin_m, float extent_m) {
+  using Double4 = double __attribute__((vector_size(32)));
   const Double4 origin = Double4{ray.origin.x, ray.origin.y, ray.origin.z, 0.0} -
                          Double4{tree_origin_m.x, tree_origin_m.y, tree_origin_m.z, 0.0};
   const Float4 from = __builtin_convertvector(origin, Float4);
@@ -116,7 +111,8 @@ namespace detail {
   const Float4 least = Float4{} + least_slope;
   const Float4 reciprocal = 1.0F / detail::with_sign(size > least ? size : least, sign);
   const Float4 far_reciprocal = reciprocal * (1.0F + 12 * unit);
-  const Float4 step = detail::with_sign((distance + extent_m) * (4 * unit) + 1e-20F, sign);
+  const float farthest = std::max(distance[0], std::max(distance[1], distance[2]));
+  const Float4 step = detail::with_sign(Float4{} + ((farthest + extent_m) * (4 * unit) + 1e-20F), sign);
   const Float4 near_offset = -(from + step) * reciprocal, far_offset = -(from - step) * far_reciprocal;
   std::memcpy(reciprocal_.data(), &reciprocal, sizeof reciprocal);
   std::memcpy(far_reciprocal_.data(), &far_reciprocal, sizeof far_reciprocal);
@@ -126,7 +122,6 @@ namespace detail {
     near_[axis] = static_cast<std::uint32_t>(2 * axis) + (static_cast<std::uint32_t>(sign[axis]) >> 31U);
   }
   const float longest = std::max(size[0], std::max(size[1], size[2]));
-  const float farthest = std::max(distance[0], std::max(distance[1], distance[2]));
   // Without branches, because rays point everywhere; NaN fails every comparison.
   usable_ = ((longest > 1e-12F) & (longest < 1e12F) & (farthest < 1e12F) & (ray.t_min >= 0.0) &
              (ray.t_min <= ray.t_max) & (size[0] <= longest) & (size[1] <= longest) & (size[2] <= longest) &
@@ -153,27 +148,17 @@ namespace detail {
 }
 
 [[gnu::always_inline]] inline std::uint32_t WideRay::meets(const WideNode& node, float t_max, Float8& entry) const {
-  Float8 near_x, near_y, near_z, far_x, far_y, far_z;
-  simd::load(near_x, node.bounds_m[near_[0]].data());
-  simd::load(near_y, node.bounds_m[near_[1]].data());
-  simd::load(near_z, node.bounds_m[near_[2]].data());
-  simd::load(far_x, node.bounds_m[near_[0] ^ 1U].data());
-  simd::load(far_y, node.bounds_m[near_[1] ^ 1U].data());
-  simd::load(far_z, node.bounds_m[near_[2] ^ 1U].data());
-  simd::multiply_add(near_x, Float8{} + reciprocal_[0], Float8{} + near_offset_[0]);
-  simd::multiply_add(near_y, Float8{} + reciprocal_[1], Float8{} + near_offset_[1]);
-  simd::multiply_add(near_z, Float8{} + reciprocal_[2], Float8{} + near_offset_[2]);
-  simd::multiply_add(far_x, Float8{} + far_reciprocal_[0], Float8{} + far_offset_[0]);
-  simd::multiply_add(far_y, Float8{} + far_reciprocal_[1], Float8{} + far_offset_[1]);
-  simd::multiply_add(far_z, Float8{} + far_reciprocal_[2], Float8{} + far_offset_[2]);
-  simd::set_maximum(near_x, near_y);
-  simd::set_maximum(near_z, Float8{} + t_min_);
-  simd::set_maximum(near_x, near_z);
-  simd::set_minimum(far_x, far_y);
-  simd::set_minimum(far_z, Float8{} + t_max);
-  simd::set_minimum(far_x, far_z);
-  entry = near_x;
-  return simd::bits(near_x <= far_x);
+  const auto bound = [&](std::size_t axis, std::uint32_t turned) {
+    return Float8(node.bounds_m[near_[axis] ^ turned]);
+  };
+  const auto near = [&](std::size_t axis) {
+    return simd::multiply_add(bound(axis, 0), reciprocal_[axis], near_offset_[axis]);
+  };
+  const auto far = [&](std::size_t axis) {
+    return simd::multiply_add(bound(axis, 1), far_reciprocal_[axis], far_offset_[axis]);
+  };
+  entry = simd::maximum(simd::maximum(near(0), near(1)), simd::maximum(near(2), t_min_));
+  return (entry <= simd::minimum(simd::minimum(far(0), far(1)), simd::minimum(far(2), t_max))).bits();
 }
 
 [[gnu::always_inline]] inline std::uint32_t WideRay::meets(const PatchBlock& block, float t_max,
@@ -185,45 +170,27 @@ namespace detail {
   const float distance_m = std::max(std::abs(x0), std::max(std::abs(y0), std::abs(z0))) + block.size_m;
   const float error_m = 16 * unit * distance_m;
   const float x_shift = x0 - shear_[0] * z0, y_shift = y0 - shear_[1] * z0;
-  Float8 ax, ay, bx, by, cx, cy, dx, dy;
-  shear(block, 0, x_shift, y_shift, ax, ay);
-  shear(block, 1, x_shift, y_shift, bx, by);
-  shear(block, 2, x_shift, y_shift, cx, cy);
-  shear(block, 3, x_shift, y_shift, dx, dy);
-  Float8 ab, bc, cd, da;
-  edge(ax, ay, bx, by, ab);
-  edge(bx, by, cx, cy, bc);
-  edge(cx, cy, dx, dy, cd);
-  edge(dx, dy, ax, ay, da);
-  Float8 bend, error;
-  simd::load(bend, block.bend_m.data());
-  simd::load(error, block.reach_m.data());
-  error = error * (error_m + bend) + 2 * error_m * error_m;
-  Float8 low = ab, high = ab;
-  simd::set_minimum(low, bc);
-  simd::set_maximum(high, bc);
-  Float8 other_low = cd, other_high = cd;
-  simd::set_minimum(other_low, da);
-  simd::set_maximum(other_high, da);
-  simd::set_minimum(low, other_low);
-  simd::set_maximum(high, other_high);
+  const Sheared a = shear(block, 0, x_shift, y_shift), b = shear(block, 1, x_shift, y_shift);
+  const Sheared c = shear(block, 2, x_shift, y_shift), d = shear(block, 3, x_shift, y_shift);
+  const Float8 ab = edge(a, b), bc = edge(b, c), cd = edge(c, d), da = edge(d, a);
+  const Float8 bend(block.bend_m), reach(block.reach_m);
+  const Float8 error = reach * (bend + error_m) + 2 * error_m * error_m;
+  const Float8 low = simd::minimum(simd::minimum(ab, bc), simd::minimum(cd, da));
+  const Float8 high = simd::maximum(simd::maximum(ab, bc), simd::maximum(cd, da));
   // Refusals are asked for, not passes: NaN, from numbers near the limits, refuses nothing.
-  const std::uint32_t candidates = block.lanes & ~simd::bits((low < -error) & (high > error));
+  const std::uint32_t candidates = block.lanes & ~((low < -error) & (high > error)).bits();
   if (candidates == 0) return 0;
-  Float8 nx, ny, nz, t;
-  simd::load(nx, block.normal[axis_[0]].data());
-  simd::load(ny, block.normal[axis_[1]].data());
-  simd::load(nz, block.normal[axis_[2]].data());
-  simd::load(t, block.offset_m.data());
-  const Float8 steepness = 1.0F / (nx * direction_[0] + ny * direction_[1] + nz * direction_[2]);
-  t = (t + nx * x0 + ny * y0 + nz * z0) * steepness;
-  Float8 margin = (2 * error_m + bend) * steepness;
-  margin = margin < 0.0F ? -margin : margin;
+  const Float8 nx(block.normal[axis_[0]]), ny(block.normal[axis_[1]]), nz(block.normal[axis_[2]]);
+  const Float8 steepness = Float8(1.0F) / (nx * direction_[0] + ny * direction_[1] + nz * direction_[2]);
+  const Float8 t = (Float8(block.offset_m) + nx * x0 + ny * y0 + nz * z0) * steepness;
+  const Float8 margin = simd::absolute((bend + 2 * error_m) * steepness);
   hits.first = t - margin;
   hits.last = t + margin;
-  // A triangle's fourth edge has no length: its function is zero and says nothing.
-  hits.certain = candidates & simd::bits(((low > error) | (high < -error)) & (hits.first > t_min_));
-  return candidates & ~simd::bits((hits.first > t_max) | (hits.last < t_min_));
+  // Far beside a patch the products are rounded by more than the error allows for.
+  const Mask8 is_near = (simd::absolute(a.x) < reach) & (simd::absolute(a.y) < reach);
+  // A triangle's fourth corner lies on an edge: that edge's two functions have the triangle's sign as well.
+  hits.certain = candidates & (((low > error) | (high < -error)) & is_near & (hits.first > t_min_)).bits();
+  return candidates & ~((hits.first > t_max) | (hits.last < t_min_)).bits();
 }
 
 }  // namespace dcem

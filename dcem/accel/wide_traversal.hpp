@@ -46,7 +46,7 @@ template <typename Take>
       std::uint32_t met = ray.meets(node, limit, entries);
       if (met != 0) {
         alignas(32) std::array<float, simd_lanes> entry;
-        std::memcpy(entry.data(), &entries, sizeof entries);
+        entries.store(entry);
         std::uint32_t lane = static_cast<std::uint32_t>(std::countr_zero(met));
         Pending nearest{node.child[lane].code, entry[lane]};
         const std::uint32_t bottom = height;

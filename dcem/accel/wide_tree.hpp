@@ -58,7 +58,7 @@ class WideTree {
     const std::uint32_t whole = 0;
     build_grouped(mesh, boxes, {&whole, 1}, settings);
   }
-  /// Builds everything anew, with the groups and settings of the last build.
+  /// Builds everything anew, with the groups, the patches and the settings of the last build.
   void rebuild(const TriangleView& mesh, Boxes boxes);
 
   // Following motion.
@@ -152,18 +152,34 @@ class WideTree {
   Aabb<float> root_box() const { return arrays_.nodes.empty() ? Aabb<float>{} : arrays_.nodes[0].box(); }
   Aabb<double> in_world(const Aabb<float>& box) const;
 
-  /// Where a ray that meets a patch does so, and in which of its triangles; absent where that is not from t_min to
-  /// t_max. The same whatever has shown that the ray meets the patch.
-  std::optional<WideHit> hit_on(std::uint32_t patch, const Ray<double>& ray) const {
+  static bool is_in_range(double t, const Ray<double>& ray) {
+    return t >= ray.t_min && t <= ray.t_max && std::isfinite(t);
+  }
+  /// Where a ray meets a patch, and in which of its triangles; absent where it does not from t_min to t_max. `is_met`:
+  /// it is known that the line of the ray meets the patch; double precision finds out otherwise. The answer is the same
+  /// whatever has shown that.
+  std::optional<WideHit> hit_on(std::uint32_t patch, const Ray<double>& ray, bool is_met) const {
     const PatchPlanes& planes = arrays_.planes[patch];
-    const auto [t, side] = planes.meet(ray);
-    if (!(t >= ray.t_min && t <= ray.t_max) || !std::isfinite(t)) return std::nullopt;
+    const auto [t, side, is_sure] = planes.meet(ray);
+    if (!is_sure) return hit_on_either(planes, ray);
+    if (!is_in_range(t, ray) || !(is_met || meets_exactly(planes, ray))) return std::nullopt;
     return WideHit{t, planes.triangle[side]};
   }
-  /// Whether the line of a ray meets a triangle of the patch, in double precision.
-  bool meets_exactly(const Patch& patch, const Ray<double>& ray) const {
+  /// As hit_on, each triangle asked by itself.
+  std::optional<WideHit> hit_on_either(const PatchPlanes& planes, const Ray<double>& ray) const {
     const WatertightRay exact(ray);
-    return std::ranges::any_of(patch.triangles(), [&](std::uint32_t triangle) {
+    std::optional<WideHit> best;
+    for (std::size_t side = 0; side < planes.triangles().size(); ++side) {
+      const WideHit hit{planes.t_of(side, ray), planes.triangle[side]};
+      if (!is_in_range(hit.t, ray) || !exact.intersect(arrays_.corners_m[hit.triangle])) continue;
+      if (!best || hit.t < best->t || (hit.t == best->t && hit.triangle < best->triangle)) best = hit;
+    }
+    return best;
+  }
+  /// Whether the line of a ray meets a triangle of the patch, in double precision.
+  bool meets_exactly(const PatchPlanes& planes, const Ray<double>& ray) const {
+    const WatertightRay exact(ray);
+    return std::ranges::any_of(planes.triangles(), [&](std::uint32_t triangle) {
       return exact.intersect(arrays_.corners_m[triangle]).has_value();
     });
   }
@@ -173,7 +189,7 @@ class WideTree {
     return considers(arrays_.planes[patch].triangle[0]);
   }
   /// Takes over a hit where it is nearer, or as near and of a smaller number.
-  void offer(std::uint32_t patch, const Ray<double>& ray, std::optional<WideHit>& best) const;
+  void offer(std::uint32_t patch, const Ray<double>& ray, bool is_met, std::optional<WideHit>& best) const;
 
   template <typename Considers>
   std::optional<WideHit> nearest_among(const Ray<double>& ray, const WideRay& wide, Considers& considers,
@@ -183,6 +199,7 @@ class WideTree {
                                         TraversalCounters& counters) const;
 
   void require_input(const TriangleView& mesh, Boxes boxes) const;
+  void plant(const TriangleView& mesh, Boxes boxes);
   void note_moved_unit(std::uint32_t group);
   bool take_out_and_hang(std::uint32_t group);
   void take_out(WidePlace place);
@@ -208,6 +225,8 @@ class WideTree {
   WideArrays arrays_;
   WideSettings settings_;
   std::vector<std::uint32_t> group_first_;
+  std::vector<Patch> patches_;              ///< by group
+  std::vector<std::uint32_t> first_patch_;  ///< one more entry than groups
   double sah_at_build_ = 0.0;
 
   std::vector<std::uint32_t> dirty_blocks_;

@@ -1,7 +1,7 @@
 #pragma once
 /// Questions that paths ask of the scene: what does a ray hit, is a leg free and which sheets does it cross, which
-/// facets are at a point. `Tree` is `Bvh<double>` or its oracle `BruteForce<double>`; both hold the boxes of the
-/// scene's triangles.
+/// facets are at a point. `Tree` is `WideTree`, `Bvh<double>` or their oracle `BruteForce<double>`, over the scene's
+/// triangles.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -22,13 +22,14 @@
 #include "dcem/sim/discovery.hpp"
 #include "dcem/sim/element_paths.hpp"
 #include "dcem/sim/frame_result.hpp"
+#include "dcem/sim/scene_tree.hpp"
 #include "dcem/sim/settings.hpp"
 
 namespace dcem {
 
 /// Owns the scene and the tree over it. `Surface` says how surfaces reflect and transmit: the scene's materials, or a
-/// model of the caller's own. `Tree` is `Bvh<double>`, or `BruteForce<double>` to check it.
-template <SurfaceModel Surface = MaterialTable, typename Tree = Bvh<double>>
+/// model of the caller's own. `Tree` is `WideTree`, `Bvh<double>`, or `BruteForce<double>` to check them.
+template <SurfaceModel Surface = MaterialTable, typename Tree = WideTree>
 class Simulator {
  public:
   /// Throws std::invalid_argument where a setting is out of range or a material is not tabled at the frequency.
@@ -166,7 +167,7 @@ Simulator<Surface, Tree>::Simulator(Scene scene, SimulationSettings settings, Su
   }
   frame_ = scene_.frame_at(0.0);
   scene_.apply(frame_);
-  tree_.build_grouped(scene_.triangle_boxes(), scene_.first_triangles());
+  build_tree(tree_, scene_);
 }
 
 }  // namespace dcem

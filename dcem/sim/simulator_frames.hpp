@@ -55,7 +55,7 @@ UpkeepReport Simulator<Surface, Tree>::update_tree(const ChangeSet& changes) {
     for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
   }
   // Kept where this throws (a box too far away): the tree must hear of them in a later frame.
-  const UpkeepReport report = maintainer_.update(tree_, moved_, scene_.triangle_boxes());
+  const UpkeepReport report = dcem::update_tree(maintainer_, tree_, moved_, scene_);
   moved_.clear();
   return report;
 }

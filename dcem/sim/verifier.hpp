@@ -86,8 +86,8 @@ class Verifier {
   void note(const FrameResult& frame, const LinkResult& link, const Path& path, const std::string& what);
 
   Discovery discovery_;
-  Simulator<Surface, BruteForce<double>> alone_;          ///< solves single paths
-  std::optional<Simulator<Surface, Bvh<double>>> rival_;  ///< the other discovery
+  Simulator<Surface, BruteForce<double>> alone_;  ///< solves single paths
+  std::optional<Simulator<Surface>> rival_;       ///< the other discovery
   VerificationReport report_;
 };
 
