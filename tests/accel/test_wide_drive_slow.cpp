@@ -204,6 +204,12 @@ void check_frame(const std::vector<WideTree>& trees, const Drive& drive, int ray
   Aabb<double> bounds;
   for (const WideTree& tree : trees) REQUIRE(tree.validate(drive.boxes) == "");
   for (const Aabb<double>& box : drive.boxes) bounds.extend(box);
+  for (const WideTree& tree : trees) {
+    const Vec3 low = bounds.min - tree.arrays().origin_m, high = bounds.max - tree.arrays().origin_m;
+    for (int axis = 0; axis < 3; ++axis) {
+      REQUIRE(static_cast<double>(tree.arrays().extent_m) >= std::max(std::abs(low[axis]), std::abs(high[axis])));
+    }
+  }
   for (int trial = 0; trial < rays; ++trial) {
     const Ray<double> ray = any_ray(random, drive.mesh, bounds);
     INFO(text_of(ray));
