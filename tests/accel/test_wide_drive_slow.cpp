@@ -285,8 +285,9 @@ TEST_CASE("3,000 frames: no deeper, no larger, and nothing is allocated") {
 
 TEST_CASE("the counter of allocations counts") {
   const std::size_t before = allocations;
-  std::vector<int> one(100);
-  CHECK(one.size() == 100);
+  // Called by name: compilers leave out a new and delete that nobody would miss.
+  void* memory = ::operator new(400);
+  ::operator delete(memory);
   CHECK(allocations > before);
   std::vector<PatchBlock> aligned(3);
   CHECK(reinterpret_cast<std::uintptr_t>(aligned.data()) % 64 == 0);
