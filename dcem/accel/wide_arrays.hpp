@@ -238,14 +238,14 @@ inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
   return result;
 }
 
-/// A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
+/// The corners of a patch in the world; a triangle has d = a.
 inline std::array<Vec3, 4> WideArrays::quadrilateral(const Patch& patch) const {
   const auto corner = [&](std::size_t index) {
     const auto& [triangle, at] = patch.corner[index];
     return corners_m[triangle][at];
   };
   const Vec3 a = corner(0), b = corner(1), c = corner(2);
-  return {a, b, c, patch.is_pair() ? corner(3) : 0.5 * (a + c)};
+  return {a, b, c, patch.is_pair() ? corner(3) : a};
 }
 
 inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
@@ -286,9 +286,11 @@ inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const 
   planes_of_patch = planes_of(world_m, patch);
   const Vec3 centre_m(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
   std::array<Vec3, 4> corner_m;
+  // A centre or a middle in the world would be rounded, far from zero by more than the patch is large.
+  for (std::size_t corner = 0; corner < 4; ++corner) corner_m[corner] = (world_m[corner] - origin_m) - centre_m;
+  // A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
+  if (!patch.is_pair()) corner_m[3] = 0.5 * (corner_m[0] + corner_m[2]);
   for (std::size_t corner = 0; corner < 4; ++corner) {
-    // The centre in the world would be rounded, far from zero by more than the patch is large.
-    corner_m[corner] = (world_m[corner] - origin_m) - centre_m;
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<float>(corner_m[corner][axis]);
       block.corner_m[corner][static_cast<std::size_t>(axis)][lane] = at;

@@ -73,7 +73,8 @@ struct alignas(64) WideNode {
   }
 };
 
-/// Eight patches, each one triangle or two that make a flat convex quadrilateral a b c d. A triangle has d = a.
+/// Eight patches, each one triangle or two that make a flat convex quadrilateral a b c d. In a triangle d is the middle
+/// of a c.
 ///
 /// The numbers serve to say of a ray that it surely misses a patch or surely hits it; where neither is sure, double
 /// precision decides. The patches of block b have the numbers 8 b + lane.

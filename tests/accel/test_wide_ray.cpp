@@ -53,12 +53,15 @@ WideMesh patches_of(RandomStream& random, const Kind& kind) {
     const Vec3 beyond = height * between(random, 0.2, 1.0) * across + fold * normal;
     mesh.add(a, c, mesh.add_vertex(at + length * between(random, 0.3, 0.7) * along + beyond));
   }
+  // One more far behind: the tree's origin is then far from the patches, in the middle.
+  if (kind.shift_m > 0.0) mesh.add(-shift, -shift + Vec3(1, 0, 0), -shift + Vec3(0, 1, 0));
   return mesh;
 }
 
 /// A ray close to an edge, a corner or the inside of a triangle, some of them along its surface.
 Ray<double> aimed(RandomStream& random, const WideMesh& mesh, const Kind& kind) {
-  const auto corners = mesh.corners(static_cast<std::uint32_t>(random.next() % mesh.triangles.size()));
+  const std::size_t count = mesh.triangles.size() - (kind.shift_m > 0.0 ? 1 : 0);
+  const auto corners = mesh.corners(static_cast<std::uint32_t>(random.next() % count));
   const double place = random.uniform();
   Vec3 aim = dcem_test::random_on(random, corners);
   if (place < 0.8) aim += exponent_between(random, -9, 0) * kind.size_m * random_direction(random);

@@ -204,13 +204,9 @@ TEST_CASE("shifted by 10 km, huge and tiny: the answers are those of double prec
 }
 
 TEST_CASE("small things far from zero: 1e9 m and 1e14 m away") {
-  // Whole multiples of the spacing of doubles there, so that the shift is exact.
-  const auto on_grid = [](const WideMesh& mesh, double step) {
-    return mesh.changed([step](const Vec3& vertex) { return step * glm::round(vertex / step); });
-  };
   const WideMesh pieces = dcem_test::soup(200, 71);
-  check_rays(Scene(moved_by(on_grid(pieces, 0x1p-20), 1.0, Vec3(1e9, -1e9, 1e9))), 1500, 72);
-  check_rays(Scene(moved_by(on_grid(pieces, 0x1p-4), 1.0, Vec3(1e14, 1e14, -1e14))), 1500, 73);
+  check_rays(Scene(moved_by(pieces, 1.0, Vec3(1e9, -1e9, 1e9))), 1500, 72);
+  check_rays(Scene(moved_by(pieces, 1.0, Vec3(1e14, 1e14, -1e14))), 1500, 73);
 }
 
 TEST_CASE("one thing beside the origin of a map, another at its far end") {
@@ -385,6 +381,64 @@ TEST_CASE("hits exactly at t_min and t_max count") {
     CHECK(scene.tree.blocked({Vec3(-5, 0.25, 0.125), Vec3(1, 0, 0), t, t}));
   }
   CHECK(scene.tree.nearest({Vec3(-1, 0.25, 0.125), Vec3(1, 0, 0), 0.0, 0.0}).has_value());
+}
+
+TEST_CASE("ends just before or behind a surface: the surface is not met, or is") {
+  const Scene scene(dcem_test::boxes_mesh(30, 125));
+  RandomStream random(126);
+  int met = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    Ray<double> ray = any_ray(random, scene.mesh, scene.bounds());
+    ray.t_min = 0.0, ray.t_max = infinity;
+    const auto hit = scene.tree.nearest(ray);
+    if (!hit || hit->t < 1e-3) continue;
+    ++met;
+    // Of the order of a rounding in single precision, and far above one in double.
+    const double step = std::pow(10.0, dcem_test::between(random, -8.5, -6));
+    Ray<double> before = ray, behind = ray, from_before = ray, from_behind = ray;
+    before.t_max = hit->t * (1 - step);
+    behind.t_max = hit->t * (1 + step);
+    from_before.t_min = hit->t * (1 - step);
+    from_behind.t_min = hit->t * (1 + step);
+    for (const Ray<double>& one : {before, behind, from_before, from_behind}) check_ray(scene, one, random);
+  }
+  CHECK(met > 1000);
+}
+
+TEST_CASE("boxes in single precision hold those in double, also seen from the world") {
+  for (const Vec3& shift : {Vec3(0), Vec3(1e4, -1e4, 3), Vec3(1e9)}) {
+    const Scene scene(moved_by(dcem_test::boxes_mesh(30, 127), 1.0, shift));
+    const WideArrays& arrays = scene.tree.arrays();
+    for (const Aabb<double>& box : scene.boxes) {
+      const Aabb<float> rounded = arrays.rounded_out(box);
+      for (int axis = 0; axis < 3; ++axis) {
+        // As long double, in which the difference is exact.
+        const long double origin = arrays.origin_m[axis];
+        REQUIRE(static_cast<long double>(rounded.min[axis]) <= box.min[axis] - origin);
+        REQUIRE(static_cast<long double>(rounded.max[axis]) >= box.max[axis] - origin);
+        REQUIRE(arrays.extent_m >= std::max(std::abs(rounded.min[axis]), std::abs(rounded.max[axis])));
+      }
+      REQUIRE(scene.tree.bounds().contains(box));
+      // Regions that touch in one corner or in one face only.
+      for (const Aabb<double>& region :
+           {Aabb<double>{box.max, box.max + Vec3(1e-3)}, {box.min - Vec3(1e-3), box.min}}) {
+        bool is_found = false;
+        scene.tree.overlapping(region,
+                               [&](std::uint32_t triangle) { is_found = is_found || scene.boxes[triangle] == box; });
+        REQUIRE(is_found);
+      }
+    }
+  }
+  // A face in the origin of the tree, where single precision leaves no room.
+  WideMesh faces = dcem_test::box_mesh(Vec3(-2), Vec3(2));
+  faces.add(Vec3(0, 1, 1), Vec3(0, 1.5, 1), Vec3(0, 1, 1.5));
+  const Scene scene(faces);
+  std::size_t count = 0;
+  scene.tree.overlapping({Vec3(-0.5, 1, 1), Vec3(0, 1.2, 1.2)},
+                         [&](std::uint32_t triangle) { count += triangle == 12; });
+  scene.tree.overlapping({Vec3(0, 1, 1), Vec3(0.5, 1.2, 1.2)},
+                         [&](std::uint32_t triangle) { count += triangle == 12; });
+  CHECK(count == 2);
 }
 
 TEST_CASE("of equally near triangles the one with the smallest number") {
