@@ -49,7 +49,8 @@ inline void validate(const UpkeepSettings& settings) {
   }
 }
 
-/// What keeping a tree took in one frame. Every node is kept, refit or rebuilt; one that was both counts as rebuilt.
+/// What keeping a tree took in one frame. Every node is kept, refit or rebuilt; one that was both counts as rebuilt. An
+/// object that a wide tree hung elsewhere counts as one rebuilt subtree of one node.
 struct UpkeepReport {
   std::uint64_t nodes_kept = 0;
   std::uint64_t nodes_refit = 0;
