@@ -115,7 +115,9 @@ enum class WidePolicy { rebuild, refit, reinsert };
 Contender wide_contender(const dcem::Scene& scene, unsigned threads, WidePolicy policy, double limit = 0.0) {
   const auto tree = std::make_shared<dcem::WideTree>();
   const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
-  tree->build_grouped(mesh, scene.triangle_boxes(), scene.first_triangles());
+  dcem::WideSettings settings;
+  settings.threads = threads;
+  tree->build_grouped(mesh, scene.triangle_boxes(), scene.first_triangles(), settings);
   Contender contender{"wide", "rebuild", limit};
   if (policy != WidePolicy::rebuild) contender.policy = policy == WidePolicy::refit ? "refit" : "reinsert";
   contender.update = [=, &scene](const Moved& moved) -> Work {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
@@ -154,7 +155,9 @@ struct WideArrays {
     const double cost = child.is_none() ? 0.0 : child.is_block() ? costs.block : costs.node;
     return cost * static_cast<double>(box.half_area());
   }
-  void write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held, PatchPlanes& planes_of_patch) const;
+  /// `centre_m`: that of the block, from the tree's origin.
+  void write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held, const Vec3& centre_m,
+                  PatchPlanes& planes_of_patch) const;
   PatchPlanes planes_of(const std::array<Vec3, 4>& world_m, const Patch& patch) const;
   Patch present_part(const Patch& patch) const;
   std::array<Vec3, 4> quadrilateral(const Patch& patch) const;
@@ -257,12 +260,17 @@ inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   }
   if (block.lanes == 0) return {};
   const Vec3 centre_m = box.center() - origin_m;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    block.centre_m[axis] = static_cast<float>(centre_m[static_cast<int>(axis)]);
-  }
+  // To float and back as explicit vectors: with plain numbers g++ 12 (-O2) vectorises the way there and back away, and
+  // the corners would be counted from another centre than queries use.
+  using Double4 = double __attribute__((vector_size(32)));
+  const Float4 rounded = __builtin_convertvector((Double4{centre_m.x, centre_m.y, centre_m.z, 0.0}), Float4);
+  const Double4 exact = __builtin_convertvector(rounded, Double4);
+  std::memcpy(block.centre_m.data(), &rounded, sizeof block.centre_m);
+  const Vec3 counted_from_m(exact[0], exact[1], exact[2]);
   block.size_m = 0.0F;
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    if ((block.lanes >> lane & 1U) != 0) write_lane(block, lane, held[lane], planes[index * simd_lanes + lane]);
+    if ((block.lanes >> lane & 1U) == 0) continue;
+    write_lane(block, lane, held[lane], counted_from_m, planes[index * simd_lanes + lane]);
   }
   return rounded_out(box);
 }
@@ -274,12 +282,11 @@ inline Patch WideArrays::present_part(const Patch& patch) const {
   return {{left, Patch::no_triangle}, {{{left, 0}, {left, 1}, {left, 2}, {}}}};
 }
 
-inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held,
+inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held, const Vec3& centre_m,
                                    PatchPlanes& planes_of_patch) const {
   const Patch patch = present_part(held);
   const std::array<Vec3, 4> world_m = quadrilateral(patch);
   planes_of_patch = planes_of(world_m, patch);
-  const Vec3 centre_m(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
   std::array<Vec3, 4> corner_m;
   for (std::size_t corner = 0; corner < 4; ++corner) {
     // The centre in the world would be rounded, far from zero by more than the patch is large.
@@ -295,18 +302,17 @@ inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const 
   const double diameter_m =
       std::sqrt(std::max({squared(a, b), squared(b, c), squared(c, d), squared(d, a), squared(a, c), squared(b, d)}));
   block.reach_m[lane] = static_cast<float>(PatchBlock::edge_error_factor * diameter_m);
-  const Vec3 across = glm::cross(b - a, c - a);
-  const double length = glm::length(across);
-  const Vec3 normal = length > 0.0 ? across / length : Vec3(0.0);
+  const Vec3& normal = planes_of_patch.plane[0].normal;
   for (int axis = 0; axis < 3; ++axis) {
     block.normal[static_cast<std::size_t>(axis)][lane] = static_cast<float>(normal[axis]);
   }
   block.offset_m[lane] = static_cast<float>(glm::dot(normal, a));
+  block.bend_m[lane] = 0.0F;
+  if (!patch.is_pair()) return;
   // Without a plane, or where the vertices have moved until the pair is not convex, nothing is certain, but every ray
   // near it is asked.
-  const bool is_sound = length > 0.0 && detail::is_convex(a, b, c, d);
-  const double bend_m = is_sound ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
-  block.bend_m[lane] = patch.is_pair() ? static_cast<float>(bend_m) : 0.0F;
+  const bool is_sound = normal != Vec3(0.0) && detail::is_convex(a, b, c, d);
+  block.bend_m[lane] = static_cast<float>(is_sound ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m);
 }
 
 inline PatchPlanes WideArrays::planes_of(const std::array<Vec3, 4>& world_m, const Patch& patch) const {

@@ -4,6 +4,18 @@
 
 namespace dcem {
 
+namespace detail {
+
+/// Whether a box is surely valid and not empty: without branches, NaN fails every comparison.
+inline bool is_plain_box(const Aabb<double>& box) {
+  constexpr double limit_m = maximum_coordinate_m;
+  return ((box.min.x >= -limit_m) & (box.min.y >= -limit_m) & (box.min.z >= -limit_m) & (box.max.x <= limit_m) &
+          (box.max.y <= limit_m) & (box.max.z <= limit_m) & (box.min.x <= box.max.x) & (box.min.y <= box.max.y) &
+          (box.min.z <= box.max.z)) != 0;
+}
+
+}  // namespace detail
+
 inline void WideTree::require_input(const TriangleView& mesh, Boxes boxes) const {
   if (mesh.size() != boxes.size()) throw std::invalid_argument("one box per triangle is needed");
   require_valid_boxes(boxes);
@@ -62,7 +74,7 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
   }
   for (const std::uint32_t triangle : moved) {
     if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
-    require_valid_box(boxes[triangle], triangle);
+    if (!detail::is_plain_box(boxes[triangle])) require_valid_box(boxes[triangle], triangle);
   }
   for (const std::uint32_t unit : moved_units_) unit_is_moved_[unit] = 0;
   moved_units_.clear();
