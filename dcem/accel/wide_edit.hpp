@@ -108,13 +108,20 @@ inline void WideTree::note_moved_unit(std::uint32_t group) {
   moved_units_.push_back(group);
 }
 
-inline std::size_t WideTree::reinsert_moved(double growth_limit) {
-  std::size_t count = 0;
-  for (const std::uint32_t group : moved_units_) {
+inline std::size_t WideTree::reinsert_moved(double growth_limit, std::uint32_t turn_length) {
+  const auto has_grown = [&](std::uint32_t group) {
     const WidePlace place = arrays_.place_of(arrays_.unit_root[group]);
     const double area_m2 = static_cast<double>(arrays_.nodes[place.node()].box().half_area());
-    if (!(area_m2 > growth_limit * static_cast<double>(area_when_hung_m2_[group]))) continue;
-    count += take_out_and_hang(group) ? 1U : 0U;
+    return area_m2 > growth_limit * static_cast<double>(area_when_hung_m2_[group]);
+  };
+  const std::size_t moved = moved_units_.size();
+  const std::size_t in_turn = turn_length == 0 ? 0 : (moved + turn_length - 1) / turn_length;
+  std::size_t count = 0;
+  for (std::size_t index = 0; index < in_turn; ++index) {
+    count += take_out_and_hang(moved_units_[next_turn_++ % moved]) ? 1U : 0U;
+  }
+  for (const std::uint32_t group : moved_units_) {
+    if (has_grown(group)) count += take_out_and_hang(group) ? 1U : 0U;
   }
   return count;
 }
