@@ -8,6 +8,7 @@
 /// hits to the last bit in every frame, and the binary tree the same to 1e-5 of the distance but for one ray in
 /// 100,000: anything else is an error, exit 1. Embree's differences are counted.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -110,21 +111,26 @@ void set_queries(Contender& contender, unsigned threads, Nearest nearest, Blocke
   };
 }
 
-enum class WidePolicy { rebuild, refit, reinsert };
+enum class WidePolicy { rebuild, refit, reinsert, grown_only };
 
 Contender wide_contender(const dcem::Scene& scene, unsigned threads, WidePolicy policy, double limit = 0.0) {
   const auto tree = std::make_shared<dcem::WideTree>();
   const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
-  tree->build_grouped(mesh, scene.triangle_boxes(), scene.first_triangles());
+  dcem::WideSettings settings;
+  settings.threads = threads;
+  tree->build_grouped(mesh, scene.triangle_boxes(), scene.first_triangles(), settings);
   Contender contender{"wide", "rebuild", limit};
-  if (policy != WidePolicy::rebuild) contender.policy = policy == WidePolicy::refit ? "refit" : "reinsert";
+  constexpr std::array names{"rebuild", "refit", "reinsert", "reinsert grown"};
+  contender.policy = names[static_cast<std::size_t>(policy)];
   contender.update = [=, &scene](const Moved& moved) -> Work {
     if (policy == WidePolicy::rebuild) {
       tree->rebuild(mesh, scene.triangle_boxes());
       return {tree->arrays().blocks.size(), tree->arrays().nodes.size(), 0};
     }
     const dcem::WideRefitReport report = tree->refit(moved.triangles, mesh, scene.triangle_boxes());
-    const std::size_t reinserted = policy == WidePolicy::reinsert ? tree->reinsert_moved(limit) : 0;
+    if (policy == WidePolicy::refit) return {report.blocks_written, report.nodes_visited, 0};
+    const std::uint32_t turn = policy == WidePolicy::reinsert ? dcem::WideTree::default_turn_length : 0;
+    const std::size_t reinserted = tree->reinsert_moved(limit, turn);
     return {report.blocks_written, report.nodes_visited, reinserted};
   };
   set_queries(
@@ -210,6 +216,7 @@ std::vector<Contender> contenders(const dcem::Scene& scene, const Options& optio
   for (const double limit : options.sweep ? many : one) {
     all.push_back(wide_contender(scene, threads, WidePolicy::reinsert, limit));
   }
+  all.push_back(wide_contender(scene, threads, WidePolicy::grown_only, options.limit));
   all.push_back(binary_contender(scene, threads));
 #if defined(DCEM_HAS_EMBREE)
   using dcem::bench::EmbreeUpkeep;
@@ -408,7 +415,7 @@ class Report {
   void print() const {
     std::fprintf(stderr,
                  "%s, %zu cars, %zu frames, %zu rays of each kind, %u thread(s); rates: Mrays/s in the last tenth\n"
-                 "%-16s %9s %9s %9s | %9s %9s | %8s %8s %7s %7s | %7s %7s %7s | %7s\n",
+                 "%-24s %9s %9s %9s | %9s %9s | %8s %8s %7s %7s | %7s %7s %7s | %7s\n",
                  scene_name_.c_str(), cars_, options_.frames, options_.rays, options_.threads(), "", "update ms", "p95",
                  "worst", "/embree2", "/rebuild", "closest", "occluded", "x embr2", "x embr2", "x fresh", "x fresh",
                  "SAH", "differ");
@@ -483,7 +490,7 @@ class Report {
       return to != nullptr ? speed_up(row.*ms, to->*ms) : 0.0;
     };
     std::fprintf(stderr,
-                 "%-16s %9.4f %9.4f %9.4f | %9.4f %9.4f | %8.2f %8.2f %7.3f %7.3f | %7.3f %7.3f %7.2f | %7llu\n",
+                 "%-24s %9.4f %9.4f %9.4f | %9.4f %9.4f | %8.2f %8.2f %7.3f %7.3f | %7.3f %7.3f %7.2f | %7llu\n",
                  title(row).c_str(), update_ms, dcem::quantile(row.update_ms, 0.95), dcem::quantile(row.update_ms, 1.0),
                  over(rival), over(rebuilt), rate(row.closest_ms, Window::last), rate(row.occluded_ms, Window::last),
                  faster(rival, &Contender::closest_ms), faster(rival, &Contender::occluded_ms),

@@ -37,6 +37,9 @@ struct UpkeepSettings {
   /// Of the wide tree: an object that moved is hung elsewhere when the node around it has grown to more than this many
   /// times what it was when the object came there (no unit, at least 1; infinity switches it off).
   double reinsertion_growth = 1.1;
+  /// Of the wide tree: in each frame one in this many of the objects that moved is hung anew in turn, whatever its node
+  /// has grown (number; 0 switches it off).
+  std::uint32_t reinsertion_turn = 50;
 };
 
 /// Throws std::invalid_argument for limits outside the ranges written above.

@@ -2,14 +2,18 @@
 /// The memory of a wide tree, and the writing of its single parts.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "dcem/accel/patch_planes.hpp"
 #include "dcem/accel/patches.hpp"
+#include "dcem/accel/wide_block.hpp"
 #include "dcem/accel/wide_collapse.hpp"
 #include "dcem/accel/wide_node.hpp"
 #include "dcem/core/error.hpp"
@@ -18,66 +22,6 @@
 #include "dcem/geometry/triangle.hpp"
 
 namespace dcem {
-
-/// The plane of a triangle in double, from the triangle's own corners in their own order: the same whatever patch the
-/// triangle is in, but for the sign of the normal. The normal is zero where there is no plane.
-struct PatchPlane {
-  Vec3 normal{0.0};   ///< of unit length
-  Vec3 point_m{0.0};  ///< first corner of the triangle; far from zero an offset would be rounded too much
-
-  /// The line of a ray meets it at height / slope.
-  double height(const Ray<double>& ray) const { return glm::dot(normal, point_m - ray.origin); }
-  double slope(const Ray<double>& ray) const { return glm::dot(normal, ray.direction); }
-};
-
-/// What a hit on a patch needs: the planes of its two triangles, and which of them is met. A pair is flat within a
-/// limit only, and bends when its vertices move; t must be that of the triangle.
-struct alignas(64) PatchPlanes {
-  std::array<PatchPlane, 2> plane;
-  /// The diagonal as a line u x + v y = w, seen along the axis on which the first normal is longest; x and y follow
-  /// that axis in turn and count from the first plane's point. Triangle 1 lies where u x + v y > w.
-  double u = 0.0, v = 0.0, w = 0.0;
-  std::array<std::uint32_t, 2> triangle{Patch::no_triangle, Patch::no_triangle};
-
-  bool is_pair() const { return triangle[1] != Patch::no_triangle; }
-  std::span<const std::uint32_t> triangles() const { return {triangle.data(), is_pair() ? 2U : 1U}; }
-  double t_of(std::size_t side, const Ray<double>& ray) const {
-    return plane[side].height(ray) / plane[side].slope(ray);
-  }
-
-  /// Which axis is left out of the diagonal.
-  int axis() const {
-    const Vec3 size = glm::abs(plane[0].normal);
-    return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  }
-
-  /// Where the line of a ray that meets the patch does so, and in which of the triangles.
-  struct Meeting {
-    double t;
-    std::uint32_t side;
-    /// Whether that is so. A ray along the patch, by less than some 0.06 degrees, may meet a fold in both triangles or
-    /// one plane far outside, and one through the diagonal is on both sides of it: then each triangle is asked by
-    /// itself.
-    bool is_sure;
-  };
-  Meeting meet(const Ray<double>& ray) const {
-    const double height = plane[0].height(ray), slope = plane[0].slope(ray);
-    if (!is_pair()) return {height / slope, 0, true};
-    const double other_slope = plane[1].slope(ray);
-    // Whether the point at t = height / slope is beyond the diagonal, multiplied by the slope.
-    const int x = (axis() + 1) % 3, y = (axis() + 2) % 3;
-    const Vec3 from = ray.origin - plane[0].point_m;
-    const double along_x = ray.direction[x] * height, from_x = from[x] * slope;
-    const double along_y = ray.direction[y] * height, from_y = from[y] * slope;
-    const double beyond = u * (along_x + from_x) + v * (along_y + from_y) - w * slope;
-    const double size = std::abs(u) * (std::abs(along_x) + std::abs(from_x)) +
-                        std::abs(v) * (std::abs(along_y) + std::abs(from_y)) + std::abs(w * slope);
-    const bool is_sure =
-        slope * other_slope > 1e-6 * glm::dot(ray.direction, ray.direction) && std::abs(beyond) > 1e-10 * size;
-    const std::uint32_t side = (beyond > 0.0) == (slope > 0.0) ? 1U : 0U;
-    return {side == 0 ? height / slope : plane[1].height(ray) / other_slope, side, is_sure};
-  }
-};
 
 /// Plain arrays; `WideTree` keeps their promises and `find_wide_defect` checks them.
 ///
@@ -159,10 +103,10 @@ struct WideArrays {
     const double cost = child.is_none() ? 0.0 : child.is_block() ? costs.block : costs.node;
     return cost * static_cast<double>(box.half_area());
   }
-  void write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held, PatchPlanes& planes_of_patch) const;
-  PatchPlanes planes_of(const std::array<Vec3, 4>& world_m, const Patch& patch) const;
+  void load_lane(detail::BlockLanes& lanes, std::uint32_t lane, const Patch& patch, const Vec3& centre_m) const;
+  static void store_shapes(const detail::BlockLanes& lanes, PatchBlock& block);
+  PatchPlanes planes_of(const detail::BlockLanes& lanes, std::uint32_t lane, const Patch& patch) const;
   Patch present_part(const Patch& patch) const;
-  std::array<Vec3, 4> quadrilateral(const Patch& patch) const;
 };
 
 inline void WideArrays::clear() {
@@ -238,16 +182,6 @@ inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
   return result;
 }
 
-/// The corners of a patch in the world; a triangle has d = a.
-inline std::array<Vec3, 4> WideArrays::quadrilateral(const Patch& patch) const {
-  const auto corner = [&](std::size_t index) {
-    const auto& [triangle, at] = patch.corner[index];
-    return corners_m[triangle][at];
-  };
-  const Vec3 a = corner(0), b = corner(1), c = corner(2);
-  return {a, b, c, patch.is_pair() ? corner(3) : a};
-}
-
 inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   PatchBlock& block = blocks[index];
   const std::span<const Patch> held = std::span(patches).subspan(std::size_t{index} * simd_lanes, simd_lanes);
@@ -255,19 +189,32 @@ inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   block.lanes = 0;
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
     if (held[lane].is_none()) continue;
-    const Aabb<double> own = box_of_patch(held[lane]);
-    if (own.empty()) continue;
-    block.lanes |= 1U << lane;
-    box.extend(own);
+    for (const std::uint32_t triangle : held[lane].triangles()) {
+      box.extend(boxes[triangle]);
+      block.lanes |= (boxes[triangle].empty() ? 0U : 1U) << lane;
+    }
   }
   if (block.lanes == 0) return {};
   const Vec3 centre_m = box.center() - origin_m;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    block.centre_m[axis] = static_cast<float>(centre_m[static_cast<int>(axis)]);
+  // To float and back as explicit vectors: with plain numbers g++ 12 (-O2) vectorises the way there and back away, and
+  // the corners would be counted from another centre than queries use.
+  using Double4 = double __attribute__((vector_size(32)));
+  const Float4 rounded = __builtin_convertvector((Double4{centre_m.x, centre_m.y, centre_m.z, 0.0}), Float4);
+  const Double4 exact = __builtin_convertvector(rounded, Double4);
+  std::memcpy(block.centre_m.data(), &rounded, sizeof block.centre_m);
+  const Vec3 counted_from_m(exact[0], exact[1], exact[2]);
+  detail::BlockLanes lanes;
+  std::array<Patch, simd_lanes> there;
+  for (std::uint32_t rest = block.lanes; rest != 0; rest &= rest - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+    there[lane] = present_part(held[lane]);
+    load_lane(lanes, lane, there[lane], counted_from_m);
   }
-  block.size_m = 0.0F;
-  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    if ((block.lanes >> lane & 1U) != 0) write_lane(block, lane, held[lane], planes[index * simd_lanes + lane]);
+  lanes.compute();
+  store_shapes(lanes, block);
+  for (std::uint32_t rest = block.lanes; rest != 0; rest &= rest - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+    planes[index * simd_lanes + lane] = planes_of(lanes, lane, there[lane]);
   }
   return rounded_out(box);
 }
@@ -279,57 +226,55 @@ inline Patch WideArrays::present_part(const Patch& patch) const {
   return {{left, Patch::no_triangle}, {{{left, 0}, {left, 1}, {left, 2}, {}}}};
 }
 
-inline void WideArrays::write_lane(PatchBlock& block, std::uint32_t lane, const Patch& held,
-                                   PatchPlanes& planes_of_patch) const {
-  const Patch patch = present_part(held);
-  const std::array<Vec3, 4> world_m = quadrilateral(patch);
-  planes_of_patch = planes_of(world_m, patch);
-  const Vec3 centre_m(block.centre_m[0], block.centre_m[1], block.centre_m[2]);
-  std::array<Vec3, 4> corner_m;
-  // A centre or a middle in the world would be rounded, far from zero by more than the patch is large.
-  for (std::size_t corner = 0; corner < 4; ++corner) corner_m[corner] = (world_m[corner] - origin_m) - centre_m;
-  // A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
-  if (!patch.is_pair()) corner_m[3] = 0.5 * (corner_m[0] + corner_m[2]);
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto at = static_cast<float>(corner_m[corner][axis]);
-      block.corner_m[corner][static_cast<std::size_t>(axis)][lane] = at;
-      block.size_m = std::max(block.size_m, std::abs(at));
-    }
+/// A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
+inline void WideArrays::load_lane(detail::BlockLanes& lanes, std::uint32_t lane, const Patch& patch,
+                                  const Vec3& centre_m) const {
+  // The centre in the world would be rounded, far from zero by more than the patch is large.
+  const auto corner = [&](std::size_t index) {
+    const auto& [triangle, at] = patch.corner[index];
+    return (corners_m[triangle][at] - origin_m) - centre_m;
+  };
+  const Vec3 a = corner(0), c = corner(2);
+  lanes.corner_m[0].set(lane, a);
+  lanes.corner_m[1].set(lane, corner(1));
+  lanes.corner_m[2].set(lane, c);
+  lanes.corner_m[3].set(lane, patch.is_pair() ? corner(3) : 0.5 * (a + c));
+  lanes.is_pair.at[lane] = patch.is_pair() ? 1.0 : 0.0;
+  for (std::size_t side = 0; side < patch.triangles().size(); ++side) {
+    const TriangleCorners& own = corners_m[patch.triangle[side]];
+    for (std::size_t index = 0; index < 3; ++index) lanes.own_corner_m[side][index].set(lane, own[index]);
   }
-  const auto& [a, b, c, d] = corner_m;
-  const auto squared = [](const Vec3& from, const Vec3& to) { return glm::dot(to - from, to - from); };
-  const double diameter_m =
-      std::sqrt(std::max({squared(a, b), squared(b, c), squared(c, d), squared(d, a), squared(a, c), squared(b, d)}));
-  block.reach_m[lane] = static_cast<float>(PatchBlock::edge_error_factor * diameter_m);
-  const Vec3 across = glm::cross(b - a, c - a);
-  const double length = glm::length(across);
-  const Vec3 normal = length > 0.0 ? across / length : Vec3(0.0);
-  for (int axis = 0; axis < 3; ++axis) {
-    block.normal[static_cast<std::size_t>(axis)][lane] = static_cast<float>(normal[axis]);
-  }
-  block.offset_m[lane] = static_cast<float>(glm::dot(normal, a));
-  // Without a plane, or where the vertices have moved until the pair is not convex, nothing is certain, but every ray
-  // near it is asked.
-  const bool is_sound = length > 0.0 && detail::is_convex(a, b, c, d);
-  const double bend_m = is_sound ? std::abs(glm::dot(normal, d - a)) * 1.0001 : diameter_m;
-  block.bend_m[lane] = patch.is_pair() ? static_cast<float>(bend_m) : 0.0F;
 }
 
-inline PatchPlanes WideArrays::planes_of(const std::array<Vec3, 4>& world_m, const Patch& patch) const {
+inline void WideArrays::store_shapes(const detail::BlockLanes& lanes, PatchBlock& block) {
+  std::array<float, simd_lanes> size_m{};
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    lanes.corner_m[corner].x.store(block.corner_m[corner][0]);
+    lanes.corner_m[corner].y.store(block.corner_m[corner][1]);
+    lanes.corner_m[corner].z.store(block.corner_m[corner][2]);
+    for (const std::array<float, simd_lanes>& row : block.corner_m[corner]) {
+      for (std::size_t lane = 0; lane < simd_lanes; ++lane) size_m[lane] = std::max(size_m[lane], std::abs(row[lane]));
+    }
+  }
+  block.size_m = *std::max_element(size_m.begin(), size_m.end());
+  lanes.diameter_m.store(block.reach_m);
+  for (float& reach_m : block.reach_m) reach_m *= static_cast<float>(PatchBlock::edge_error_factor);
+  lanes.normal[0].x.store(block.normal[0]);
+  lanes.normal[0].y.store(block.normal[1]);
+  lanes.normal[0].z.store(block.normal[2]);
+  lanes.offset_m.store(block.offset_m);
+  lanes.bend_m.store(block.bend_m);
+}
+
+inline PatchPlanes WideArrays::planes_of(const detail::BlockLanes& lanes, std::uint32_t lane,
+                                         const Patch& patch) const {
   PatchPlanes result;
   result.triangle = patch.triangle;
-  for (const std::uint32_t triangle : patch.triangles()) {
-    const auto& [a, b, c] = corners_m[triangle];
-    const Vec3 across = glm::cross(b - a, c - a);
-    const double length = glm::length(across);
-    result.plane[triangle == patch.triangle[0] ? 0 : 1] = {length > 0.0 ? across / length : Vec3(0.0), a};
-  }
+  result.plane[0] = {lanes.normal[0].get(lane), corners_m[patch.triangle[0]][0]};
   if (!patch.is_pair()) return result;
-  // Both normals to one side: a b c d turns the same way in both triangles.
-  const auto& [a, b, c, d] = world_m;
-  if (glm::dot(result.plane[1].normal, glm::cross(c - a, d - a)) < 0.0) result.plane[1].normal *= -1.0;
-  if (glm::dot(result.plane[0].normal, glm::cross(b - a, c - a)) < 0.0) result.plane[0].normal *= -1.0;
+  result.plane[1] = {lanes.normal[1].get(lane), corners_m[patch.triangle[1]][0]};
+  const Vec3 &a = corners_m[patch.corner[0].triangle][patch.corner[0].at],
+             &c = corners_m[patch.corner[2].triangle][patch.corner[2].at];
   const int axis = result.axis(), x = (axis + 1) % 3, y = (axis + 2) % 3;
   // b lies where u x + v y < w.
   const double turn = result.plane[0].normal[axis] < 0.0 ? -1.0 : 1.0;

@@ -4,6 +4,18 @@
 
 namespace dcem {
 
+namespace detail {
+
+/// Whether a box is surely valid and not empty: without branches, NaN fails every comparison.
+inline bool is_plain_box(const Aabb<double>& box) {
+  constexpr double limit_m = maximum_coordinate_m;
+  return ((box.min.x >= -limit_m) & (box.min.y >= -limit_m) & (box.min.z >= -limit_m) & (box.max.x <= limit_m) &
+          (box.max.y <= limit_m) & (box.max.z <= limit_m) & (box.min.x <= box.max.x) & (box.min.y <= box.max.y) &
+          (box.min.z <= box.max.z)) != 0;
+}
+
+}  // namespace detail
+
 inline void WideTree::require_input(const TriangleView& mesh, Boxes boxes) {
   if (mesh.size() != boxes.size()) throw std::invalid_argument("one box per triangle is needed");
   if (!mesh.surface_of_triangle.empty() && mesh.surface_of_triangle.size() != mesh.size()) {
@@ -74,7 +86,7 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
   }
   for (const std::uint32_t triangle : moved) {
     if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
-    require_valid_box(boxes[triangle], triangle);
+    if (!detail::is_plain_box(boxes[triangle])) require_valid_box(boxes[triangle], triangle);
     require_corners(mesh, triangle);
   }
   for (const std::uint32_t unit : moved_units_) unit_is_moved_[unit] = 0;
@@ -109,13 +121,20 @@ inline void WideTree::note_moved_unit(std::uint32_t group) {
   moved_units_.push_back(group);
 }
 
-inline std::size_t WideTree::reinsert_moved(double growth_limit) {
-  std::size_t count = 0;
-  for (const std::uint32_t group : moved_units_) {
+inline std::size_t WideTree::reinsert_moved(double growth_limit, std::uint32_t turn_length) {
+  const auto has_grown = [&](std::uint32_t group) {
     const WidePlace place = arrays_.place_of(arrays_.unit_root[group]);
     const double area_m2 = static_cast<double>(arrays_.nodes[place.node()].box().half_area());
-    if (!(area_m2 > growth_limit * static_cast<double>(area_when_hung_m2_[group]))) continue;
-    count += take_out_and_hang(group) ? 1U : 0U;
+    return area_m2 > growth_limit * static_cast<double>(area_when_hung_m2_[group]);
+  };
+  const std::size_t moved = moved_units_.size();
+  const std::size_t in_turn = turn_length == 0 ? 0 : (moved + turn_length - 1) / turn_length;
+  std::size_t count = 0;
+  for (std::size_t index = 0; index < in_turn; ++index) {
+    count += take_out_and_hang(moved_units_[next_turn_++ % moved]) ? 1U : 0U;
+  }
+  for (const std::uint32_t group : moved_units_) {
+    if (has_grown(group)) count += take_out_and_hang(group) ? 1U : 0U;
   }
   return count;
 }

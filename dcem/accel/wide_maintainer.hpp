@@ -11,7 +11,7 @@
 namespace dcem {
 
 /// Decides for one `WideTree`, whose groups are the objects of a scene. Of UpkeepSettings the policy, the limit of the
-/// SAH measure and `reinsertion_growth` count: RT-DEFORM's measure and renewal belong to the binary tree.
+/// SAH measure and the two of reinsertion count: RT-DEFORM's measure and renewal belong to the binary tree.
 class WideMaintainer {
  public:
   explicit WideMaintainer(const UpkeepSettings& settings = {}) : settings_(settings) { validate(settings); }
@@ -39,7 +39,8 @@ class WideMaintainer {
 
  private:
   void mend(WideTree& tree, const TriangleView& mesh, WideTree::Boxes boxes, UpkeepReport& report) const {
-    report.subtrees_rebuilt = report.nodes_rebuilt = tree.reinsert_moved(settings_.reinsertion_growth);
+    report.subtrees_rebuilt = report.nodes_rebuilt =
+        tree.reinsert_moved(settings_.reinsertion_growth, settings_.reinsertion_turn);
     if (tree.quality().ratio() > settings_.sah_growth_limit) rebuild(tree, mesh, boxes, report);
   }
   static void rebuild(WideTree& tree, const TriangleView& mesh, WideTree::Boxes boxes, UpkeepReport& report) {

@@ -67,11 +67,13 @@ class WideTree {
   /// may move in any way. Allocates nothing once the lists have grown.
   WideRefitReport refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes);
 
-  /// Takes the units that the last refit moved, and that make the node they hang in larger than `growth_limit` times
-  /// what it was when they came there, out of the tree, and hangs each where it costs least (branch and bound over Σ
-  /// cost · surface: Bittner, Hapala, Havran, "Fast insertion-based optimization of bounding volume hierarchies",
-  /// Computer Graphics Forum 2013). Returns how many were moved.
-  std::size_t reinsert_moved(double growth_limit);
+  /// Takes units out of the tree that the last refit moved, and hangs each where it costs least (branch and bound over
+  /// Σ cost · surface: Bittner, Hapala, Havran, "Fast insertion-based optimization of bounding volume hierarchies",
+  /// Computer Graphics Forum 2013): those that make the node they hang in larger than `growth_limit` times what it was
+  /// when they came there, and of all one in `turn_length`, in turn (0: none). Growth alone misses what has become a
+  /// bad place little by little, or by what others do. Returns how many were moved.
+  std::size_t reinsert_moved(double growth_limit, std::uint32_t turn_length = default_turn_length);
+  static constexpr std::uint32_t default_turn_length = 50;
 
   // Queries. `counters`, when given, is added to.
 
@@ -242,6 +244,7 @@ class WideTree {
   std::vector<char> unit_is_moved_;
   std::vector<float> area_when_hung_m2_;  ///< per group: half surface of the node around, when the unit came there
   std::vector<Branch> branches_;
+  std::size_t next_turn_ = 0;
 };
 
 }  // namespace dcem

@@ -178,7 +178,7 @@ void follow(WideTree& tree, Policy policy, const Drive& drive) {
   tree.refit(drive.moved, drive.mesh.view(), drive.boxes);
   if (policy == Policy::reinsert) tree.reinsert_moved(1.0);
   if (policy == Policy::reinsert_late) tree.reinsert_moved(1.1);
-  if (policy == Policy::reinsert_never) REQUIRE(tree.reinsert_moved(infinity) == 0);
+  if (policy == Policy::reinsert_never) REQUIRE(tree.reinsert_moved(infinity, 0) == 0);
 }
 
 constexpr Policy policies[] = {Policy::refit_only, Policy::reinsert, Policy::reinsert_late, Policy::reinsert_never,
