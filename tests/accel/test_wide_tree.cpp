@@ -25,12 +25,12 @@ using dcem_test::WideMesh;
 
 namespace {
 
-struct Scene {
+struct Planted {
   WideMesh mesh;
   std::vector<Aabb<double>> boxes;
   WideTree tree;
 
-  explicit Scene(WideMesh given, const WideSettings& settings = {}) : mesh(std::move(given)), boxes(mesh.boxes()) {
+  explicit Planted(WideMesh given, const WideSettings& settings = {}) : mesh(std::move(given)), boxes(mesh.boxes()) {
     tree.build(mesh.view(), boxes, settings);
     REQUIRE(tree.validate(boxes) == "");
   }
@@ -54,7 +54,7 @@ std::optional<WideHit> nearest_by_closest(const WideTree& tree, const WideMesh& 
 }
 
 /// All ray queries against the oracle.
-void check_ray(const Scene& scene, const Ray<double>& ray, RandomStream& random) {
+void check_ray(const Planted& scene, const Ray<double>& ray, RandomStream& random) {
   INFO(text_of(ray));
   const WideTree& tree = scene.tree;
   const std::vector<OracleHit> line = hits_on_line(scene.mesh, ray);
@@ -82,7 +82,7 @@ void check_ray(const Scene& scene, const Ray<double>& ray, RandomStream& random)
   REQUIRE(std::ranges::all_of(all, [&](std::uint32_t triangle) { return scene.mesh.is_there(triangle); }));
 }
 
-void check_rays(const Scene& scene, int trials, std::uint64_t seed) {
+void check_rays(const Planted& scene, int trials, std::uint64_t seed) {
   RandomStream random(seed);
   const Aabb<double> bounds = scene.bounds();
   int hits = 0;
@@ -94,7 +94,7 @@ void check_rays(const Scene& scene, int trials, std::uint64_t seed) {
   CHECK(hits > trials / 20);
 }
 
-void check_regions(const Scene& scene, int trials, std::uint64_t seed) {
+void check_regions(const Planted& scene, int trials, std::uint64_t seed) {
   BruteForce<double> oracle;
   oracle.build(scene.boxes);
   RandomStream random(seed);
@@ -124,17 +124,17 @@ WideMesh without_every(const WideMesh& mesh, std::uint32_t step) {
 TEST_CASE("soups, boxes, balls: every query gives the oracle's answer") {
   for (const std::size_t count : {1U, 2U, 3U, 8U, 9U, 40U, 700U}) {
     CAPTURE(count);
-    const Scene scene(dcem_test::soup(count, count));
+    const Planted scene(dcem_test::soup(count, count));
     check_rays(scene, count < 100 ? 400 : 1500, 10 + count);
     check_regions(scene, 300, 20 + count);
   }
-  check_rays(Scene(dcem_test::boxes_mesh(60, 31)), 3000, 32);
-  check_regions(Scene(dcem_test::boxes_mesh(60, 31)), 500, 33);
-  check_rays(Scene(dcem_test::ball(Vec3(0.3, 0.2, 0.1), 5.0, 12)), 3000, 34);
+  check_rays(Planted(dcem_test::boxes_mesh(60, 31)), 3000, 32);
+  check_regions(Planted(dcem_test::boxes_mesh(60, 31)), 500, 33);
+  check_rays(Planted(dcem_test::ball(Vec3(0.3, 0.2, 0.1), 5.0, 12)), 3000, 34);
 }
 
 TEST_CASE("a dirty mesh: needles, no area, repeated points, triangles drawn twice") {
-  check_rays(Scene(dcem_test::dirty_mesh(60, 41)), 6000, 42);
+  check_rays(Planted(dcem_test::dirty_mesh(60, 41)), 6000, 42);
 }
 
 TEST_CASE("a triangle drawn twice is as solid as one drawn once") {
@@ -147,7 +147,7 @@ TEST_CASE("a triangle drawn twice is as solid as one drawn once") {
     }
     mesh.add(0, 1, 2);
     kind == 0 ? mesh.add(0, 1, 2) : mesh.add(0, 1, kind == 1 ? 3U : 4U);
-    const Scene scene(mesh);
+    const Planted scene(mesh);
     CHECK(scene.tree.nearest({Vec3(1.5, 1, 5), Vec3(0, 0, -1)}).has_value());
     CHECK(scene.tree.blocked({Vec3(1.5, 1, 5), Vec3(0, 0, -1)}));
     check_rays(scene, 1000, 43);
@@ -157,7 +157,7 @@ TEST_CASE("a triangle drawn twice is as solid as one drawn once") {
 TEST_CASE("bent quadrilaterals, also along their surface") {
   for (const double bend_m : {1e-7, 1e-5, 2e-4}) {
     CAPTURE(bend_m);
-    const Scene scene(dcem_test::bent_ground(16, bend_m, 51));
+    const Planted scene(dcem_test::bent_ground(16, bend_m, 51));
     check_rays(scene, 2000, 52);
     RandomStream random(53);
     for (int trial = 0; trial < 6000; ++trial) {
@@ -179,7 +179,7 @@ TEST_CASE("a pair folded at its diagonal, met twice: the nearer hit counts, and 
   for (const Vec3& vertex : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0, 0, -9e-4)}) mesh.add_vertex(vertex);
   mesh.add(0, 1, 2);
   mesh.add(0, 2, 3);
-  const Scene scene(mesh);
+  const Planted scene(mesh);
   RandomStream random(55);
   for (int trial = 0; trial < 5000; ++trial) {
     const Vec3 from(-1, -1 + random.uniform(), -9e-4 * random.uniform() - 3e-4);
@@ -195,24 +195,24 @@ TEST_CASE("shifted by 10 km, huge and tiny: the answers are those of double prec
   const WideMesh mesh = dcem_test::boxes_mesh(40, 61);
   const WideMesh pieces = dcem_test::soup(200, 62);
   for (const WideMesh& given : {mesh, pieces}) {
-    check_rays(Scene(moved_by(given, 1.0, Vec3(1e4, -1e4, 300.0))), 1500, 63);
-    check_rays(Scene(moved_by(given, 1e-6, Vec3(0.0))), 1500, 64);
-    check_rays(Scene(moved_by(given, 1e-7, Vec3(0.3, 0.1, 0.2))), 1500, 64);
-    check_rays(Scene(moved_by(given, 1e9, Vec3(0.0))), 1500, 65);
-    check_rays(Scene(moved_by(given, 1e13, Vec3(0.0))), 1500, 66);
+    check_rays(Planted(moved_by(given, 1.0, Vec3(1e4, -1e4, 300.0))), 1500, 63);
+    check_rays(Planted(moved_by(given, 1e-6, Vec3(0.0))), 1500, 64);
+    check_rays(Planted(moved_by(given, 1e-7, Vec3(0.3, 0.1, 0.2))), 1500, 64);
+    check_rays(Planted(moved_by(given, 1e9, Vec3(0.0))), 1500, 65);
+    check_rays(Planted(moved_by(given, 1e13, Vec3(0.0))), 1500, 66);
   }
 }
 
 TEST_CASE("small things far from zero: 1e9 m and 1e14 m away") {
   const WideMesh pieces = dcem_test::soup(200, 71);
-  check_rays(Scene(moved_by(pieces, 1.0, Vec3(1e9, -1e9, 1e9))), 1500, 72);
-  check_rays(Scene(moved_by(pieces, 1.0, Vec3(1e14, 1e14, -1e14))), 1500, 73);
+  check_rays(Planted(moved_by(pieces, 1.0, Vec3(1e9, -1e9, 1e9))), 1500, 72);
+  check_rays(Planted(moved_by(pieces, 1.0, Vec3(1e14, 1e14, -1e14))), 1500, 73);
 }
 
 TEST_CASE("one thing beside the origin of a map, another at its far end") {
   WideMesh mesh = moved_by(dcem_test::soup(100, 75), 1e-3, Vec3(-2e4, 1e4, 0));
   mesh.append(moved_by(dcem_test::soup(100, 76), 1e-3, Vec3(3e4, -1e4, 0)));
-  const Scene scene(mesh);
+  const Planted scene(mesh);
   RandomStream random(77);
   const Aabb<double> there = inflated(Aabb<double>{Vec3(-2e4, 1e4, 0), Vec3(-2e4, 1e4, 0)}, 0.01);
   for (int trial = 0; trial < 3000; ++trial) check_ray(scene, any_ray(random, mesh, there), random);
@@ -221,11 +221,11 @@ TEST_CASE("one thing beside the origin of a map, another at its far end") {
 TEST_CASE("objects stacked on one point") {
   WideMesh mesh;
   for (int copy = 0; copy < 60; ++copy) mesh.append(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
-  check_rays(Scene(mesh), 1000, 81);
+  check_rays(Planted(mesh), 1000, 81);
   WideMesh points;
   for (int copy = 0; copy < 100; ++copy) points.add(Vec3(1), Vec3(1), Vec3(1));
   points.append(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
-  check_rays(Scene(points), 1000, 82);
+  check_rays(Planted(points), 1000, 82);
 }
 
 TEST_CASE("sizes that double from one to the next: the tree stays shallow enough for its walks") {
@@ -237,14 +237,14 @@ TEST_CASE("sizes that double from one to the next: the tree stays shallow enough
   for (const std::uint32_t limit : {512U, 0U}) {
     WideSettings settings;
     settings.unit_limit = limit;
-    const Scene scene(mesh, settings);
+    const Planted scene(mesh, settings);
     CHECK(scene.tree.nearest({Vec3(1e12, 1e11, 1e11), Vec3(-1, -0.1, -0.1)}).has_value() ==
           !hits_on_line(mesh, {Vec3(1e12, 1e11, 1e11), Vec3(-1, -0.1, -0.1)}).empty());
   }
 }
 
 TEST_CASE("an empty tree, and a tree of triangles that are not there") {
-  const Scene none{WideMesh()};
+  const Planted none{WideMesh()};
   const Ray<double> ray{Vec3(0, 0, 5), Vec3(0, 0, -1)};
   const auto all_of = [&](const WideTree& tree) {
     std::size_t count = 0;
@@ -260,7 +260,7 @@ TEST_CASE("an empty tree, and a tree of triangles that are not there") {
   CHECK(!none.tree.blocked(ray, WideTree::EveryTriangle{}, nullptr, 3U));
   CHECK(all_of(none.tree) == 0);
   CHECK(none.tree.bounds().empty());
-  const Scene gone(without_every(dcem_test::boxes_mesh(5, 91), 1));
+  const Planted gone(without_every(dcem_test::boxes_mesh(5, 91), 1));
   CHECK(!gone.tree.nearest(ray));
   CHECK(!gone.tree.blocked(ray));
   CHECK(!gone.tree.nearest({Vec3(0), Vec3(1e-20, 0, 0)}));
@@ -271,7 +271,7 @@ TEST_CASE("an empty tree, and a tree of triangles that are not there") {
 TEST_CASE("a triangle with an empty box is not there, be it half of a pair") {
   for (const std::uint32_t step : {2U, 3U, 5U}) {
     CAPTURE(step);
-    const Scene scene(without_every(dcem_test::boxes_mesh(30, 92), step));
+    const Planted scene(without_every(dcem_test::boxes_mesh(30, 92), step));
     check_rays(scene, 2000, 93);
     check_regions(scene, 300, 94);
   }
@@ -281,7 +281,7 @@ TEST_CASE("what a query considers is all that it finds") {
   WideMesh mesh = dcem_test::boxes_mesh(50, 101);
   for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
     mesh.surface.push_back(triangle / 2 % 7);
-  const Scene scene(mesh);
+  const Planted scene(mesh);
   RandomStream random(102);
   for (int trial = 0; trial < 3000; ++trial) {
     const Ray<double> ray = any_ray(random, mesh, scene.bounds());
@@ -301,7 +301,7 @@ TEST_CASE("what a query considers is all that it finds") {
 }
 
 TEST_CASE("directions of any length, components of zero, and rays from behind") {
-  const Scene scene(dcem_test::boxes_mesh(40, 111));
+  const Planted scene(dcem_test::boxes_mesh(40, 111));
   RandomStream random(112);
   for (int trial = 0; trial < 6000; ++trial) {
     Ray<double> ray = any_ray(random, scene.mesh, scene.bounds());
@@ -317,7 +317,7 @@ TEST_CASE("directions of any length, components of zero, and rays from behind") 
 
 TEST_CASE("a short direction from far away") {
   // The slab of a ray all but parallel to it must not be left early.
-  const Scene scene(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
+  const Planted scene(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
   RandomStream random(115);
   for (const double far_m : {1e2, 1e3, 1e5, 1e7, 1e9}) {
     for (const double length : {1.5e-12, 1e-9, 1.0, 1e6}) {
@@ -343,7 +343,7 @@ TEST_CASE("a short direction from far away") {
 TEST_CASE("rays that are none meet nothing") {
   WideMesh mesh = dcem_test::boxes_mesh(20, 121);
   mesh.append(dcem_test::soup(60, 122, 20.0));
-  const Scene scene(mesh);
+  const Planted scene(mesh);
   const auto meets_nothing = [&](const Ray<double>& ray) {
     INFO(text_of(ray));
     CHECK(!scene.tree.nearest(ray));
@@ -373,7 +373,7 @@ TEST_CASE("rays that are none meet nothing") {
 }
 
 TEST_CASE("hits exactly at t_min and t_max count") {
-  const Scene scene(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
+  const Planted scene(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
   for (const double t : {4.0, 6.0}) {
     const auto hit = scene.tree.nearest({Vec3(-5, 0.25, 0.125), Vec3(1, 0, 0), t, t});
     REQUIRE(hit.has_value());
@@ -384,7 +384,7 @@ TEST_CASE("hits exactly at t_min and t_max count") {
 }
 
 TEST_CASE("ends just before or behind a surface: the surface is not met, or is") {
-  const Scene scene(dcem_test::boxes_mesh(30, 125));
+  const Planted scene(dcem_test::boxes_mesh(30, 125));
   RandomStream random(126);
   int met = 0;
   for (int trial = 0; trial < 4000; ++trial) {
@@ -407,7 +407,7 @@ TEST_CASE("ends just before or behind a surface: the surface is not met, or is")
 
 TEST_CASE("boxes in single precision hold those in double, also seen from the world") {
   for (const Vec3& shift : {Vec3(0), Vec3(1e4, -1e4, 3), Vec3(1e9)}) {
-    const Scene scene(moved_by(dcem_test::boxes_mesh(30, 127), 1.0, shift));
+    const Planted scene(moved_by(dcem_test::boxes_mesh(30, 127), 1.0, shift));
     const WideArrays& arrays = scene.tree.arrays();
     for (const Aabb<double>& box : scene.boxes) {
       const Aabb<float> rounded = arrays.rounded_out(box);
@@ -432,7 +432,7 @@ TEST_CASE("boxes in single precision hold those in double, also seen from the wo
   // A face in the origin of the tree, where single precision leaves no room.
   WideMesh faces = dcem_test::box_mesh(Vec3(-2), Vec3(2));
   faces.add(Vec3(0, 1, 1), Vec3(0, 1.5, 1), Vec3(0, 1, 1.5));
-  const Scene scene(faces);
+  const Planted scene(faces);
   std::size_t count = 0;
   scene.tree.overlapping({Vec3(-0.5, 1, 1), Vec3(0, 1.2, 1.2)},
                          [&](std::uint32_t triangle) { count += triangle == 12; });
@@ -444,7 +444,7 @@ TEST_CASE("boxes in single precision hold those in double, also seen from the wo
 TEST_CASE("of equally near triangles the one with the smallest number") {
   WideMesh mesh;
   for (int copy = 0; copy < 50; ++copy) mesh.append(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
-  const Scene scene(mesh);
+  const Planted scene(mesh);
   RandomStream random(131);
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3 aim(dcem_test::between(random, -0.99, 0.99), dcem_test::between(random, -0.99, 0.99), 1.0);
@@ -457,7 +457,7 @@ TEST_CASE("of equally near triangles the one with the smallest number") {
 
 TEST_CASE("Munich: rays through the town give the oracle's answers") {
   DCEM_NEEDS_SHARED();
-  const Scene scene(dcem_test::read_obj(dcem::test::shared_path("scenes/munich.obj")));
+  const Planted scene(dcem_test::read_obj(dcem::test::shared_path("scenes/munich.obj")));
   REQUIRE(scene.mesh.triangles.size() == 38936);
   check_rays(scene, 300, 141);
 }
@@ -471,7 +471,7 @@ TEST_CASE("no ray leaks through an edge or a corner of a closed mesh") {
       closed[0].changed([&](const Vec3& v) { return v + glm::cross(axis, v) * 0.7 + Vec3(3e3, 2e3, 10); }));
   closed.push_back(closed[1].changed([&](const Vec3& v) { return v * 1e-4 + Vec3(3e3, 2e3, 10); }));
   for (const WideMesh& mesh : closed) {
-    const Scene scene(mesh);
+    const Planted scene(mesh);
     const Vec3 centre = scene.bounds().center();
     const double size = scene.bounds().extent().x;
     for (int trial = 0; trial < 40000; ++trial) {
@@ -493,7 +493,7 @@ TEST_CASE("no ray leaks through an edge or a corner of a closed mesh") {
 
 TEST_CASE("bad input is refused before anything changes") {
   const WideMesh mesh = dcem_test::boxes_mesh(10, 161);
-  Scene scene(mesh);
+  Planted scene(mesh);
   const Ray<double> ray{Vec3(30, 0.3, 0.2), Vec3(-1, 0, 0)};
   const auto refused = [&](auto&& edit) {
     CHECK_THROWS_AS(edit(), std::invalid_argument);
@@ -536,7 +536,7 @@ TEST_CASE("bad input is refused before anything changes") {
 
 TEST_CASE("surfaces for some triangles only, and corners that name no vertex, are refused") {
   WideMesh mesh = dcem_test::boxes_mesh(10, 165);
-  Scene scene(mesh);
+  Planted scene(mesh);
   WideMesh partly = mesh;
   partly.surface.assign(5, 0);
   CHECK_THROWS_AS(scene.tree.build(partly.view(), scene.boxes), std::invalid_argument);
