@@ -104,7 +104,7 @@ Contender binary_contender(const dcem::Scene& scene) {
 Contender embree_contender(const std::string& name, const dcem::TriangleView& mesh,
                            const dcem::bench::EmbreeSettings& settings) {
   const auto tree = std::make_shared<std::unique_ptr<dcem::bench::EmbreeScene>>();
-  const auto patches = std::make_shared<std::vector<dcem::Patch>>();
+  const auto patches = std::make_shared<std::vector<dcem::WidePatch>>();
   if (settings.quads) {
     dcem::detail::PatchBuilder(mesh, dcem::WideSettings{}.pair_flatness)
         .append(0, static_cast<std::uint32_t>(mesh.size()), *patches);

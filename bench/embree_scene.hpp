@@ -56,7 +56,7 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
   /// Adds triangles (or, with `quads`, the patches made of them) as one geometry.
-  RTCGeometry add(const TriangleView& mesh, std::span<const Patch> patches = {}) {
+  RTCGeometry add(const TriangleView& mesh, std::span<const WidePatch> patches = {}) {
     const bool quads = settings_.quads;
     const RTCGeometry geometry = rtcNewGeometry(device_, quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -67,7 +67,7 @@ class EmbreeScene {
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
                                 corners * sizeof(std::uint32_t), quads ? patches.size() : mesh.size()));
     if (quads) {
-      for (const Patch& patch : patches) {
+      for (const WidePatch& patch : patches) {
         for (std::size_t corner = 0; corner < 4; ++corner) {
           const auto& [triangle, at] = patch.corner[patch.is_pair() || corner < 3 ? corner : 2];
           *indices++ = mesh.triangles[triangle][at];

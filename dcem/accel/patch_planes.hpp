@@ -29,9 +29,9 @@ struct alignas(64) PatchPlanes {
   /// The diagonal as a line u x + v y = w, seen along the axis on which the first normal is longest; x and y follow
   /// that axis in turn and count from the first plane's point. Triangle 1 lies where u x + v y > w.
   double u = 0.0, v = 0.0, w = 0.0;
-  std::array<std::uint32_t, 2> triangle{Patch::no_triangle, Patch::no_triangle};
+  std::array<std::uint32_t, 2> triangle{WidePatch::no_triangle, WidePatch::no_triangle};
 
-  bool is_pair() const { return triangle[1] != Patch::no_triangle; }
+  bool is_pair() const { return triangle[1] != WidePatch::no_triangle; }
   std::span<const std::uint32_t> triangles() const { return {triangle.data(), is_pair() ? 2U : 1U}; }
   double t_of(std::size_t side, const Ray<double>& ray) const {
     return plane[side].height(ray) / plane[side].slope(ray);

@@ -33,7 +33,7 @@ struct TriangleView {
 };
 
 /// One triangle, or two that share the edge from corner c to corner a.
-struct Patch {
+struct WidePatch {
   static constexpr std::uint32_t no_triangle = 0xffffffffU;
 
   /// Corner `at` of a triangle.
@@ -80,7 +80,7 @@ class PatchBuilder {
   /// `flatness`: how far the fourth corner may lie from the plane of the others, relative to the shared edge.
   PatchBuilder(const TriangleView& mesh, double flatness) : mesh_(mesh), flatness_(flatness) {}
 
-  void append(std::uint32_t first, std::uint32_t last, std::vector<Patch>& patches) {
+  void append(std::uint32_t first, std::uint32_t last, std::vector<WidePatch>& patches) {
     if (last == first) return;
     collect_edges(first, last);
     collect_pairs();
@@ -92,7 +92,7 @@ class PatchBuilder {
     }
     for (std::uint32_t triangle = first; triangle < last; ++triangle) {
       if (taken_[triangle - first]) continue;
-      patches.push_back({{triangle, Patch::no_triangle}, {{{triangle, 0}, {triangle, 1}, {triangle, 2}, {}}}});
+      patches.push_back({{triangle, WidePatch::no_triangle}, {{{triangle, 0}, {triangle, 1}, {triangle, 2}, {}}}});
     }
   }
 
@@ -103,7 +103,7 @@ class PatchBuilder {
   struct Pair {
     double length_m;
     std::uint32_t one, other;
-    Patch patch;
+    WidePatch patch;
   };
 
   /// All edges, by their vertices: a counting sort over the lower one, then short lists.

@@ -39,7 +39,7 @@ struct WideArrays {
   std::vector<std::uint32_t> group_of_block;
   std::vector<std::uint32_t> free_nodes;
 
-  std::vector<Patch> patches;  ///< block b holds 8 b … 8 b + 7
+  std::vector<WidePatch> patches;  ///< block b holds 8 b … 8 b + 7
   std::vector<PatchPlanes> planes;
   std::vector<std::uint32_t> patch_of_triangle;
   std::vector<Aabb<double>> boxes;         ///< of triangles
@@ -92,7 +92,7 @@ struct WideArrays {
   /// The single-precision box around a double one, from the tree's origin.
   Aabb<float> rounded_out(const Aabb<double>& box) const;
 
-  Aabb<double> box_of_patch(const Patch& patch) const {
+  Aabb<double> box_of_patch(const WidePatch& patch) const {
     Aabb<double> box;
     for (const std::uint32_t triangle : patch.triangles()) box.extend(boxes[triangle]);
     return box;
@@ -103,10 +103,10 @@ struct WideArrays {
     const double cost = child.is_none() ? 0.0 : child.is_block() ? costs.block : costs.node;
     return cost * static_cast<double>(box.half_area());
   }
-  void load_lane(detail::BlockLanes& lanes, std::uint32_t lane, const Patch& patch, const Vec3& centre_m) const;
+  void load_lane(detail::BlockLanes& lanes, std::uint32_t lane, const WidePatch& patch, const Vec3& centre_m) const;
   static void store_shapes(const detail::BlockLanes& lanes, PatchBlock& block);
-  PatchPlanes planes_of(const detail::BlockLanes& lanes, std::uint32_t lane, const Patch& patch) const;
-  Patch present_part(const Patch& patch) const;
+  PatchPlanes planes_of(const detail::BlockLanes& lanes, std::uint32_t lane, const WidePatch& patch) const;
+  WidePatch present_part(const WidePatch& patch) const;
 };
 
 inline void WideArrays::clear() {
@@ -184,7 +184,7 @@ inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
 
 inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   PatchBlock& block = blocks[index];
-  const std::span<const Patch> held = std::span(patches).subspan(std::size_t{index} * simd_lanes, simd_lanes);
+  const std::span<const WidePatch> held = std::span(patches).subspan(std::size_t{index} * simd_lanes, simd_lanes);
   Aabb<double> box;
   block.lanes = 0;
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
@@ -204,7 +204,7 @@ inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   std::memcpy(block.centre_m.data(), &rounded, sizeof block.centre_m);
   const Vec3 counted_from_m(exact[0], exact[1], exact[2]);
   detail::BlockLanes lanes;
-  std::array<Patch, simd_lanes> there;
+  std::array<WidePatch, simd_lanes> there;
   for (std::uint32_t rest = block.lanes; rest != 0; rest &= rest - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
     there[lane] = present_part(held[lane]);
@@ -220,14 +220,14 @@ inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
 }
 
 /// A pair of which one triangle is not there is the other.
-inline Patch WideArrays::present_part(const Patch& patch) const {
+inline WidePatch WideArrays::present_part(const WidePatch& patch) const {
   if (!patch.is_pair() || (!boxes[patch.triangle[0]].empty() && !boxes[patch.triangle[1]].empty())) return patch;
   const std::uint32_t left = boxes[patch.triangle[0]].empty() ? patch.triangle[1] : patch.triangle[0];
-  return {{left, Patch::no_triangle}, {{{left, 0}, {left, 1}, {left, 2}, {}}}};
+  return {{left, WidePatch::no_triangle}, {{{left, 0}, {left, 1}, {left, 2}, {}}}};
 }
 
 /// A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
-inline void WideArrays::load_lane(detail::BlockLanes& lanes, std::uint32_t lane, const Patch& patch,
+inline void WideArrays::load_lane(detail::BlockLanes& lanes, std::uint32_t lane, const WidePatch& patch,
                                   const Vec3& centre_m) const {
   // The centre in the world would be rounded, far from zero by more than the patch is large.
   const auto corner = [&](std::size_t index) {
@@ -267,7 +267,7 @@ inline void WideArrays::store_shapes(const detail::BlockLanes& lanes, PatchBlock
 }
 
 inline PatchPlanes WideArrays::planes_of(const detail::BlockLanes& lanes, std::uint32_t lane,
-                                         const Patch& patch) const {
+                                         const WidePatch& patch) const {
   PatchPlanes result;
   result.triangle = patch.triangle;
   result.plane[0] = {lanes.normal[0].get(lane), corners_m[patch.triangle[0]][0]};

@@ -52,7 +52,7 @@ class WideBuilder {
   explicit WideBuilder(const WideSettings& settings) : settings_(settings) {}
 
   /// Group i has the patches [first_patch[i], first_patch[i + 1]). Boxes and corners of `arrays` are set.
-  void build(WideArrays& arrays, std::span<const Patch> patches, std::span<const std::uint32_t> first_patch) {
+  void build(WideArrays& arrays, std::span<const WidePatch> patches, std::span<const std::uint32_t> first_patch) {
     arrays_ = &arrays;
     patches_ = patches;
     place_origin();
@@ -139,7 +139,7 @@ class WideBuilder {
   WideChild plant_block(std::span<const WideItem> held, std::uint32_t group) {
     const std::uint32_t block = arrays_->add_block(group);
     for (std::uint32_t lane = 0; lane < held.size(); ++lane) {
-      const Patch& patch = patches_[held[lane].index];
+      const WidePatch& patch = patches_[held[lane].index];
       arrays_->patches[block * simd_lanes + lane] = patch;
       for (const std::uint32_t triangle : patch.triangles()) {
         arrays_->patch_of_triangle[triangle] = block * simd_lanes + lane;
@@ -193,7 +193,7 @@ class WideBuilder {
 
   WideSettings settings_;
   WideArrays* arrays_ = nullptr;
-  std::span<const Patch> patches_;
+  std::span<const WidePatch> patches_;
 };
 
 }  // namespace dcem

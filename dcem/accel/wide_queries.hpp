@@ -109,7 +109,7 @@ std::optional<WideHit> WideTree::nearest_of_all(const Ray<double>& ray, Consider
   std::optional<WideHit> best;
   if (!has_direction(ray)) return best;
   for (std::uint32_t patch = 0; patch < arrays_.patches.size(); ++patch) {
-    const Patch& held = arrays_.patches[patch];
+    const WidePatch& held = arrays_.patches[patch];
     if (held.is_none() || arrays_.box_of_patch(held).empty()) continue;
     ++counters.primitives_tested;
     if (is_considered(patch, considers)) offer(patch, ray, false, best);
@@ -147,7 +147,7 @@ void WideTree::closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* c
   detail::SpentCounters sum(counters);
   if (primitive_count() == 0) return;
   double t_max = ray.t_max;
-  const auto ask = [&](const Patch& patch) {
+  const auto ask = [&](const WidePatch& patch) {
     for (const std::uint32_t triangle : patch.triangles()) {
       if (arrays_.boxes[triangle].empty()) continue;
       ++sum.spent.primitives_tested;
@@ -156,7 +156,7 @@ void WideTree::closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* c
   };
   const WideRay wide(ray, arrays_.origin_m, arrays_.extent_m);
   if (!wide.usable()) {
-    for (const Patch& patch : arrays_.patches) {
+    for (const WidePatch& patch : arrays_.patches) {
       if (!patch.is_none() && !arrays_.box_of_patch(patch).empty()) ask(patch);
     }
     return;
@@ -181,7 +181,7 @@ template <typename Leaf>
 bool WideTree::any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters) const {
   detail::SpentCounters sum(counters);
   if (primitive_count() == 0) return false;
-  const auto ask = [&](const Patch& patch) {
+  const auto ask = [&](const WidePatch& patch) {
     return std::ranges::any_of(patch.triangles(), [&](std::uint32_t triangle) {
       if (arrays_.boxes[triangle].empty()) return false;
       ++sum.spent.primitives_tested;
@@ -190,7 +190,7 @@ bool WideTree::any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* count
   };
   const WideRay wide(ray, arrays_.origin_m, arrays_.extent_m);
   if (!wide.usable()) {
-    return std::ranges::any_of(arrays_.patches, [&](const Patch& patch) {
+    return std::ranges::any_of(arrays_.patches, [&](const WidePatch& patch) {
       return !patch.is_none() && !arrays_.box_of_patch(patch).empty() && ask(patch);
     });
   }

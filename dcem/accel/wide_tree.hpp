@@ -31,7 +31,7 @@ namespace dcem {
 /// The nearest hit of a ray.
 struct WideHit {
   double t = 0.0;  ///< where the ray meets the plane of the triangle
-  std::uint32_t triangle = Patch::no_triangle;
+  std::uint32_t triangle = WidePatch::no_triangle;
 };
 
 /// What following a motion took.
@@ -234,7 +234,7 @@ class WideTree {
   WideArrays arrays_;
   WideSettings settings_;
   std::vector<std::uint32_t> group_first_;
-  std::vector<Patch> patches_;              ///< by group
+  std::vector<WidePatch> patches_;          ///< by group
   std::vector<std::uint32_t> first_patch_;  ///< one more entry than groups
   double sah_at_build_ = 0.0;
 

@@ -75,7 +75,7 @@ class WideInspector {
     Aabb<double> all;
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
       const std::uint32_t index = block * simd_lanes + lane;
-      const Patch& patch = arrays_.patches[index];
+      const WidePatch& patch = arrays_.patches[index];
       const bool there = !patch.is_none() && !arrays_.box_of_patch(patch).empty();
       if ((arrays_.blocks[block].lanes >> lane & 1U) != (there ? 1U : 0U)) {
         return at("block", block, "its lanes are not those of the triangles that are there");

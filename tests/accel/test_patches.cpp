@@ -14,26 +14,27 @@ using dcem_test::WideMesh;
 
 namespace {
 
-std::vector<Patch> patches_of(const WideMesh& mesh, double flatness = 1e-3) {
-  std::vector<Patch> patches;
+std::vector<WidePatch> patches_of(const WideMesh& mesh, double flatness = 1e-3) {
+  std::vector<WidePatch> patches;
   const TriangleView view = mesh.view();
   detail::PatchBuilder(view, flatness).append(0, static_cast<std::uint32_t>(mesh.triangles.size()), patches);
   return patches;
 }
 
-std::uint32_t vertex_of(const WideMesh& mesh, const Patch& patch, std::size_t corner) {
+std::uint32_t vertex_of(const WideMesh& mesh, const WidePatch& patch, std::size_t corner) {
   const auto& [triangle, at] = patch.corner[corner];
   return mesh.triangles[triangle][at];
 }
 
-std::size_t pair_count(const std::vector<Patch>& patches) {
-  return static_cast<std::size_t>(std::ranges::count_if(patches, [](const Patch& patch) { return patch.is_pair(); }));
+std::size_t pair_count(const std::vector<WidePatch>& patches) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(patches, [](const WidePatch& patch) { return patch.is_pair(); }));
 }
 
 /// Everything a list of patches promises of the mesh it was made from.
-void check_promises(const WideMesh& mesh, const std::vector<Patch>& patches, double flatness) {
+void check_promises(const WideMesh& mesh, const std::vector<WidePatch>& patches, double flatness) {
   std::vector<int> times(mesh.triangles.size(), 0);
-  for (const Patch& patch : patches) {
+  for (const WidePatch& patch : patches) {
     REQUIRE(!patch.is_none());
     for (const std::uint32_t triangle : patch.triangles()) ++times[triangle];
     std::set<std::uint32_t> first;
@@ -133,11 +134,11 @@ TEST_CASE("triangles of different surfaces stay apart") {
 TEST_CASE("winding, vertex numbers and what stands elsewhere in the mesh do not change the pairs") {
   const WideMesh mesh = dcem_test::bent_ground(9, 1e-4, 7);
   const auto pairs_of = [](const WideMesh& given, std::uint32_t first, std::uint32_t last) {
-    std::vector<Patch> patches;
+    std::vector<WidePatch> patches;
     const TriangleView view = given.view();
     detail::PatchBuilder(view, 1e-3).append(first, last, patches);
     std::set<std::set<std::uint32_t>> pairs;
-    for (const Patch& patch : patches) {
+    for (const WidePatch& patch : patches) {
       if (patch.is_pair()) pairs.insert({patch.triangle[0] - first, patch.triangle[1] - first});
     }
     return pairs;
@@ -169,7 +170,7 @@ TEST_CASE("a group is paired within itself only") {
   for (const Vec3& vertex : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) mesh.add_vertex(vertex);
   mesh.add(0, 1, 2);
   mesh.add(0, 2, 3);
-  std::vector<Patch> patches;
+  std::vector<WidePatch> patches;
   const TriangleView view = mesh.view();
   detail::PatchBuilder pairing(view, 1e-3);
   pairing.append(0, 1, patches);

@@ -96,7 +96,7 @@ void check_blocks(const WideTree& tree, const WideMesh& mesh, const Ray<double>&
     hits.certain = 0;
     const std::uint32_t met = wide.meets(arrays.blocks[block], WideRay::padded(ray.t_max), hits);
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-      const Patch& patch = arrays.patches[block * simd_lanes + lane];
+      const WidePatch& patch = arrays.patches[block * simd_lanes + lane];
       if (patch.is_none()) continue;
       bool on_line = false;
       bool in_range = false;

@@ -161,7 +161,7 @@ double distance_by_regions(const TriangleCorners& corners, const Vec3& point) {
 // ------------------------------------------------------------------------------
 
 /// A square of n × n cells with jittered inner vertices, tilted and moved; corners in ascending order of their index.
-struct FlatPatch {
+struct Patch {
   std::vector<Vec3> vertices_m;
   std::vector<TriangleCorners> triangles;
   Vec3 normal{0.0};
@@ -170,8 +170,8 @@ struct FlatPatch {
   const Vec3& at(int x, int y) const { return vertices_m[static_cast<std::size_t>(y * (cells + 1) + x)]; }
 };
 
-FlatPatch make_patch(int cells, const Plane& plane, RandomStream& random) {
-  FlatPatch patch;
+Patch make_patch(int cells, const Plane& plane, RandomStream& random) {
+  Patch patch;
   patch.cells = cells;
   patch.normal = plane.normal;
   const PlaneBasis basis = plane_basis(plane.normal);
@@ -199,7 +199,7 @@ FlatPatch make_patch(int cells, const Plane& plane, RandomStream& random) {
   return patch;
 }
 
-double covered_rad(const FlatPatch& patch, const Vec3& point_m) {
+double covered_rad(const Patch& patch, const Vec3& point_m) {
   double sum_rad = 0.0;
   for (const TriangleCorners& triangle : patch.triangles) {
     sum_rad += contact(triangle, patch.normal, point_m, in_plane_guard_m).covered_rad;
@@ -207,7 +207,7 @@ double covered_rad(const FlatPatch& patch, const Vec3& point_m) {
   return sum_rad;
 }
 
-bool contained(const FlatPatch& patch, const Vec3& point_m) {
+bool contained(const Patch& patch, const Vec3& point_m) {
   return std::any_of(patch.triangles.begin(), patch.triangles.end(), [&](const TriangleCorners& triangle) {
     return contains_projected(triangle, patch.normal, point_m);
   });
@@ -350,7 +350,7 @@ TEST_CASE("the triangles of a patch cover what the patch covers, however it is c
   for (int repeat = 0; repeat < 40; ++repeat) {
     const Plane plane{repeat % 2 == 0 ? Vec3(0.0) : Vec3(500, -800, 30), glm::normalize(random_vector(random, 1.0))};
     const int cells = 3;
-    const FlatPatch patch = make_patch(cells, plane, random);
+    const Patch patch = make_patch(cells, plane, random);
     // The rim is 1e-9 m, roundings are 1e-13 m at 800 m: angles of corners are right to 1e-12.
     const auto is_near = [](double value, double expected) { return std::abs(value - expected) < 1e-11; };
     for (int y = 0; y <= cells; ++y) {
@@ -381,7 +381,7 @@ TEST_CASE("no point of a patch falls between its triangles: on shared edges and 
   for (int repeat = 0; repeat < 100; ++repeat) {
     const Plane plane{repeat % 2 == 0 ? Vec3(0.0) : Vec3(5000, -8000, 30), glm::normalize(random_vector(random, 1.0))};
     const int cells = 4;
-    const FlatPatch patch = make_patch(cells, plane, random);
+    const Patch patch = make_patch(cells, plane, random);
     for (int y = 1; y < cells; ++y) {
       for (int x = 1; x < cells; ++x) {
         lost += !contained(patch, patch.at(x, y));
