@@ -45,9 +45,9 @@ inline Aabb<double> WideTree::in_world(const Aabb<float>& box) const {
   for (int axis = 0; axis < 3; ++axis) {
     const double low = static_cast<double>(box.min[axis]), high = static_cast<double>(box.max[axis]);
     const double origin = arrays_.origin_m[axis];
-    // The sum is rounded once.
-    result.min[axis] = std::nextafter(origin + low, -std::numeric_limits<double>::infinity());
-    result.max[axis] = std::nextafter(origin + high, std::numeric_limits<double>::infinity());
+    // The sum is rounded once, by less than this.
+    result.min[axis] = origin + low - (std::abs(origin) + std::abs(low)) * 0x1p-51;
+    result.max[axis] = origin + high + (std::abs(origin) + std::abs(high)) * 0x1p-51;
   }
   return result;
 }
@@ -202,6 +202,19 @@ bool WideTree::any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* count
 
 template <typename Keep, typename Leaf>
 void WideTree::visit(Keep&& keep_box, Leaf&& leaf, TraversalCounters* counters) const {
+  visit_where([&](const Aabb<float>& box) { return keep_box(in_world(box)); }, keep_box, leaf, counters);
+}
+
+template <typename Leaf>
+void WideTree::overlapping(const Aabb<double>& box, Leaf&& leaf, TraversalCounters* counters) const {
+  const Aabb<double> region = canonical_box(box);
+  // Both rounded outwards: what overlaps in double overlaps in single precision.
+  visit_where([rounded = arrays_.rounded_out(region)](const Aabb<float>& held) { return rounded.overlaps(held); },
+              [&](const Aabb<double>& held) { return region.overlaps(held); }, leaf, counters);
+}
+
+template <typename KeepEntry, typename Keep, typename Leaf>
+void WideTree::visit_where(KeepEntry&& keep_entry, Keep&& keep_box, Leaf& leaf, TraversalCounters* counters) const {
   detail::SpentCounters sum(counters);
   if (primitive_count() == 0) return;
   const auto take = [&](std::uint32_t block) {
@@ -214,8 +227,7 @@ void WideTree::visit(Keep&& keep_box, Leaf&& leaf, TraversalCounters* counters) 
       }
     }
   };
-  detail::walk_wide_boxes(
-      view(), [&](const Aabb<float>& box) { return keep_box(in_world(box)); }, take, sum.spent);
+  detail::walk_wide_boxes(view(), keep_entry, take, sum.spent);
 }
 
 }  // namespace dcem

@@ -119,9 +119,7 @@ class WideTree {
 
   /// Calls `leaf(triangle)` once for every triangle whose box has a point in common with `box`.
   template <typename Leaf>
-  void overlapping(const Aabb<double>& box, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
-    visit([region = canonical_box(box)](const Aabb<double>& held) { return region.overlaps(held); }, leaf, counters);
-  }
+  void overlapping(const Aabb<double>& box, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
 
   /// As Bvh::visit: calls `leaf(triangle)` once for every triangle with a box for which `keep_box(box) -> bool` holds.
   /// It must hold for every box that contains a box for which it holds: half spaces, frusta, beams.
@@ -205,6 +203,9 @@ class WideTree {
   template <typename Considers>
   std::optional<WideHit> nearest_of_all(const Ray<double>& ray, Considers& considers,
                                         TraversalCounters& counters) const;
+
+  template <typename KeepEntry, typename Keep, typename Leaf>
+  void visit_where(KeepEntry&& keep_entry, Keep&& keep_box, Leaf& leaf, TraversalCounters* counters) const;
 
   static void require_input(const TriangleView& mesh, Boxes boxes);
   static void require_corners(const TriangleView& mesh, std::uint32_t triangle);
