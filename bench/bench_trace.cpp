@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,7 @@ double timed(const std::vector<Ray<double>>& rays, std::vector<double>& answers,
 }
 
 constexpr double none = std::numeric_limits<double>::infinity();
+constexpr const char* rival_name = "embree robust";
 
 Contender wide_contender(const std::string& name, const dcem::Scene& scene, const dcem::TriangleView& mesh,
                          double flatness) {
@@ -129,7 +131,7 @@ std::vector<Contender> contenders(const dcem::Scene& scene, const dcem::Triangle
   std::vector<Contender> all;
   all.push_back(wide_contender("wide, pairs", scene, mesh, dcem::WideSettings{}.pair_flatness));
 #if defined(DCEM_HAS_EMBREE)
-  all.push_back(embree_contender("embree robust", mesh, {}));
+  all.push_back(embree_contender(rival_name, mesh, {}));
   all.push_back(embree_contender("embree robust quads", mesh, {.quads = true}));
   all.push_back(embree_contender("embree medium", mesh, {.robust = false}));
   all.push_back(embree_contender("embree medium quads", mesh, {.robust = false, .quads = true}));
@@ -224,7 +226,11 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
     }
   }
   const double count = static_cast<double>(kind.rays.size());
-  const double rival_ms = dcem::median(rows[all.size() > 3 ? 1 : 0].ms);
+  // Without Embree there is nothing to compare with but ourselves, and the cell stays empty.
+  const auto rival = std::find_if(all.begin(), all.end(), [](const Contender& one) { return one.name == rival_name; });
+  const std::optional<double> rival_ms =
+      rival != all.end() ? std::optional(dcem::median(rows[static_cast<std::size_t>(rival - all.begin())].ms))
+                         : std::nullopt;
   bool same = true;
   for (std::size_t index = 0; index < all.size(); ++index) {
     const double ms = dcem::median(rows[index].ms);
@@ -237,14 +243,16 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
     }
     dcem::bench::CsvRow csv;
     csv.text(scene_name).count(triangles).text(kind.name).text(nearest ? "closest" : "occluded");
-    csv.text("\"" + all[index].name + "\"").number(rival_ms / ms, 3).number(count / ms / 1e3, 3);
+    csv.text("\"" + all[index].name + "\"");
+    rival_ms ? csv.number(*rival_ms / ms, 3) : csv.empty();
+    csv.number(count / ms / 1e3, 3);
     csv.number(dcem::median(all[index].build_ms), 2);
     csv.number(static_cast<double>(rows[index].counters.nodes_visited) / count, 2);
     csv.number(static_cast<double>(rows[index].counters.primitives_tested) / count, 2);
     csv.count(differences).hash(hash).print();
     std::fprintf(stderr, "%-14s %-8s %-8s %-20s %6.2f x  %7.2f Mrays/s  %zu differ\n", scene_name.c_str(),
-                 kind.name.c_str(), nearest ? "closest" : "occluded", all[index].name.c_str(), rival_ms / ms,
-                 count / ms / 1e3, differences);
+                 kind.name.c_str(), nearest ? "closest" : "occluded", all[index].name.c_str(),
+                 rival_ms.value_or(ms) / ms, count / ms / 1e3, differences);
   }
   return same;
 }

@@ -3,6 +3,8 @@
 #include "dcem/accel/brute_force.hpp"
 #include "dcem/accel/bvh.hpp"
 #include "dcem/accel/maintainer.hpp"
+#include "dcem/accel/wide_maintainer.hpp"
+#include "dcem/accel/wide_tree.hpp"
 #include "dcem/channel/band_limited_profile.hpp"
 #include "dcem/channel/coherence.hpp"
 #include "dcem/channel/diffuse_power.hpp"

@@ -170,8 +170,9 @@ inline void WideTree::take_out(WidePlace place) {
   arrays_.tighten_above(above.node());
 }
 
-/// Offers the lanes of one node: a free one, or any entry that is not divided further. Free lanes may lie between
-/// others.
+/// Offers the lanes of one node: a free one, or an entry that is not divided further, to be joined under a new node, as
+/// far down as new nodes are made. Free lanes may lie between others. There is always a spot above that: a node without
+/// one has eight inner nodes below it, and so have they, which no tree can afford for long.
 inline void WideTree::offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best) {
   const auto& [cost_m2, node, level] = branch;
   const WideNode& held = arrays_.nodes[node];
@@ -185,8 +186,9 @@ inline void WideTree::offer_spots(const Branch& branch, const Aabb<float>& box, 
     const double own_m2 = static_cast<double>(both.half_area());
     both.extend(box);
     const double both_m2 = arrays_.costs.node * static_cast<double>(both.half_area());
-    if (child.is_block() || level == edit_levels || arrays_.unit_of(child) != WideArrays::no_unit) {
-      if (cost_m2 + both_m2 < best.cost_m2) best = {cost_m2 + both_m2, node, lane, true};
+    if (child.is_block() || arrays_.unit_of(child) != WideArrays::no_unit) {
+      const bool may_join = level < detail::wide_edit_levels;
+      if (may_join && cost_m2 + both_m2 < best.cost_m2) best = {cost_m2 + both_m2, node, lane, true};
       continue;
     }
     const double grown_m2 = cost_m2 + both_m2 - arrays_.costs.node * own_m2;
@@ -207,6 +209,7 @@ inline WideTree::Spot WideTree::cheapest_spot(const Aabb<float>& box) {
     if (!(branch.cost_m2 < best.cost_m2)) break;
     offer_spots(branch, box, best);
   }
+  DCEM_ASSERT(best.lane < simd_lanes);
   return best;
 }
 

@@ -9,13 +9,18 @@
 #include <utility>
 
 #include "dcem/accel/counters.hpp"
+#include "dcem/accel/wide_binner.hpp"
 #include "dcem/accel/wide_node.hpp"
 #include "dcem/accel/wide_ray.hpp"
 
 namespace dcem::detail {
 
-/// Levels of a wide tree; builders and edits keep to it.
-inline constexpr std::uint32_t wide_levels = 72;
+/// Levels of nodes and blocks of a wide tree. The tree over all and the tree of a unit have no more than the binary
+/// trees they are made from, each wide node standing for one of their nodes at least; an edit makes nodes only above
+/// `wide_edit_levels`, so that what it pushes down, a block or a unit, is pushed no further than a built tree reaches.
+inline constexpr std::uint32_t wide_levels = 2 * WideBinner::levels + 1;
+inline constexpr std::uint32_t wide_edit_levels = 40;
+static_assert(wide_edit_levels < WideBinner::levels);
 /// A walk leaves at most seven entries behind per level.
 inline constexpr std::uint32_t wide_stack_size = 7 * wide_levels;
 

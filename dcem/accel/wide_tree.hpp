@@ -38,7 +38,6 @@ struct WideHit {
 struct WideRefitReport {
   std::size_t blocks_written = 0;
   std::size_t nodes_visited = 0;
-  std::size_t units_reinserted = 0;
 };
 
 /// Boxes and triangles are passed in full to every edit, indexed by triangle; a triangle with an empty box is not
@@ -217,11 +216,9 @@ class WideTree {
   struct Branch {
     double cost_m2;
     std::uint32_t node;
-    std::uint32_t level;
+    std::uint32_t level;                                                           ///< of the node, 1 for the root
     bool operator<(const Branch& other) const { return cost_m2 > other.cost_m2; }  // the cheapest on top
   };
-  /// No deeper than this does an edit hang anything; units below have their own levels.
-  static constexpr std::uint32_t edit_levels = 40;
   struct Spot {
     double cost_m2 = std::numeric_limits<double>::infinity();
     std::uint32_t node = 0;
