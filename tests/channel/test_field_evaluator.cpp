@@ -285,8 +285,7 @@ TEST_CASE("Doppler is the rate at which the path shortens, whatever moves and tu
   const FieldEvaluator<> evaluator(traced.scene, surface, {}, frequency_hz);
   const Vec3 from_m(-3, -2, 2), to_m(5, -1, 1.5), from_mps(4, 1, -2), to_mps(-3, 6, 1);
   const auto at = [&](double time_s) {
-    traced.scene.apply(traced.scene.frame_at(time_s));
-    traced.tree.refit_all(traced.scene.triangle_boxes());
+    traced.apply(traced.scene.frame_at(time_s));
     return paths_in(traced, from_m + time_s * from_mps, to_m + time_s * to_mps);
   };
   const std::vector<Path> before = at(-dt_s), after = at(dt_s), now = at(0.0);

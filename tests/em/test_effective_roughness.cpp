@@ -13,30 +13,12 @@
 #include "dcem/core/units.hpp"
 #include "dcem/em/effective_roughness.hpp"
 #include "dcem/em/surface_model.hpp"
+#include "tests/support/quadrature.hpp"
 
 using namespace dcem;
+using dcem::test::gauss_nodes, dcem::test::QuadratureNode;
 
 namespace {
-
-struct Node {
-  double at, weight;
-};
-
-/// Nodes of Gauss and Legendre on (0, 1), by Newton's method: exact for polynomials up to degree 2·count − 1.
-std::vector<Node> gauss_nodes(int count) {
-  std::vector<Node> nodes;
-  for (int index = 0; index < count; ++index) {
-    double x = std::cos(pi * (index + 0.75) / (count + 0.5)), slope = 1.0;
-    for (int step = 0; step < 50; ++step) {
-      double before = 1.0, value = x;
-      for (int k = 2; k <= count; ++k) before = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * before) / k);
-      slope = count * (x * value - before) / (x * x - 1.0);
-      x -= value / slope;
-    }
-    nodes.push_back({0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope)});
-  }
-  return nodes;
-}
 
 Vec3 direction(double cos_zenith, double azimuth_rad) {
   const double sine = std::sqrt((1.0 - cos_zenith) * (1.0 + cos_zenith));
@@ -47,10 +29,10 @@ Vec3 direction(double cos_zenith, double azimuth_rad) {
 /// nodes in the cosine and 160 in the azimuth integrate it up to α = 100 without an error but rounding.
 template <typename Integrand>
 double over_half_space(Integrand&& integrand) {
-  static const std::vector<Node> nodes = gauss_nodes(64);
+  static const std::vector<QuadratureNode> nodes = gauss_nodes(64);
   constexpr int azimuths = 160;
   double sum = 0.0;
-  for (const Node& node : nodes) {
+  for (const QuadratureNode& node : nodes) {
     double ring = 0.0;
     for (int step = 0; step < azimuths; ++step) ring += integrand(direction(node.at, 2.0 * pi * step / azimuths));
     sum += node.weight * ring * 2.0 * pi / azimuths;

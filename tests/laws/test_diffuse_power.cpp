@@ -16,8 +16,10 @@
 #include "dcem/channel/power_delay_profile.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/io/compiled_simulator.hpp"
+#include "tests/support/quadrature.hpp"
 
 using namespace dcem;
+using dcem::test::gauss_nodes, dcem::test::QuadratureNode;
 
 namespace {
 
@@ -85,38 +87,18 @@ double db(double ratio) {
 
 // The model as the specification writes it ----------------------------------------------------------------------------
 
-struct Node {
-  double at, weight;
-};
-
-/// Nodes of Gauss and Legendre on (0, 1).
-std::vector<Node> gauss_nodes(int count) {
-  std::vector<Node> nodes;
-  for (int index = 0; index < count; ++index) {
-    double x = std::cos(0.5 * circle * (index + 0.75) / (count + 0.5)), slope = 1.0;
-    for (int step = 0; step < 50; ++step) {
-      double before = 1.0, value = x;
-      for (int k = 2; k <= count; ++k) before = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * before) / k);
-      slope = count * (x * value - before) / (x * x - 1.0);
-      x -= value / slope;
-    }
-    nodes.push_back({0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope)});
-  }
-  return nodes;
-}
-
 double lobe(int order, double cosine) {
   return std::pow(0.5 * (1.0 + cosine), order);
 }
 
 /// ∫ lobe dΩ over the half space by quadrature, exact for a polynomial of this degree.
 double lobe_integral(int order, double cos_axis) {
-  static std::map<int, std::vector<Node>> rules;
-  std::vector<Node>& nodes = rules[order];
+  static std::map<int, std::vector<QuadratureNode>> rules;
+  std::vector<QuadratureNode>& nodes = rules[order];
   if (nodes.empty()) nodes = gauss_nodes(order / 2 + 2);
   const double sin_axis = std::sqrt(1.0 - cos_axis * cos_axis);
   double sum = 0.0;
-  for (const Node& node : nodes) {
+  for (const QuadratureNode& node : nodes) {
     for (int step = 0; step < order + 2; ++step) {
       const double across = std::sqrt(1.0 - node.at * node.at) * std::cos(circle * step / (order + 2));
       sum += node.weight * lobe(order, cos_axis * node.at + sin_axis * across) * circle / (order + 2);
@@ -188,12 +170,12 @@ double power_per_m2(const Setup& setup, const Vec3& point_m) {
 
 /// The same over the whole wall: Gauss' rule on 10 × 10 parts of it.
 double wall_power(const Setup& setup, int parts = 10) {
-  static const std::vector<Node> nodes = gauss_nodes(8);
+  static const std::vector<QuadratureNode> nodes = gauss_nodes(8);
   double sum = 0.0;
   for (int i = 0; i < parts; ++i) {
     for (int j = 0; j < parts; ++j) {
-      for (const Node& u : nodes) {
-        for (const Node& v : nodes) {
+      for (const QuadratureNode& u : nodes) {
+        for (const QuadratureNode& v : nodes) {
           const Vec3 point_m =
               setup.wall.corner_m + (i + u.at) / parts * setup.wall.u_m + (j + v.at) / parts * setup.wall.v_m;
           sum += u.weight * v.weight * power_per_m2(setup, point_m);
@@ -283,10 +265,10 @@ TEST_CASE("diffuse power: what one wall scatters in all directions is (S·Γ)²�
     scene.add_transmitter(device_at("tx", from_m));
     // Receivers on a sphere of 1000 km, where all of the wall is seen in one direction: ten azimuths and five Gauss
     // nodes integrate a lobe of order 7 exactly. From a millionth of that distance directions differ by 1e-6.
-    const std::vector<Node> nodes = gauss_nodes(5);
+    const std::vector<QuadratureNode> nodes = gauss_nodes(5);
     std::vector<Device> receivers;
     std::vector<double> weights_sr;
-    for (const Node& node : nodes) {
+    for (const QuadratureNode& node : nodes) {
       for (int step = 0; step < 10; ++step) {
         const Vec3 to_m = Vec3(1, 0.7, 0) + 1e6 * direction(node.at, circle * step / 10);
         receivers.push_back(device_at("rx" + std::to_string(receivers.size()), to_m));

@@ -76,14 +76,17 @@ inline Scene scene_of(const TriangleMesh& mesh) {
 }
 
 /// A scene with a tree over it and questions to both.
-template <typename Tree = Bvh<double>>
+template <typename Tree = WideTree>
 struct TracedScene {
-  explicit TracedScene(Scene of) : scene(std::move(of)) {
-    scene.apply(scene.frame_at(0.0));
-    tree.build_grouped(scene.triangle_boxes(), scene.first_triangles());
-  }
+  explicit TracedScene(Scene of) : scene(std::move(of)) { apply(scene.frame_at(0.0)); }
   TracedScene(const TracedScene&) = delete;
   TracedScene& operator=(const TracedScene&) = delete;
+
+  /// Moves the bodies, and builds the tree anew.
+  void apply(const Frame& frame) {
+    scene.apply(frame);
+    build_tree(tree, scene);
+  }
 
   LinkEnd end(const Vec3& position_m, std::optional<BodyId> ignored_body = std::nullopt) {
     return make_link_end(tracer, position_m, ignored_body, counters);

@@ -39,8 +39,8 @@ struct Covered {
 
 Covered covered_in(Scene scene) {
   scene.apply(scene.frame_at(0.0));
-  Bvh<double> tree;
-  tree.build_grouped(scene.triangle_boxes(), scene.first_triangles());
+  WideTree tree;
+  build_tree(tree, scene);
   Covered result;
   const std::vector<char> covered = covered_edges(scene, tree, 1);
   REQUIRE(covered.size() == scene.wedges().size());

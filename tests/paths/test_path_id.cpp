@@ -39,8 +39,7 @@ Scene street(const std::vector<NamedObject>& objects) {
 /// Names of all paths up to two reflections, each with its kinds.
 std::map<std::string, std::string> names(Scene scene, double time_s) {
   TracedScene<> traced(std::move(scene));
-  traced.scene.apply(traced.scene.frame_at(time_s));
-  traced.tree.refit_all(traced.scene.triangle_boxes());
+  traced.apply(traced.scene.frame_at(time_s));
   SearchCounters counters;
   const std::vector<std::optional<LinkEnd>> transmitters{traced.end(Vec3(-20, 1, 2))};
   const auto links =
