@@ -69,8 +69,7 @@ class EmbreeScene {
     if (quads) {
       for (const WidePatch& patch : patches) {
         for (std::size_t corner = 0; corner < 4; ++corner) {
-          const auto& [triangle, at] = patch.corner[patch.is_pair() || corner < 3 ? corner : 2];
-          *indices++ = mesh.triangles[triangle][at];
+          *indices++ = patch.corner[patch.is_pair() || corner < 3 ? corner : 2];
         }
       }
     } else {

@@ -36,18 +36,22 @@ struct TriangleView {
 struct WidePatch {
   static constexpr std::uint32_t no_triangle = 0xffffffffU;
 
-  /// Corner `at` of a triangle.
-  struct Corner {
-    std::uint32_t triangle = no_triangle;
-    std::uint32_t at = 0;
-  };
-
   std::array<std::uint32_t, 2> triangle{no_triangle, no_triangle};
-  std::array<Corner, 4> corner{};  ///< a, b, c of the first triangle, d of the second
+  /// Vertices: a, b, c of the first triangle, d of the second. A triangle alone has a in place of d.
+  std::array<std::uint32_t, 4> corner{};
+  /// Which of a, b, c is the first corner of the first triangle, and which of a, c, d of the second: 0, 1 or 2.
+  std::array<std::uint32_t, 2> begin{};
 
+  static WidePatch alone(std::uint32_t triangle, const std::array<std::uint32_t, 3>& vertices) {
+    return {{triangle, no_triangle}, {vertices[0], vertices[1], vertices[2], vertices[0]}, {}};
+  }
   bool is_none() const { return triangle[0] == no_triangle; }
   bool is_pair() const { return triangle[1] != no_triangle; }
   std::span<const std::uint32_t> triangles() const { return {triangle.data(), is_pair() ? 2U : 1U}; }
+  /// The first corner of a triangle.
+  std::uint32_t first_vertex(std::size_t side) const {
+    return side == 0 || begin[1] == 0 ? corner[begin[side]] : corner[begin[1] + 1];
+  }
 };
 
 namespace detail {
@@ -92,7 +96,7 @@ class PatchBuilder {
     }
     for (std::uint32_t triangle = first; triangle < last; ++triangle) {
       if (taken_[triangle - first]) continue;
-      patches.push_back({{triangle, WidePatch::no_triangle}, {{{triangle, 0}, {triangle, 1}, {triangle, 2}, {}}}});
+      patches.push_back(WidePatch::alone(triangle, mesh_.triangles[triangle]));
     }
   }
 
@@ -171,10 +175,12 @@ class PatchBuilder {
     const double length_m = glm::distance(low, high);
     if (!(distance_from_plane_m(at_a, at_b, at_c, at_d) <= flatness_ * length_m)) return;
     if (!is_convex(at_a, at_b, at_c, at_d)) return;
+    const auto &vertices = mesh_.triangles[one], &others = mesh_.triangles[other];
+    const std::uint32_t begin = (3 - a) % 3, other_begin = d == 0 ? 2U : others[0] == vertices[a] ? 0U : 1U;
     pairs_.push_back({length_m,
                       std::min(one, other),
                       std::max(one, other),
-                      {{one, other}, {{{one, a}, {one, b}, {one, c}, {other, d}}}}});
+                      {{one, other}, {vertices[a], vertices[b], vertices[c], others[d]}, {begin, other_begin}}});
   }
 
   const TriangleView& mesh_;

@@ -42,9 +42,10 @@ struct WideArrays {
   std::vector<WidePatch> patches;  ///< block b holds 8 b … 8 b + 7
   std::vector<PatchPlanes> planes;
   std::vector<std::uint32_t> patch_of_triangle;
-  std::vector<Aabb<double>> boxes;         ///< of triangles
-  std::vector<TriangleCorners> corners_m;  ///< of triangles
-  std::vector<WideChild> unit_root;        ///< per group; none for groups without subtree of their own
+  std::vector<Vec3> vertices_m;  ///< as edits took them over
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<char> is_there;        ///< per triangle
+  std::vector<WideChild> unit_root;  ///< per group; none for groups without subtree of their own
 
   Vec3 origin_m{0.0};
   float extent_m = 0.0F;  ///< no finite bound is larger, from the origin; grows only
@@ -73,10 +74,21 @@ struct WideArrays {
   /// Makes the boxes above a node tight again, as far up as they change. Returns how many nodes were looked at.
   std::size_t tighten_above(std::uint32_t node);
 
-  /// Takes over one triangle.
-  void set_triangle(std::uint32_t triangle, const TriangleCorners& corners, const Aabb<double>& box) {
-    corners_m[triangle] = corners;
-    boxes[triangle] = box;
+  /// Takes over where a triangle is, and whether.
+  void set_triangle(std::uint32_t triangle, std::span<const Vec3> from_m, bool exists) {
+    for (const std::uint32_t vertex : triangles[triangle]) vertices_m[vertex] = from_m[vertex];
+    is_there[triangle] = exists ? 1 : 0;
+  }
+  TriangleCorners corners_m(std::uint32_t triangle) const {
+    const auto& [a, b, c] = triangles[triangle];
+    return {vertices_m[a], vertices_m[b], vertices_m[c]};
+  }
+  /// Empty where the triangle is not there.
+  Aabb<double> box_of(std::uint32_t triangle) const {
+    Aabb<double> box;
+    if (is_there[triangle] == 0) return box;
+    for (const std::uint32_t vertex : triangles[triangle]) box.extend(vertices_m[vertex]);
+    return box;
   }
   /// Keeps `extent_m` a bound of what is written.
   void note_extent(const Aabb<float>& box) {
@@ -94,7 +106,7 @@ struct WideArrays {
 
   Aabb<double> box_of_patch(const WidePatch& patch) const {
     Aabb<double> box;
-    for (const std::uint32_t triangle : patch.triangles()) box.extend(boxes[triangle]);
+    for (const std::uint32_t triangle : patch.triangles()) box.extend(box_of(triangle));
     return box;
   }
 
@@ -103,16 +115,15 @@ struct WideArrays {
     const double cost = child.is_none() ? 0.0 : child.is_block() ? costs.block : costs.node;
     return cost * static_cast<double>(box.half_area());
   }
-  void load_lane(detail::BlockLanes& lanes, std::uint32_t lane, const WidePatch& patch, const Vec3& centre_m) const;
-  static void store_shapes(const detail::BlockLanes& lanes, PatchBlock& block);
-  PatchPlanes planes_of(const detail::BlockLanes& lanes, std::uint32_t lane, const WidePatch& patch) const;
-  WidePatch present_part(const WidePatch& patch) const;
+  std::uint32_t present_lanes(std::span<const WidePatch> held, detail::BlockPatches& there) const;
+  void write_planes(const detail::BlockWriter& writer, std::uint32_t lane, const WidePatch& patch,
+                    PatchPlanes& result) const;
 };
 
 inline void WideArrays::clear() {
   const auto empty = [](auto&... lists) { (lists.clear(), ...); };
   empty(nodes, node_place, node_unit, blocks, block_place, block_unit, group_of_block, free_nodes, patches, planes,
-        patch_of_triangle, boxes, corners_m, unit_root);
+        patch_of_triangle, vertices_m, triangles, is_there, unit_root);
   origin_m = Vec3(0.0);
   extent_m = 0.0F;
   weighted_area_m2 = 0.0;
@@ -184,17 +195,11 @@ inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
 
 inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   PatchBlock& block = blocks[index];
-  const std::span<const WidePatch> held = std::span(patches).subspan(std::size_t{index} * simd_lanes, simd_lanes);
-  Aabb<double> box;
-  block.lanes = 0;
-  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    if (held[lane].is_none()) continue;
-    for (const std::uint32_t triangle : held[lane].triangles()) {
-      box.extend(boxes[triangle]);
-      block.lanes |= (boxes[triangle].empty() ? 0U : 1U) << lane;
-    }
-  }
+  detail::BlockPatches there;
+  block.lanes = present_lanes(std::span(patches).subspan(std::size_t{index} * simd_lanes, simd_lanes), there);
   if (block.lanes == 0) return {};
+  detail::BlockWriter writer(there.in_lane, vertices_m);
+  const Aabb<double> box = writer.bounds_m();
   const Vec3 centre_m = box.center() - origin_m;
   // To float and back as explicit vectors: with plain numbers g++ 12 (-O2) vectorises the way there and back away, and
   // the corners would be counted from another centre than queries use.
@@ -203,86 +208,63 @@ inline Aabb<float> WideArrays::write_block(std::uint32_t index) {
   const Double4 exact = __builtin_convertvector(rounded, Double4);
   std::memcpy(block.centre_m.data(), &rounded, sizeof block.centre_m);
   const Vec3 counted_from_m(exact[0], exact[1], exact[2]);
-  detail::BlockLanes lanes;
-  std::array<WidePatch, simd_lanes> there;
+  // Rounding keeps the order: no corner is farther than the box.
+  const Vec3 reach_m =
+      glm::max(glm::abs((box.min - origin_m) - counted_from_m), glm::abs((box.max - origin_m) - counted_from_m));
+  block.size_m = static_cast<float>(std::max({reach_m.x, reach_m.y, reach_m.z}));
+  writer.write(origin_m, counted_from_m, block);
   for (std::uint32_t rest = block.lanes; rest != 0; rest &= rest - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
-    there[lane] = present_part(held[lane]);
-    load_lane(lanes, lane, there[lane], counted_from_m);
-  }
-  lanes.compute();
-  store_shapes(lanes, block);
-  for (std::uint32_t rest = block.lanes; rest != 0; rest &= rest - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
-    planes[index * simd_lanes + lane] = planes_of(lanes, lane, there[lane]);
+    write_planes(writer, lane, *there.in_lane[lane], planes[index * simd_lanes + lane]);
   }
   return rounded_out(box);
 }
 
-/// A pair of which one triangle is not there is the other.
-inline WidePatch WideArrays::present_part(const WidePatch& patch) const {
-  if (!patch.is_pair() || (!boxes[patch.triangle[0]].empty() && !boxes[patch.triangle[1]].empty())) return patch;
-  const std::uint32_t left = boxes[patch.triangle[0]].empty() ? patch.triangle[1] : patch.triangle[0];
-  return {{left, WidePatch::no_triangle}, {{{left, 0}, {left, 1}, {left, 2}, {}}}};
-}
-
-/// A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
-inline void WideArrays::load_lane(detail::BlockLanes& lanes, std::uint32_t lane, const WidePatch& patch,
-                                  const Vec3& centre_m) const {
-  // The centre in the world would be rounded, far from zero by more than the patch is large.
-  const auto corner = [&](std::size_t index) {
-    const auto& [triangle, at] = patch.corner[index];
-    return (corners_m[triangle][at] - origin_m) - centre_m;
-  };
-  const Vec3 a = corner(0), c = corner(2);
-  lanes.corner_m[0].set(lane, a);
-  lanes.corner_m[1].set(lane, corner(1));
-  lanes.corner_m[2].set(lane, c);
-  lanes.corner_m[3].set(lane, patch.is_pair() ? corner(3) : 0.5 * (a + c));
-  lanes.is_pair.at[lane] = patch.is_pair() ? 1.0 : 0.0;
-  for (std::size_t side = 0; side < patch.triangles().size(); ++side) {
-    const TriangleCorners& own = corners_m[patch.triangle[side]];
-    for (std::size_t index = 0; index < 3; ++index) lanes.own_corner_m[side][index].set(lane, own[index]);
-  }
-}
-
-inline void WideArrays::store_shapes(const detail::BlockLanes& lanes, PatchBlock& block) {
-  std::array<float, simd_lanes> size_m{};
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    lanes.corner_m[corner].x.store(block.corner_m[corner][0]);
-    lanes.corner_m[corner].y.store(block.corner_m[corner][1]);
-    lanes.corner_m[corner].z.store(block.corner_m[corner][2]);
-    for (const std::array<float, simd_lanes>& row : block.corner_m[corner]) {
-      for (std::size_t lane = 0; lane < simd_lanes; ++lane) size_m[lane] = std::max(size_m[lane], std::abs(row[lane]));
+/// The patches of which something is there; lanes without get another patch of the block. A pair of which one triangle
+/// is not there is the other. Returns the lanes with one.
+inline std::uint32_t WideArrays::present_lanes(std::span<const WidePatch> held, detail::BlockPatches& there) const {
+  std::uint32_t lanes = 0;
+  const WidePatch* any = nullptr;
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    const WidePatch& patch = held[lane];
+    const bool first = !patch.is_none() && is_there[patch.triangle[0]] != 0;
+    const bool second = patch.is_pair() && is_there[patch.triangle[1]] != 0;
+    there.in_lane[lane] = &patch;
+    if (!first && !second) continue;
+    lanes |= 1U << lane;
+    if (patch.is_pair() && first != second) {
+      const std::uint32_t left = patch.triangle[first ? 0 : 1];
+      there.in_lane[lane] = &(there.halves[lane] = WidePatch::alone(left, triangles[left]));
     }
+    any = there.in_lane[lane];
   }
-  block.size_m = *std::max_element(size_m.begin(), size_m.end());
-  lanes.diameter_m.store(block.reach_m);
-  for (float& reach_m : block.reach_m) reach_m *= static_cast<float>(PatchBlock::edge_error_factor);
-  lanes.normal[0].x.store(block.normal[0]);
-  lanes.normal[0].y.store(block.normal[1]);
-  lanes.normal[0].z.store(block.normal[2]);
-  lanes.offset_m.store(block.offset_m);
-  lanes.bend_m.store(block.bend_m);
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    if ((lanes >> lane & 1U) == 0) there.in_lane[lane] = any;
+  }
+  return lanes;
 }
 
-inline PatchPlanes WideArrays::planes_of(const detail::BlockLanes& lanes, std::uint32_t lane,
-                                         const WidePatch& patch) const {
-  PatchPlanes result;
-  result.triangle = patch.triangle;
-  result.plane[0] = {lanes.normal[0].get(lane), corners_m[patch.triangle[0]][0]};
-  if (!patch.is_pair()) return result;
-  result.plane[1] = {lanes.normal[1].get(lane), corners_m[patch.triangle[1]][0]};
-  const Vec3 &a = corners_m[patch.corner[0].triangle][patch.corner[0].at],
-             &c = corners_m[patch.corner[2].triangle][patch.corner[2].at];
-  const int axis = result.axis(), x = (axis + 1) % 3, y = (axis + 2) % 3;
-  // b lies where u x + v y < w.
-  const double turn = result.plane[0].normal[axis] < 0.0 ? -1.0 : 1.0;
-  const Vec3 from = a - result.plane[0].point_m;
-  result.u = -turn * (c[y] - a[y]);
-  result.v = turn * (c[x] - a[x]);
-  result.w = result.u * from[x] + result.v * from[y];
-  return result;
+inline void WideArrays::write_planes(const detail::BlockWriter& writer, std::uint32_t lane, const WidePatch& patch,
+                                     PatchPlanes& result) const {
+  const float least =
+      patch.is_pair() ? PatchPlane::least_slope_squared_of(writer.difference_squared(lane)) : PatchPlane::alone;
+  // Number by number: a plane made elsewhere and copied would wait for its parts.
+  const auto write = [&](std::size_t side) {
+    PatchPlane& plane = result.side[side];
+    writer.write_normal(side, lane, plane.normal);
+    const Vec3& point_m = vertices_m[patch.first_vertex(side)];
+    plane.point_m.x = point_m.x;
+    plane.point_m.y = point_m.y;
+    plane.point_m.z = point_m.z;
+    plane.triangle = patch.triangle[side];
+    plane.least_slope_squared = least;
+  };
+  write(0);
+  if (patch.is_pair()) {
+    write(1);
+  } else {
+    result.side[1].triangle = WidePatch::no_triangle;
+  }
 }
 
 }  // namespace dcem

@@ -7,175 +7,210 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
+#include <utility>
 
-#include "dcem/accel/patch_planes.hpp"
+#include "dcem/accel/double_lanes.hpp"
 #include "dcem/accel/patches.hpp"
 #include "dcem/accel/simd.hpp"
 #include "dcem/accel/wide_node.hpp"
+#include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/vector.hpp"
 
 namespace dcem::detail {
 
-/// Double-precision lanes in one register.
-using DoublePart = double __attribute__((vector_size(sizeof(FloatPart))));
-using LongPart = std::int64_t __attribute__((vector_size(sizeof(FloatPart))));
-inline constexpr std::size_t double_part_lanes = sizeof(DoublePart) / sizeof(double);
-
-/// A number in each lane, in memory: single lanes of a register are slow to write and to read.
-struct alignas(64) Lanes {
-  std::array<double, simd_lanes> at{};
-
-  void store(std::array<float, simd_lanes>& to) const {
-    for (std::size_t lane = 0; lane < simd_lanes; ++lane) to[lane] = static_cast<float>(at[lane]);
-  }
+/// The patches of a block, one in every lane.
+struct BlockPatches {
+  std::array<const WidePatch*, simd_lanes> in_lane;
+  std::array<WidePatch, simd_lanes> halves;  ///< what is left of pairs that are there in part
 };
 
-/// A vector in each lane, in memory.
-struct Lanes3 {
-  Lanes x, y, z;
+/// The numbers of a block, from the patches in it.
+class BlockWriter {
+ public:
+  /// Takes the corners of eight patches, none of them absent. What stands in lanes that do not count must be a patch of
+  /// the block as well: `bounds_m` goes around all.
+  BlockWriter(const std::array<const WidePatch*, simd_lanes>& patches, std::span<const Vec3> vertices_m) {
+    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+      begin_[0][lane] = patches[lane]->begin[0];
+      begin_[1][lane] = patches[lane]->begin[1];
+      is_pair_[lane] = patches[lane]->is_pair() ? 1 : 0;
+    }
+    for (std::size_t part = 0; part < parts; ++part) {
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        world_m_[part][corner].set([&](std::size_t lane) -> const Vec3& {
+          return vertices_m[patches[part * double_part_lanes + lane]->corner[corner]];
+        });
+      }
+    }
+  }
 
-  void set(std::size_t lane, const Vec3& value) {
-    x.at[lane] = value.x;
-    y.at[lane] = value.y;
-    z.at[lane] = value.z;
+  Aabb<double> bounds_m() const {
+    VectorPart low = world_m_[0][0], high = low;
+    for (const std::array<VectorPart, 4>& part : world_m_) {
+      for (const VectorPart& corner : part) {
+        low.x = low.x < corner.x ? low.x : corner.x;
+        low.y = low.y < corner.y ? low.y : corner.y;
+        low.z = low.z < corner.z ? low.z : corner.z;
+        high.x = high.x > corner.x ? high.x : corner.x;
+        high.y = high.y > corner.y ? high.y : corner.y;
+        high.z = high.z > corner.z ? high.z : corner.z;
+      }
+    }
+    Aabb<double> box;
+    for (int lane = 0; lane < static_cast<int>(double_part_lanes); ++lane) {
+      box.extend(Aabb<double>{{low.x[lane], low.y[lane], low.z[lane]}, {high.x[lane], high.y[lane], high.z[lane]}});
+    }
+    return box;
   }
-  Vec3 get(std::size_t lane) const { return {x.at[lane], y.at[lane], z.at[lane]}; }
-};
 
-/// A vector in each lane of a register, from a first lane on.
-struct VectorPart {
-  DoublePart x, y, z;
+  /// Writes what there is of each lane; the normals are kept. Corners count from `origin_m` + `centre_m`, which are
+  /// subtracted one after the other.
+  void write(const Vec3& origin_m, const Vec3& centre_m, PatchBlock& block) {
+    for (std::size_t part = 0; part < parts; ++part) write_part(part, origin_m, centre_m, block);
+  }
 
-  [[gnu::always_inline]] void load(const Lanes3& from, std::size_t first) {
-    std::memcpy(&x, from.x.at.data() + first, sizeof x);
-    std::memcpy(&y, from.y.at.data() + first, sizeof y);
-    std::memcpy(&z, from.z.at.data() + first, sizeof z);
+  void write_normal(std::size_t side, std::size_t lane, Vec3& to) const {
+    to.x = normal_[side][0][lane];
+    to.y = normal_[side][1][lane];
+    to.z = normal_[side][2][lane];
   }
-  [[gnu::always_inline]] void store(Lanes3& to, std::size_t first) const {
-    std::memcpy(to.x.at.data() + first, &x, sizeof x);
-    std::memcpy(to.y.at.data() + first, &y, sizeof y);
-    std::memcpy(to.z.at.data() + first, &z, sizeof z);
-  }
-  [[gnu::always_inline]] void set_difference(const VectorPart& to, const VectorPart& from) {
-    x = to.x - from.x;
-    y = to.y - from.y;
-    z = to.z - from.z;
-  }
-  [[gnu::always_inline]] void set_cross(const VectorPart& one, const VectorPart& other) {
-    x = one.y * other.z - one.z * other.y;
-    y = one.z * other.x - one.x * other.z;
-    z = one.x * other.y - one.y * other.x;
-  }
-  [[gnu::always_inline]] void scale(const DoublePart& by) {
-    x *= by;
-    y *= by;
-    z *= by;
-  }
-  [[gnu::always_inline]] void dot(const VectorPart& other, DoublePart& result) const {
-    result = x * other.x + y * other.y + z * other.z;
-  }
-};
-
-/// 1 / √value to rounding, for values from 1e-300 to 1e300: a guess from the exponent, and Newton's method four times,
-/// y ← y (1.5 − value y² / 2). Square roots and divisions of the machine take longer.
-[[gnu::always_inline]] inline void set_reciprocal_root(DoublePart& result, const DoublePart& value) {
-  result = std::bit_cast<DoublePart>(0x5fe6eb50c7b537a9 - (std::bit_cast<LongPart>(value) >> 1));
-  for (int step = 0; step < 4; ++step) result = result * (1.5 - 0.5 * value * result * result);
-}
-
-/// What the patches of a block are made of, and what follows from it.
-struct BlockLanes {
-  // Set by the caller for the lanes that are there.
-  std::array<Lanes3, 4> corner_m;                     ///< of the patch, from the block's centre
-  std::array<std::array<Lanes3, 3>, 2> own_corner_m;  ///< of its triangles, in the world, in their own order
-  Lanes is_pair;                                      ///< 1 or 0
-
-  // Computed.
-  std::array<Lanes3, 2> normal;  ///< of the triangles: unit length, to one side; zero where there is none
-  Lanes diameter_m, offset_m, bend_m;
-
-  void compute() {
-    for (std::size_t first = 0; first < simd_lanes; first += double_part_lanes) compute(first);
-  }
+  /// |n₁ − n₀|² of a pair.
+  double difference_squared(std::size_t lane) const { return difference_squared_[lane]; }
 
  private:
+  static constexpr std::size_t parts = simd_lanes / double_part_lanes;
   /// What is smaller is no length.
   static constexpr double least_squared = 1e-280;
+  using Row = std::array<double, simd_lanes>;
+  using Codes = std::array<std::int64_t, simd_lanes>;
 
-  void compute(std::size_t first) {
-    VectorPart a, b, c, d, ab, ac, ad, one, other;
-    a.load(corner_m[0], first);
-    b.load(corner_m[1], first);
-    c.load(corner_m[2], first);
-    d.load(corner_m[3], first);
-    ab.set_difference(b, a);
-    ac.set_difference(c, a);
-    ad.set_difference(d, a);
-    one.set_cross(ab, ac);
-    other.set_cross(ac, ad);
-    VectorPart normal_part;
-    set_normal(1, other, first, normal_part);
-    set_normal(0, one, first, normal_part);
-    DoublePart offset, bend, diameter, pair;
-    normal_part.dot(a, offset);
-    normal_part.dot(ad, bend);
-    bend = bend < 0.0 ? -bend : bend;
-    set_diameter(b, c, d, ab, ac, ad, diameter);
-    DoublePart sound;
-    set_soundness(b, c, d, one, other, normal_part, sound);
-    // Without a plane, or where the vertices have moved until the pair is not convex, nothing is certain, but every
-    // ray near it is asked.
-    std::memcpy(&pair, is_pair.at.data() + first, sizeof pair);
-    bend = (sound > 0.0 ? bend * 1.0001 : diameter) * pair;
-    std::memcpy(offset_m.at.data() + first, &offset, sizeof offset);
-    std::memcpy(bend_m.at.data() + first, &bend, sizeof bend);
-    std::memcpy(diameter_m.at.data() + first, &diameter, sizeof diameter);
+  [[gnu::always_inline]] static LongPart codes(const Codes& of, std::size_t part) {
+    LongPart result;
+    std::memcpy(&result, of.data() + part * double_part_lanes, sizeof result);
+    return result;
   }
 
-  /// `towards`: where the patch's own order of corners points.
-  [[gnu::always_inline]] void set_normal(std::size_t side, const VectorPart& towards, std::size_t first,
-                                         VectorPart& result) {
-    VectorPart a, b, c;
-    a.load(own_corner_m[side][0], first);
-    b.load(own_corner_m[side][1], first);
-    c.load(own_corner_m[side][2], first);
-    b.set_difference(b, a);
-    c.set_difference(c, a);
-    result.set_cross(b, c);
+  [[gnu::always_inline]] void write_part(std::size_t part, const Vec3& origin_m, const Vec3& centre_m,
+                                         PatchBlock& block) {
+    const std::size_t first = part * double_part_lanes;
+    const LongPart is_pair = codes(is_pair_, part) != 0;
+    std::array<VectorPart, 4> corner;
+    place_corners(world_m_[part], origin_m, centre_m, is_pair, corner);
+    for (std::size_t index = 0; index < 4; ++index) store(corner[index], block.corner_m[index], first);
+    Edges edges;
+    edges.set(corner);
+    VectorPart normal, other_normal;
+    set_normals(part, edges, normal, other_normal);
+    store(normal, block.normal, first);
+    DoublePart offset, bend, diameter, sound;
+    normal.dot(corner[0], offset);
+    normal.dot(edges.ad, bend);
+    set_diameter(edges, diameter);
+    set_soundness(edges, normal, sound);
+    // Without a plane, or where the vertices have moved until the pair is not convex, nothing is certain, but every
+    // ray near it is asked.
+    bend = sound > 0.0 ? absolute(bend) * 1.0001 : diameter;
+    bend = is_pair ? bend : DoublePart{};
+    store_narrow(offset, block.offset_m.data() + first);
+    store_narrow(bend, block.bend_m.data() + first);
+    store_narrow(diameter * PatchBlock::edge_error_factor, block.reach_m.data() + first);
+  }
+
+  /// Ways between the corners, and the products that point along the normals.
+  struct Edges {
+    VectorPart ab, ac, ad, bc, cd, bd, at_b, at_d;
+
+    [[gnu::always_inline]] void set(const std::array<VectorPart, 4>& corner) {
+      const auto& [a, b, c, d] = corner;
+      ab.set_difference(b, a);
+      ac.set_difference(c, a);
+      ad.set_difference(d, a);
+      bc.set_difference(c, b);
+      cd.set_difference(d, c);
+      bd.set_difference(d, b);
+      at_b.set_cross(ab, ac);
+      at_d.set_cross(ac, ad);
+    }
+  };
+
+  [[gnu::always_inline]] static void store(const VectorPart& vector, std::array<std::array<float, simd_lanes>, 3>& rows,
+                                           std::size_t first) {
+    store_narrow(vector.x, rows[0].data() + first);
+    store_narrow(vector.y, rows[1].data() + first);
+    store_narrow(vector.z, rows[2].data() + first);
+  }
+
+  /// A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
+  [[gnu::always_inline]] static void place_corners(const std::array<VectorPart, 4>& world, const Vec3& origin_m,
+                                                   const Vec3& centre_m, const LongPart& is_pair,
+                                                   std::array<VectorPart, 4>& corner) {
+    for (std::size_t index = 0; index < 4; ++index) {
+      corner[index].x = (world[index].x - origin_m.x) - centre_m.x;
+      corner[index].y = (world[index].y - origin_m.y) - centre_m.y;
+      corner[index].z = (world[index].z - origin_m.z) - centre_m.z;
+    }
+    VectorPart middle;
+    middle.x = 0.5 * (corner[0].x + corner[2].x);
+    middle.y = 0.5 * (corner[0].y + corner[2].y);
+    middle.z = 0.5 * (corner[0].z + corner[2].z);
+    corner[3].set_where(is_pair, corner[3], middle);
+  }
+
+  [[gnu::always_inline]] void set_normals(std::size_t part, const Edges& edges, VectorPart& normal,
+                                          VectorPart& other_normal) {
+    const std::array<VectorPart, 4>& world = world_m_[part];
+    const std::size_t first = part * double_part_lanes;
+    set_normal(codes(begin_[0], part), {world[0], world[1], world[2]}, edges.at_b, normal);
+    set_normal(codes(begin_[1], part), {world[0], world[2], world[3]}, edges.at_d, other_normal);
+    normal.store(&normal_[0][0][first], &normal_[0][1][first], &normal_[0][2][first]);
+    other_normal.store(&normal_[1][0][first], &normal_[1][1][first], &normal_[1][2][first]);
+    DoublePart difference;
+    other_normal.set_difference(other_normal, normal);
+    other_normal.dot(other_normal, difference);
+    std::memcpy(&difference_squared_[first], &difference, sizeof difference);
+  }
+
+  /// `corner`: of a triangle, in the world. `begin`: which of them is its first. (Which of the others is the second
+  /// changes the sign of the product and nothing else.) `towards`: where the patch's own order of corners points.
+  [[gnu::always_inline]] static void set_normal(const LongPart& begin, const std::array<VectorPart, 3>& corner,
+                                                const VectorPart& towards, VectorPart& result) {
+    VectorPart first, next, last;
+    const LongPart is_one = begin == 1, is_two = begin == 2;
+    first.set_where(is_one, corner[1], corner[0]);
+    first.set_where(is_two, corner[2], first);
+    next.set_where(is_one, corner[2], corner[1]);
+    next.set_where(is_two, corner[0], next);
+    last.set_where(is_one, corner[0], corner[2]);
+    last.set_where(is_two, corner[1], last);
+    next.set_difference(next, first);
+    last.set_difference(last, first);
+    result.set_cross(next, last);
     DoublePart squared, scale, along;
     result.dot(result, squared);
     result.dot(towards, along);
-    set_reciprocal_root(scale, squared);
+    set_reciprocal_root(scale, squared, 4);
     scale = along < 0.0 ? -scale : scale;
     result.scale(squared > least_squared ? scale : DoublePart{});
-    result.store(normal[side], first);
   }
 
-  [[gnu::always_inline]] static void set_diameter(const VectorPart& b, const VectorPart& c, const VectorPart& d,
-                                                  const VectorPart& ab, const VectorPart& ac, const VectorPart& ad,
-                                                  DoublePart& result) {
-    VectorPart bc, cd, bd;
-    bc.set_difference(c, b);
-    cd.set_difference(d, c);
-    bd.set_difference(d, b);
+  [[gnu::always_inline]] static void set_diameter(const Edges& edges, DoublePart& result) {
     DoublePart longest = DoublePart{} + least_squared, squared;
-    for (const VectorPart* way : std::array<const VectorPart*, 6>{&ab, &ac, &ad, &bc, &cd, &bd}) {
+    for (const VectorPart* way :
+         std::array<const VectorPart*, 6>{&edges.ab, &edges.ac, &edges.ad, &edges.bc, &edges.cd, &edges.bd}) {
       way->dot(*way, squared);
       longest = squared > longest ? squared : longest;
     }
-    set_reciprocal_root(result, longest);
-    result *= longest;
+    set_reciprocal_root(result, longest, 2);
+    result *= longest * 1.00001;
   }
 
   /// Above 0 where is_convex(a, b, c, d) and there is a plane. The turns at opposite corners of a quadrilateral are the
   /// normals of the triangles there, and both pairs have the same sum.
-  [[gnu::always_inline]] static void set_soundness(const VectorPart& b, const VectorPart& c, const VectorPart& d,
-                                                   const VectorPart& at_b, const VectorPart& at_d,
-                                                   const VectorPart& normal_part, DoublePart& result) {
-    VectorPart bc, cd, at_c;
-    bc.set_difference(c, b);
-    cd.set_difference(d, c);
-    at_c.set_cross(bc, cd);
+  [[gnu::always_inline]] static void set_soundness(const Edges& edges, const VectorPart& normal, DoublePart& result) {
+    const VectorPart &at_b = edges.at_b, &at_d = edges.at_d;
+    VectorPart at_c;
+    at_c.set_cross(edges.bc, edges.cd);
     VectorPart sum;
     sum.x = at_b.x + at_d.x;
     sum.y = at_b.y + at_d.y;
@@ -189,10 +224,16 @@ struct BlockLanes {
     turn_b = turn_b < turn_c ? turn_b : turn_c;
     turn_d = turn_d < turn_a ? turn_d : turn_a;
     turn_b = turn_b < turn_d ? turn_b : turn_d;
-    normal_part.dot(normal_part, length);
+    normal.dot(normal, length);
     result = turn_b >= 1e-3 * least ? least : DoublePart{};
     result = length > 0.0 ? result : DoublePart{};
   }
+
+  std::array<std::array<VectorPart, 4>, parts> world_m_;
+  alignas(64) std::array<Codes, 2> begin_;
+  alignas(64) Codes is_pair_;
+  std::array<std::array<Row, 3>, 2> normal_;
+  Row difference_squared_;
 };
 
 }  // namespace dcem::detail

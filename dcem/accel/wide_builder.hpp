@@ -77,7 +77,9 @@ class WideBuilder {
  private:
   void place_origin() {
     Aabb<double> all;
-    for (const Aabb<double>& box : arrays_->boxes) all.extend(box);
+    for (std::uint32_t triangle = 0; triangle < arrays_->triangles.size(); ++triangle) {
+      all.extend(arrays_->box_of(triangle));
+    }
     arrays_->origin_m = all.empty() ? Vec3(0.0) : all.center();
   }
 

@@ -1,5 +1,8 @@
 #pragma once
 /// How a `WideTree` is built and follows motion; included by wide_tree.hpp.
+#include <bit>
+#include <cstring>
+
 #include "dcem/accel/wide_tree.hpp"
 
 namespace dcem {
@@ -8,10 +11,18 @@ namespace detail {
 
 /// Whether a box is surely valid and not empty: without branches, NaN fails every comparison.
 inline bool is_plain_box(const Aabb<double>& box) {
-  constexpr double limit_m = maximum_coordinate_m;
-  return ((box.min.x >= -limit_m) & (box.min.y >= -limit_m) & (box.min.z >= -limit_m) & (box.max.x <= limit_m) &
-          (box.max.y <= limit_m) & (box.max.z <= limit_m) & (box.min.x <= box.max.x) & (box.min.y <= box.max.y) &
-          (box.min.z <= box.max.z)) != 0;
+  using Double4 = double __attribute__((vector_size(32)));
+  using Long4 = std::int64_t __attribute__((vector_size(32)));
+  static_assert(sizeof box == 48);
+  Double4 first, last;  // min and max.x; min.z and max
+  std::memcpy(&first, &box, sizeof first);
+  std::memcpy(&last, reinterpret_cast<const char*>(&box) + 16, sizeof last);
+  const auto size = [](const Double4& numbers) {
+    return std::bit_cast<Double4>(std::bit_cast<Long4>(numbers) & std::int64_t{0x7fffffffffffffff});
+  };
+  const Double4 max = __builtin_shufflevector(first, last, 5, 6, 7, 5);
+  const Long4 holds = (size(first) <= maximum_coordinate_m) & (size(last) <= maximum_coordinate_m) & (first <= max);
+  return (holds[0] & holds[1] & holds[2] & holds[3]) != 0;
 }
 
 }  // namespace detail
@@ -61,11 +72,12 @@ inline void WideTree::rebuild(const TriangleView& mesh, Boxes boxes) {
 inline void WideTree::plant(const TriangleView& mesh, Boxes boxes) {
   arrays_.clear();
   arrays_.costs = settings_.costs;
-  arrays_.boxes.resize(boxes.size());
-  arrays_.corners_m.resize(boxes.size());
+  arrays_.vertices_m.assign(mesh.vertices_m.begin(), mesh.vertices_m.end());
+  arrays_.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+  arrays_.is_there.resize(boxes.size());
   arrays_.patch_of_triangle.resize(boxes.size());
   for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
-    arrays_.set_triangle(triangle, mesh.corners_m(triangle), canonical_box(boxes[triangle]));
+    arrays_.is_there[triangle] = boxes[triangle].empty() ? 0 : 1;
   }
   WideBuilder(settings_).build(arrays_, patches_, first_patch_);
   sah_at_build_ = sah_cost();
@@ -84,16 +96,16 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
   if (mesh.size() != primitive_count() || boxes.size() != primitive_count()) {
     throw std::invalid_argument("one box per triangle of the tree is needed");
   }
+  if (mesh.vertices_m.size() != arrays_.vertices_m.size()) throw std::invalid_argument("the vertices are others");
   for (const std::uint32_t triangle : moved) {
     if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
     if (!detail::is_plain_box(boxes[triangle])) require_valid_box(boxes[triangle], triangle);
-    require_corners(mesh, triangle);
   }
   for (const std::uint32_t unit : moved_units_) unit_is_moved_[unit] = 0;
   moved_units_.clear();
   WideRefitReport report;
   for (const std::uint32_t triangle : moved) {
-    arrays_.set_triangle(triangle, mesh.corners_m(triangle), canonical_box(boxes[triangle]));
+    arrays_.set_triangle(triangle, mesh.vertices_m, detail::is_plain_box(boxes[triangle]));
     const std::uint32_t block = arrays_.patch_of_triangle[triangle] / simd_lanes;
     if (block_is_dirty_[block] != 0) continue;
     block_is_dirty_[block] = 1;

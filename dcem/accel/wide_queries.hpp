@@ -22,12 +22,6 @@ class SpentCounters {
   TraversalCounters* sum_;
 };
 
-/// Fetches what will be looked at when the walk is over.
-[[gnu::always_inline]] inline void prefetch(const PatchPlanes& planes) {
-  __builtin_prefetch(&planes);
-  __builtin_prefetch(&planes.u);
-}
-
 /// Calls `visit(lane)` for the set bits, lowest first, until one returns true. Returns whether one did.
 template <typename Visit>
 [[gnu::always_inline]] inline bool any_lane(std::uint32_t lanes, Visit&& visit) {
@@ -52,9 +46,9 @@ inline Aabb<double> WideTree::in_world(const Aabb<float>& box) const {
   return result;
 }
 
-inline void WideTree::offer(std::uint32_t patch, const Ray<double>& ray, bool is_met,
+inline void WideTree::offer(std::uint32_t patch, const Ray<double>& ray, Known known,
                             std::optional<WideHit>& best) const {
-  const std::optional<WideHit> hit = hit_on(patch, ray, is_met);
+  const std::optional<WideHit> hit = hit_on(patch, ray, known);
   if (!hit || (best && (hit->t > best->t || (hit->t == best->t && hit->triangle > best->triangle)))) return;
   best = hit;
 }
@@ -79,7 +73,7 @@ std::optional<WideHit> WideTree::nearest_among(const Ray<double>& ray, const Wid
   std::optional<WideHit> best;
   const auto look_at = [&](const detail::WideCandidates::Candidate& candidate) {
     ++counters.primitives_tested;
-    offer(candidate.patch, ray, candidate.certain, best);
+    offer(candidate.patch, ray, candidate.known, best);
   };
   const auto take = [&](std::uint32_t block, std::uint32_t met, const Hits& hits, float& walk_limit) {
     for (; met != 0; met &= met - 1) {
@@ -90,8 +84,9 @@ std::optional<WideHit> WideTree::nearest_among(const Ray<double>& ray, const Wid
       const bool certain = has(hits.certain, lane);
       // The plane's t may lie beyond what is asked for by a rounding: then it shortens nothing.
       if (certain && static_cast<double>(hits.last[lane]) < ray.t_max) limit = std::min(limit, hits.last[lane]);
-      const detail::WideCandidates::Candidate candidate{patch, hits.first[lane], certain};
-      detail::prefetch(arrays_.planes[patch]);
+      const detail::WideCandidates::Candidate candidate{patch, hits.first[lane], hits.known(lane)};
+      // Looked at when the walk is over; where nothing is known of the side, the first one is as good as the other.
+      __builtin_prefetch(&arrays_.planes[patch].side[candidate.known == Known::second ? 1 : 0]);
       if (!candidates.add(candidate, limit)) look_at(candidate);
     }
     walk_limit = limit;
@@ -112,7 +107,7 @@ std::optional<WideHit> WideTree::nearest_of_all(const Ray<double>& ray, Consider
     const WidePatch& held = arrays_.patches[patch];
     if (held.is_none() || arrays_.box_of_patch(held).empty()) continue;
     ++counters.primitives_tested;
-    if (is_considered(patch, considers)) offer(patch, ray, false, best);
+    if (is_considered(patch, considers)) offer(patch, ray, Known::nothing, best);
   }
   return best;
 }
@@ -125,9 +120,9 @@ bool WideTree::blocked(const Ray<double>& ray, Considers&& considers, TraversalC
   const auto blocks = [&](std::uint32_t patch, bool certain) {
     if (!is_considered(patch, considers)) return false;
     ++sum.spent.primitives_tested;
-    return certain || hit_on(patch, ray, false);
+    return certain || hit_on(patch, ray, Known::nothing);
   };
-  if (first_try && *first_try < primitive_count() && !arrays_.boxes[*first_try].empty() && has_direction(ray) &&
+  if (first_try && *first_try < primitive_count() && arrays_.is_there[*first_try] != 0 && has_direction(ray) &&
       blocks(arrays_.patch_of_triangle[*first_try], false)) {
     return true;
   }
@@ -149,7 +144,7 @@ void WideTree::closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* c
   double t_max = ray.t_max;
   const auto ask = [&](const WidePatch& patch) {
     for (const std::uint32_t triangle : patch.triangles()) {
-      if (arrays_.boxes[triangle].empty()) continue;
+      if (arrays_.is_there[triangle] == 0) continue;
       ++sum.spent.primitives_tested;
       leaf(triangle, t_max);
     }
@@ -183,7 +178,7 @@ bool WideTree::any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* count
   if (primitive_count() == 0) return false;
   const auto ask = [&](const WidePatch& patch) {
     return std::ranges::any_of(patch.triangles(), [&](std::uint32_t triangle) {
-      if (arrays_.boxes[triangle].empty()) return false;
+      if (arrays_.is_there[triangle] == 0) return false;
       ++sum.spent.primitives_tested;
       return leaf(triangle);
     });
@@ -221,7 +216,7 @@ void WideTree::visit_where(KeepEntry&& keep_entry, Keep&& keep_box, Leaf& leaf, 
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
       if (!has(arrays_.blocks[block].lanes, lane)) continue;
       for (const std::uint32_t triangle : arrays_.patches[block * simd_lanes + lane].triangles()) {
-        if (arrays_.boxes[triangle].empty() || !keep_box(arrays_.boxes[triangle])) continue;
+        if (arrays_.is_there[triangle] == 0 || !keep_box(arrays_.box_of(triangle))) continue;
         ++sum.spent.primitives_tested;
         leaf(triangle);
       }

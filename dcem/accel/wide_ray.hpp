@@ -17,6 +17,14 @@
 
 namespace dcem {
 
+/// What single precision knows of a ray and a patch that it may meet.
+enum class PatchKnowledge : std::uint8_t {
+  nothing,
+  met,    ///< the line of the ray meets the patch
+  first,  ///< it meets the first triangle of the patch
+  second
+};
+
 class WideRay {
  public:
   /// `extent_m`: no bound of the tree's boxes is larger, counted from its origin.
@@ -41,9 +49,17 @@ class WideRay {
 
   /// What is known of a ray and the patches of a block.
   struct PatchHits {
-    Float8 first;           ///< a patch is met no earlier than here
-    Float8 last;            ///< and no later than here
-    std::uint32_t certain;  ///< bit i: patch i is met, not before t_min
+    Float8 first;                       ///< a patch is met no earlier than here
+    Float8 last;                        ///< and no later than here
+    std::uint32_t certain;              ///< bit i: patch i is met, not before t_min
+    std::array<std::uint32_t, 2> side;  ///< bit i: if patch i is met, then it is its first or its second triangle
+
+    PatchKnowledge known(std::uint32_t lane) const {
+      const auto bit = [lane](std::uint32_t lanes) { return lanes >> lane & 1U; };
+      constexpr std::array answers{PatchKnowledge::nothing, PatchKnowledge::met, PatchKnowledge::first,
+                                   PatchKnowledge::second};
+      return answers[bit(certain) * (1 + bit(side[0]) + 2 * bit(side[1]))];
+    }
   };
 
   /// Bit i: the ray may meet patch i of the block between t_min and `t_max` (padded).
@@ -190,6 +206,11 @@ namespace detail {
   const Mask8 is_near = (simd::absolute(a.x) < reach) & (simd::absolute(a.y) < reach);
   // A triangle's fourth corner lies on an edge: that edge's two functions have the triangle's sign as well.
   hits.certain = candidates & (((low > error) | (high < -error)) & is_near & (hits.first > t_min_)).bits();
+  // The diagonal turns with the edges of the first triangle, and against those of the second.
+  const Float8 ca = edge(c, a);
+  const std::uint32_t left = (ca > error).bits(), right = (ca < -error).bits(), turn = (low > error).bits();
+  hits.side[0] = (left & turn) | (right & ~turn);
+  hits.side[1] = (right & turn) | (left & ~turn);
   return candidates & ~((hits.first > t_max) | (hits.last < t_min_)).bits();
 }
 

@@ -148,7 +148,7 @@ class WideCandidates {
   struct Candidate {
     std::uint32_t patch;
     float first;
-    bool certain;
+    PatchKnowledge known;
   };
 
   /// False where there is no room.

@@ -41,8 +41,8 @@ struct WideRefitReport {
 };
 
 /// Boxes and triangles are passed in full to every edit, indexed by triangle; a triangle with an empty box is not
-/// there. Edits throw std::invalid_argument, before anything changes, for bad boxes (see Bvh) and numbers out of range.
-/// Queries may run on several threads at once, edits may not.
+/// there, any other box is that around its corners. Edits throw std::invalid_argument, before anything changes, for bad
+/// boxes (see Bvh) and numbers out of range. Queries may run on several threads at once, edits may not.
 class WideTree {
  public:
   using Boxes = std::span<const Aabb<double>>;
@@ -62,8 +62,9 @@ class WideTree {
 
   // Following motion.
 
-  /// Takes over the corners and boxes of the triangles in `moved` and makes all boxes above them tight again. Vertices
-  /// may move in any way. Allocates nothing once the lists have grown.
+  /// Takes over the corners of the triangles in `moved`, and which of them are there, and makes all boxes above them
+  /// tight again. Vertices may move in any way; which vertices a triangle has stays as it was built. `moved` names
+  /// every triangle of which a corner has moved. Allocates nothing once the lists have grown.
   WideRefitReport refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes);
 
   /// Takes units out of the tree that the last refit moved, and hangs each where it costs least (branch and bound over
@@ -127,7 +128,7 @@ class WideTree {
 
   // Looking inside.
 
-  std::size_t primitive_count() const { return arrays_.boxes.size(); }
+  std::size_t primitive_count() const { return arrays_.triangles.size(); }
   std::size_t group_count() const { return group_first_.size(); }
   Aabb<double> bounds() const { return in_world(root_box()); }
   const WideArrays& arrays() const { return arrays_; }
@@ -160,41 +161,35 @@ class WideTree {
   static bool is_in_range(double t, const Ray<double>& ray) {
     return t >= ray.t_min && t <= ray.t_max && std::isfinite(t);
   }
-  /// Where a ray meets a patch, and in which of its triangles; absent where it does not from t_min to t_max. `is_met`:
-  /// it is known that the line of the ray meets the patch; double precision finds out otherwise. The answer is the same
-  /// whatever has shown that.
-  std::optional<WideHit> hit_on(std::uint32_t patch, const Ray<double>& ray, bool is_met) const {
+  using Known = PatchKnowledge;
+  /// Where a ray meets a patch, and in which of its triangles; absent where it does not from t_min to t_max. Double
+  /// precision finds out what is not known; the answer is the same whatever is.
+  std::optional<WideHit> hit_on(std::uint32_t patch, const Ray<double>& ray, Known known) const {
     const PatchPlanes& planes = arrays_.planes[patch];
-    const auto [t, side, is_sure] = planes.meet(ray);
-    if (!is_sure) return hit_on_either(planes, ray);
-    if (!is_in_range(t, ray) || !(is_met || meets_exactly(planes, ray))) return std::nullopt;
-    return WideHit{t, planes.triangle[side]};
+    if (known == Known::nothing) return hit_on_either(planes, ray);
+    const PatchPlane& plane = planes.side[known == Known::second ? 1 : 0];
+    if ((known == Known::met && !plane.is_alone()) || !plane.is_steep(ray)) return hit_on_either(planes, ray);
+    const double t = plane.t_of(ray);
+    return is_in_range(t, ray) ? std::optional(WideHit{t, plane.triangle}) : std::nullopt;
   }
   /// As hit_on, each triangle asked by itself.
   std::optional<WideHit> hit_on_either(const PatchPlanes& planes, const Ray<double>& ray) const {
     const WatertightRay exact(ray);
     std::optional<WideHit> best;
-    for (std::size_t side = 0; side < planes.triangles().size(); ++side) {
-      const WideHit hit{planes.t_of(side, ray), planes.triangle[side]};
-      if (!is_in_range(hit.t, ray) || !exact.intersect(arrays_.corners_m[hit.triangle])) continue;
+    for (const PatchPlane& plane : planes.sides()) {
+      const WideHit hit{plane.t_of(ray), plane.triangle};
+      if (!is_in_range(hit.t, ray) || !exact.intersect(arrays_.corners_m(hit.triangle))) continue;
       if (!best || hit.t < best->t || (hit.t == best->t && hit.triangle < best->triangle)) best = hit;
     }
     return best;
   }
-  /// Whether the line of a ray meets a triangle of the patch, in double precision.
-  bool meets_exactly(const PatchPlanes& planes, const Ray<double>& ray) const {
-    const WatertightRay exact(ray);
-    return std::ranges::any_of(planes.triangles(), [&](std::uint32_t triangle) {
-      return exact.intersect(arrays_.corners_m[triangle]).has_value();
-    });
-  }
   template <typename Considers>
   bool is_considered(std::uint32_t patch, Considers& considers) const {
     if constexpr (std::is_same_v<std::remove_const_t<Considers>, EveryTriangle>) return true;
-    return considers(arrays_.planes[patch].triangle[0]);
+    return considers(arrays_.planes[patch].side[0].triangle);
   }
   /// Takes over a hit where it is nearer, or as near and of a smaller number.
-  void offer(std::uint32_t patch, const Ray<double>& ray, bool is_met, std::optional<WideHit>& best) const;
+  void offer(std::uint32_t patch, const Ray<double>& ray, Known known, std::optional<WideHit>& best) const;
 
   template <typename Considers>
   std::optional<WideHit> nearest_among(const Ray<double>& ray, const WideRay& wide, Considers& considers,

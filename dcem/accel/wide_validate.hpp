@@ -19,10 +19,10 @@ class WideInspector {
   WideInspector(const WideArrays& arrays, std::span<const Aabb<double>> boxes) : arrays_(arrays), boxes_(boxes) {}
 
   std::string find_defect() {
-    if (arrays_.boxes.size() != boxes_.size()) return "the number of boxes is another";
-    for (std::size_t triangle = 0; triangle < boxes_.size(); ++triangle) {
-      if (arrays_.boxes[triangle] != canonical_box(boxes_[triangle])) {
-        return "the stored box of triangle " + std::to_string(triangle) + " is not its box";
+    if (arrays_.triangles.size() != boxes_.size()) return "the number of boxes is another";
+    for (std::uint32_t triangle = 0; triangle < boxes_.size(); ++triangle) {
+      if (arrays_.box_of(triangle) != canonical_box(boxes_[triangle])) {
+        return "triangle " + std::to_string(triangle) + " is not where its box is";
       }
     }
     if (arrays_.nodes.empty()) return boxes_.empty() ? "" : "there is no root";

@@ -21,11 +21,6 @@ std::vector<WidePatch> patches_of(const WideMesh& mesh, double flatness = 1e-3) 
   return patches;
 }
 
-std::uint32_t vertex_of(const WideMesh& mesh, const WidePatch& patch, std::size_t corner) {
-  const auto& [triangle, at] = patch.corner[corner];
-  return mesh.triangles[triangle][at];
-}
-
 std::size_t pair_count(const std::vector<WidePatch>& patches) {
   return static_cast<std::size_t>(
       std::ranges::count_if(patches, [](const WidePatch& patch) { return patch.is_pair(); }));
@@ -37,23 +32,21 @@ void check_promises(const WideMesh& mesh, const std::vector<WidePatch>& patches,
   for (const WidePatch& patch : patches) {
     REQUIRE(!patch.is_none());
     for (const std::uint32_t triangle : patch.triangles()) ++times[triangle];
-    std::set<std::uint32_t> first;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      REQUIRE(patch.corner[corner].triangle == patch.triangle[0]);
-      first.insert(patch.corner[corner].at);
-    }
-    REQUIRE(first == std::set<std::uint32_t>{0, 1, 2});
+    // a, b, c are the first triangle's corners in its own order, from some corner on.
+    const std::array<std::uint32_t, 3>& own = mesh.triangles[patch.triangle[0]];
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      REQUIRE(patch.corner[(patch.begin[0] + corner) % 3] == own[corner]);
+    REQUIRE(patch.first_vertex(0) == own[0]);
     if (!patch.is_pair()) continue;
-    REQUIRE(patch.corner[3].triangle == patch.triangle[1]);
+    REQUIRE(patch.first_vertex(1) == mesh.triangles[patch.triangle[1]][0]);
     REQUIRE(mesh.view().same_surface(patch.triangle[0], patch.triangle[1]));
     // The second triangle is c, a, d in some order.
     std::multiset<std::uint32_t> second(mesh.triangles[patch.triangle[1]].begin(),
                                         mesh.triangles[patch.triangle[1]].end());
-    const std::uint32_t a = vertex_of(mesh, patch, 0), c = vertex_of(mesh, patch, 2), d = vertex_of(mesh, patch, 3);
+    const auto& [a, b, c, d] = patch.corner;
     REQUIRE(second == std::multiset<std::uint32_t>{a, c, d});
     REQUIRE(a != c);
-    const std::array<Vec3, 4> at{mesh.vertices[a], mesh.vertices[vertex_of(mesh, patch, 1)], mesh.vertices[c],
-                                 mesh.vertices[d]};
+    const std::array<Vec3, 4> at{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], mesh.vertices[d]};
     // Flat: the height of d over the plane of the others, from the volume they span.
     const Vec3 normal = glm::cross(at[1] - at[0], at[2] - at[0]);
     REQUIRE(glm::length(normal) > 0.0);
