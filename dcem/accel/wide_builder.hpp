@@ -27,8 +27,6 @@ enum class WideQuality {
 
 /// How a wide tree is built.
 struct WideSettings {
-  /// Default fast.
-  WideQuality quality = WideQuality::fast;
   /// Relative costs of nodes and blocks, by which the binary tree is collapsed.
   WideCosts costs{};
   /// Two triangles become one patch where the fourth corner is no further from the plane of the others than this times
@@ -42,6 +40,8 @@ struct WideSettings {
   std::uint32_t leaf_limit = 8;
   /// Threads of a build (number); 0: as many as the machine has. The tree does not depend on it. Default 1.
   unsigned threads = 1;
+  /// How long a build may take. Default fast.
+  WideQuality quality = WideQuality::fast;
 };
 
 /// Throws std::invalid_argument for settings outside the ranges written above.
