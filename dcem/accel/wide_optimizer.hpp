@@ -27,7 +27,7 @@ class WideOptimizer {
   static constexpr int most_passes = 10;
   static constexpr double least_gain = 1e-3;  ///< a pass that gains a smaller part of the sum is the last one
   /// A search looks at no more nodes: boxes that all overlap would make it look at all of them.
-  static constexpr int most_visits = 2000;
+  static constexpr int most_visits = 200;
 
   /// Changes the tree and the order of its items. It gets no deeper than WideBinner::levels: a pass that makes it
   /// deeper is taken back, and the last one.

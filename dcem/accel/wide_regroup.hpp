@@ -22,7 +22,7 @@ namespace dcem {
 class WideRegroup {
  public:
   static constexpr double least_gain = 1e-3;  ///< a pass that gains a smaller part of the sum is the last one
-  static constexpr int most_visits = 500;     ///< nodes that one search looks into
+  static constexpr int most_visits = 16;      ///< nodes that one search looks into: boxes may all overlap
 
   /// Changes a binary tree, and the order of its items, so that its collapse shows the better blocks. A tree that would
   /// get deeper than WideBinner::levels stays as it is.
