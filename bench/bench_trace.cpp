@@ -53,14 +53,10 @@ constexpr double none = std::numeric_limits<double>::infinity();
 constexpr const char* rival_name = "embree robust";
 
 Contender wide_contender(const std::string& name, const dcem::Scene& scene, const dcem::TriangleView& mesh,
-                         double flatness) {
+                         const dcem::WideSettings& settings) {
   const auto tree = std::make_shared<dcem::WideTree>();
   Contender contender{name, {}, {}, {}};
-  contender.build = [=, &scene] {
-    dcem::WideSettings settings;
-    settings.pair_flatness = flatness;
-    tree->build(mesh, scene.triangle_boxes(), settings);
-  };
+  contender.build = [=, &scene] { tree->build(mesh, scene.triangle_boxes(), settings); };
   contender.nearest_ms = [=](const auto& rays, auto& answers, auto& counters) {
     return timed(rays, answers, [&](const Ray<double>& ray) {
       const auto hit = tree->nearest(ray, &counters);
@@ -129,14 +125,15 @@ Contender embree_contender(const std::string& name, const dcem::TriangleView& me
 
 std::vector<Contender> contenders(const dcem::Scene& scene, const dcem::TriangleView& mesh) {
   std::vector<Contender> all;
-  all.push_back(wide_contender("wide, pairs", scene, mesh, dcem::WideSettings{}.pair_flatness));
+  all.push_back(wide_contender("wide, pairs", scene, mesh, {}));
+  all.push_back(wide_contender("wide, high quality", scene, mesh, {.quality = dcem::WideQuality::high}));
 #if defined(DCEM_HAS_EMBREE)
   all.push_back(embree_contender(rival_name, mesh, {}));
   all.push_back(embree_contender("embree robust quads", mesh, {.quads = true}));
   all.push_back(embree_contender("embree medium", mesh, {.robust = false}));
   all.push_back(embree_contender("embree medium quads", mesh, {.robust = false, .quads = true}));
 #endif
-  all.push_back(wide_contender("wide, triangles", scene, mesh, -1.0));
+  all.push_back(wide_contender("wide, triangles", scene, mesh, {.pair_flatness = -1.0}));
   all.push_back(binary_contender(scene));
   return all;
 }

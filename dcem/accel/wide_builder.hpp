@@ -13,14 +13,22 @@
 #include "dcem/accel/wide_arrays.hpp"
 #include "dcem/accel/wide_binner.hpp"
 #include "dcem/accel/wide_collapse.hpp"
+#include "dcem/accel/wide_optimizer.hpp"
+#include "dcem/accel/wide_regroup.hpp"
 #include "dcem/core/parallel_for.hpp"
 
 namespace dcem {
 
+/// How long a build may take. Answers are the same.
+enum class WideQuality {
+  fast,  ///< for what is built again and again
+  high,  ///< several times as long, for fewer steps a ray: scenery that stands still
+};
+
 /// How a wide tree is built.
 struct WideSettings {
   /// Relative costs of nodes and blocks, by which the binary tree is collapsed.
-  WideCosts costs;
+  WideCosts costs{};
   /// Two triangles become one patch where the fourth corner is no further from the plane of the others than this times
   /// the shared edge (no unit). Default 1e-3; negative switches pairing off.
   double pair_flatness = 1e-3;
@@ -32,6 +40,8 @@ struct WideSettings {
   std::uint32_t leaf_limit = 8;
   /// Threads of a build (number); 0: as many as the machine has. The tree does not depend on it. Default 1.
   unsigned threads = 1;
+  /// How long a build may take. Default fast.
+  WideQuality quality = WideQuality::fast;
 };
 
 /// Throws std::invalid_argument for settings outside the ranges written above.
@@ -110,14 +120,42 @@ class WideBuilder {
     return item_around(box, group, WideItem::no_kind);
   }
 
+  /// The binary tree that the wide one is made from.
+  std::vector<WideSplit> divided(std::span<WideItem> items) const {
+    std::vector<WideSplit> binary = WideBinner().build(items, settings_.leaf_limit, settings_.threads);
+    if (settings_.quality == WideQuality::fast) {
+      WideRegroup::optimize(binary, items, settings_.costs, 1);
+      return binary;
+    }
+    // What reinsertion leaves behind regrouping improves, and the other way round; a third turn gains next to nothing.
+    for (int turn = 0; turn < 2; ++turn) {
+      reinsert(binary, items);
+      WideRegroup::optimize(binary, items, settings_.costs, 10);
+    }
+    return binary;
+  }
+
+  /// A better binary tree is not always a better wide one.
+  void reinsert(std::vector<WideSplit>& binary, std::span<WideItem> items) const {
+    const std::vector<WideSplit> before = binary;
+    const std::vector<WideItem> items_before(items.begin(), items.end());
+    const double cost_before_m2 = WideCollapse(binary, items, settings_.costs).cost_m2();
+    WideOptimizer::optimize(binary, items, settings_.threads);
+    if (WideCollapse(binary, items, settings_.costs).cost_m2() <= cost_before_m2) return;
+    binary = before;
+    std::copy(items_before.begin(), items_before.end(), items.begin());
+  }
+
   WideChild plant_tree(std::span<WideItem> items) {
-    const std::vector<WideSplit> binary = WideBinner().build(items, settings_.leaf_limit, settings_.threads);
+    const std::vector<WideSplit> binary = divided(items);
     const WideCollapse collapse(binary, items, settings_.costs);
-    return plant_entry(binary, collapse, items, 0);
+    const WideChild root = plant_entry(binary, collapse, items, 0);
+    if (!root.is_block()) fill_node(root.index(), binary, collapse, items, 0);
+    return root;
   }
 
   void plant_root(std::span<WideItem> items) {
-    const std::vector<WideSplit> binary = WideBinner().build(items, settings_.leaf_limit, settings_.threads);
+    const std::vector<WideSplit> binary = divided(items);
     const WideCollapse collapse(binary, items, settings_.costs);
     if (collapse.is_block(0)) {
       hang(plant_entry(binary, collapse, items, 0), WidePlace::at(0, 0));
@@ -126,13 +164,10 @@ class WideBuilder {
     }
   }
 
+  /// A block, or a node that is filled later.
   WideChild plant_entry(std::span<const WideSplit> binary, const WideCollapse& collapse,
                         std::span<const WideItem> items, std::uint32_t slot) {
-    if (!collapse.is_block(slot)) {
-      const std::uint32_t node = arrays_->take_node();
-      fill_node(node, binary, collapse, items, slot);
-      return WideChild::node(node);
-    }
+    if (!collapse.is_block(slot)) return WideChild::node(arrays_->take_node());
     const std::span<const WideItem> held = items.subspan(binary[slot].first, binary[slot].count);
     if (held.front().kind == WideItem::no_kind) return arrays_->unit_root[held.front().index];
     return plant_block(held, held.front().kind);
@@ -159,8 +194,13 @@ class WideBuilder {
     std::stable_sort(
         entries.begin(), entries.begin() + static_cast<std::ptrdiff_t>(count),
         [&](std::uint32_t one, std::uint32_t other) { return binary[one].half_area_m2 > binary[other].half_area_m2; });
+    // Siblings side by side in memory, because a ray that looks at one often looks at the next.
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       hang(plant_entry(binary, collapse, items, entries[lane]), WidePlace::at(node, lane));
+    }
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      if (collapse.is_block(entries[lane])) continue;
+      fill_node(arrays_->child_at(WidePlace::at(node, lane)).index(), binary, collapse, items, entries[lane]);
     }
   }
 

@@ -43,6 +43,9 @@ class WideCollapse {
   /// Whether the node, shown as one entry, is a block (or an item that is an entry by itself).
   bool is_block(std::uint32_t slot) const { return plans_[slot].block; }
 
+  /// Σ cost · half surface over all that the root's entries are and hold; the root itself, as a node, is left out.
+  double cost_m2() const { return plans_.empty() ? 0.0 : static_cast<double>(plans_.front().cost[most - 1]); }
+
   /// Calls `visit(slot)` for the entries of the wide node that stands for `slot`, at most eight.
   template <typename Visit>
   void for_each_entry(std::uint32_t slot, Visit&& visit) const {
