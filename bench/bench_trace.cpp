@@ -19,6 +19,8 @@
 #include "bench/bench_program.hpp"
 #include "bench/moving_boxes.hpp"
 #include "dcem/accel/bvh.hpp"
+#include "dcem/accel/ray_order.hpp"
+#include "dcem/accel/wide_batch.hpp"
 #include "dcem/accel/wide_tree.hpp"
 #include "dcem/core/statistics.hpp"
 #if defined(DCEM_HAS_EMBREE)
@@ -65,6 +67,37 @@ Contender wide_contender(const std::string& name, const dcem::Scene& scene, cons
   };
   contender.blocked_ms = [=](const auto& rays, auto& answers, auto& counters) {
     return timed(rays, answers, [&](const Ray<double>& ray) { return tree->blocked(ray, &counters) ? 1.0 : 0.0; });
+  };
+  return contender;
+}
+
+/// All rays of a kind at once; the time holds their sorting.
+Contender batch_contender(const dcem::Scene& scene, const dcem::TriangleView& mesh) {
+  struct Tree {
+    dcem::WideTree tree;
+    dcem::WideBatch batch;
+    std::vector<std::optional<dcem::WideHit>> hits;
+    std::vector<std::uint8_t> blocked;
+  };
+  const auto own = std::make_shared<Tree>();
+  Contender contender{"wide, batch", {}, {}, {}};
+  contender.build = [=, &scene] { own->tree.build(mesh, scene.triangle_boxes()); };
+  contender.nearest_ms = [=](const auto& rays, auto& answers, auto& counters) {
+    own->hits.resize(rays.size());
+    const Stopwatch watch;
+    own->batch.nearest(own->tree, rays, own->hits, {}, &counters);
+    const double elapsed_ms = watch.elapsed_ms();
+    std::transform(own->hits.begin(), own->hits.end(), answers.begin(),
+                   [](const auto& hit) { return hit ? hit->t : none; });
+    return elapsed_ms;
+  };
+  contender.blocked_ms = [=](const auto& rays, auto& answers, auto& counters) {
+    own->blocked.resize(rays.size());
+    const Stopwatch watch;
+    own->batch.blocked(own->tree, rays, own->blocked, {}, &counters);
+    const double elapsed_ms = watch.elapsed_ms();
+    std::copy(own->blocked.begin(), own->blocked.end(), answers.begin());
+    return elapsed_ms;
   };
   return contender;
 }
@@ -121,14 +154,36 @@ Contender embree_contender(const std::string& name, const dcem::TriangleView& me
   };
   return contender;
 }
+
+/// As the robust tree, its rays in the order of our batches; sorting and copying them is not timed.
+Contender sorted_embree_contender(const dcem::TriangleView& mesh) {
+  const Contender plain = embree_contender("embree robust, sorted", mesh, {});
+  const auto sorted = [](const auto& trace) {
+    return [trace](const std::vector<Ray<double>>& rays, std::vector<double>& answers, TraversalCounters& counters) {
+      dcem::RayOrder order;
+      const auto positions = order.sort(rays);
+      std::vector<Ray<double>> in_order;
+      for (const std::uint32_t position : positions) in_order.push_back(rays[position]);
+      std::vector<double> own(rays.size());
+      const double elapsed_ms = trace(in_order, own, counters);
+      for (std::size_t at = 0; at < own.size(); ++at) answers[positions[at]] = own[at];
+      return elapsed_ms;
+    };
+  };
+  Contender contender{plain.name, plain.build, sorted(plain.nearest_ms), sorted(plain.blocked_ms)};
+  return contender;
+}
 #endif
 
 std::vector<Contender> contenders(const dcem::Scene& scene, const dcem::TriangleView& mesh) {
   std::vector<Contender> all;
   all.push_back(wide_contender("wide, pairs", scene, mesh, {}));
+  all.push_back(wide_contender("wide, fast build", scene, mesh, {.quality = dcem::WideQuality::fast}));
   all.push_back(wide_contender("wide, high quality", scene, mesh, {.quality = dcem::WideQuality::high}));
+  all.push_back(batch_contender(scene, mesh));
 #if defined(DCEM_HAS_EMBREE)
   all.push_back(embree_contender(rival_name, mesh, {}));
+  all.push_back(sorted_embree_contender(mesh));
   all.push_back(embree_contender("embree robust quads", mesh, {.quads = true}));
   all.push_back(embree_contender("embree medium", mesh, {.robust = false}));
   all.push_back(embree_contender("embree medium quads", mesh, {.robust = false, .quads = true}));
@@ -247,7 +302,7 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
     csv.number(static_cast<double>(rows[index].counters.nodes_visited) / count, 2);
     csv.number(static_cast<double>(rows[index].counters.primitives_tested) / count, 2);
     csv.count(differences).hash(hash).print();
-    std::fprintf(stderr, "%-14s %-8s %-8s %-20s %6.2f x  %7.2f Mrays/s  %zu differ\n", scene_name.c_str(),
+    std::fprintf(stderr, "%-14s %-8s %-8s %-22s %6.2f x  %7.2f Mrays/s  %zu differ\n", scene_name.c_str(),
                  kind.name.c_str(), nearest ? "closest" : "occluded", all[index].name.c_str(),
                  rival_ms.value_or(ms) / ms, count / ms / 1e3, differences);
   }
@@ -276,7 +331,7 @@ bool bench(const Options& options, const std::string& file) {
     }
   }
   for (const Contender& each : all) {
-    std::fprintf(stderr, "%-20s built in %.1f ms\n", each.name.c_str(), dcem::median(each.build_ms));
+    std::fprintf(stderr, "%-22s built in %.1f ms\n", each.name.c_str(), dcem::median(each.build_ms));
   }
   dcem::Aabb<double> bounds;
   for (const Vec3& vertex : mesh.vertices_m) bounds.extend(vertex);
