@@ -280,9 +280,8 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
   const double count = static_cast<double>(kind.rays.size());
   // Without Embree there is nothing to compare with but ourselves, and the cell stays empty.
   const auto rival = std::find_if(all.begin(), all.end(), [](const Contender& one) { return one.name == rival_name; });
-  const std::optional<double> rival_ms =
-      rival != all.end() ? std::optional(dcem::median(rows[static_cast<std::size_t>(rival - all.begin())].ms))
-                         : std::nullopt;
+  const double rival_ms =
+      rival != all.end() ? dcem::median(rows[static_cast<std::size_t>(rival - all.begin())].ms) : 0.0;
   bool same = true;
   for (std::size_t index = 0; index < all.size(); ++index) {
     const double ms = dcem::median(rows[index].ms);
@@ -296,15 +295,15 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
     dcem::bench::CsvRow csv;
     csv.text(scene_name).count(triangles).text(kind.name).text(nearest ? "closest" : "occluded");
     csv.text("\"" + all[index].name + "\"");
-    rival_ms ? csv.number(*rival_ms / ms, 3) : csv.empty();
+    rival_ms > 0.0 ? csv.number(rival_ms / ms, 3) : csv.empty();
     csv.number(count / ms / 1e3, 3);
     csv.number(dcem::median(all[index].build_ms), 2);
     csv.number(static_cast<double>(rows[index].counters.nodes_visited) / count, 2);
     csv.number(static_cast<double>(rows[index].counters.primitives_tested) / count, 2);
     csv.count(differences).hash(hash).print();
     std::fprintf(stderr, "%-14s %-8s %-8s %-22s %6.2f x  %7.2f Mrays/s  %zu differ\n", scene_name.c_str(),
-                 kind.name.c_str(), nearest ? "closest" : "occluded", all[index].name.c_str(),
-                 rival_ms.value_or(ms) / ms, count / ms / 1e3, differences);
+                 kind.name.c_str(), nearest ? "closest" : "occluded", all[index].name.c_str(), rival_ms / ms,
+                 count / ms / 1e3, differences);
   }
   return same;
 }

@@ -17,11 +17,11 @@ inline bool is_plain_box(const Aabb<double>& box) {
   Double4 first, last;  // min and max.x; min.z and max
   std::memcpy(&first, &box, sizeof first);
   std::memcpy(&last, reinterpret_cast<const char*>(&box) + 16, sizeof last);
-  const auto size = [](const Double4& numbers) {
-    return std::bit_cast<Double4>(std::bit_cast<Long4>(numbers) & std::int64_t{0x7fffffffffffffff});
-  };
+  constexpr std::int64_t size_bits = 0x7fffffffffffffff;
+  const Double4 first_size = std::bit_cast<Double4>(std::bit_cast<Long4>(first) & size_bits);
+  const Double4 last_size = std::bit_cast<Double4>(std::bit_cast<Long4>(last) & size_bits);
   const Double4 max = __builtin_shufflevector(first, last, 5, 6, 7, 5);
-  const Long4 holds = (size(first) <= maximum_coordinate_m) & (size(last) <= maximum_coordinate_m) & (first <= max);
+  const Long4 holds = (first_size <= maximum_coordinate_m) & (last_size <= maximum_coordinate_m) & (first <= max);
   return (holds[0] & holds[1] & holds[2] & holds[3]) != 0;
 }
 

@@ -6,45 +6,17 @@
 /// sequence; each new one is handed on once. Where edges are wanted, the edges at the rim of what a ray meets are noted
 /// as within reach. The number of rays does not depend on the transmitters.
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
-#include "dcem/core/constants.hpp"
-#include "dcem/core/random.hpp"
 #include "dcem/paths/edge_reach.hpp"
 #include "dcem/paths/edge_rules.hpp"
 #include "dcem/paths/image_method.hpp"
+#include "dcem/paths/launch_sphere.hpp"
 #include "dcem/paths/link_end.hpp"
 #include "dcem/paths/sequence.hpp"
 
 namespace dcem {
-
-/// Directions of a Fibonacci sphere: point i of n has height 1 − (2i + 1)/n and azimuth i·π(3 − √5).
-/// Source: Swinbank and Purser, Q. J. R. Meteorol. Soc. 132, 2006.
-inline Vec3 fibonacci_direction(std::uint32_t index, std::uint32_t count) {
-  const double z = 1.0 - (2.0 * index + 1.0) / count;
-  const double radius = std::sqrt(std::max(0.0, 1.0 - z * z));
-  const double azimuth_rad = index * (pi * (3.0 - std::sqrt(5.0)));
-  return {radius * std::cos(azimuth_rad), radius * std::sin(azimuth_rad), z};
-}
-
-/// A rotation drawn uniformly from all rotations (Shoemake, Graphics Gems III, 1992).
-inline Mat3 random_rotation(RandomStream& random) {
-  const double u1 = random.uniform(), u2 = 2.0 * pi * random.uniform(), u3 = 2.0 * pi * random.uniform();
-  const double x = std::sqrt(1.0 - u1) * std::sin(u2), y = std::sqrt(1.0 - u1) * std::cos(u2);
-  const double z = std::sqrt(u1) * std::sin(u3), w = std::sqrt(u1) * std::cos(u3);
-  return Mat3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y),  //
-              2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x),  //
-              2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y));
-}
-
-/// The rotation of the launch sphere of one receiver in one frame.
-inline Mat3 launch_rotation(std::uint64_t seed, std::string_view receiver_id, std::size_t frame) {
-  RandomStream random(hash_values(seed, hash_text(receiver_id), frame));
-  return random_rotation(random);
-}
 
 struct LaunchSettings {
   std::uint32_t rays = 2000;
@@ -74,9 +46,9 @@ class RayLauncher {
     ignored_ = {receiver.ignored_body, std::nullopt};
     visit(sequence_, images_m_);
     if (settings_.max_reflections == 0 && reach_ == nullptr) return;
-    for (std::uint32_t index = 0; index < settings_.rays; ++index) {
-      const Vec3 direction = rotation * fibonacci_direction(index, settings_.rays);
-      shoot(receiver.position_m, direction, LegEnd{receiver.mounted_on, {}}, settings_.max_transmissions, visit);
+    for (const Vec3& direction : launch_directions(settings_.rays)) {
+      shoot(receiver.position_m, rotation * direction, LegEnd{receiver.mounted_on, {}}, settings_.max_transmissions,
+            visit);
     }
   }
 

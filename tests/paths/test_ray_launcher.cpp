@@ -3,7 +3,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
+#include <span>
+#include <tuple>
 #include <vector>
 
 #include "dcem/paths/exact_search.hpp"
@@ -68,6 +72,25 @@ TEST_CASE("equal parts of the sphere get equal numbers of rays") {
     ++octants[static_cast<std::size_t>((d.x > 0.0) + 2 * (d.y > 0.0) + 4 * (d.z > 0.0))];
   }
   for (const int rays : octants) CHECK(std::abs(rays - 1000) < 30);
+}
+
+TEST_CASE("the directions of a launch are those of the sphere, each once, neighbours together") {
+  const auto less = [](const Vec3& one, const Vec3& other) {
+    return std::tie(one.z, one.x, one.y) < std::tie(other.z, other.x, other.y);
+  };
+  for (const std::uint32_t count : {0U, 1U, 200U, 5000U, 200U}) {
+    const std::span<const Vec3> launched = launch_directions(count);
+    std::vector<Vec3> sorted(launched.begin(), launched.end()), expected;
+    for (std::uint32_t index = 0; index < count; ++index) expected.push_back(fibonacci_direction(index, count));
+    std::ranges::sort(sorted, less);
+    std::ranges::sort(expected, less);
+    CHECK(sorted == expected);
+    if (count < 2) continue;
+    double turn = 0.0;
+    for (std::size_t at = 1; at < launched.size(); ++at) turn += glm::distance(launched[at - 1], launched[at]);
+    // Neighbours are about 2 / √(count / π) apart; points in the sphere's own order 1.3.
+    CHECK(turn / count < 6.0 / std::sqrt(count));
+  }
 }
 
 TEST_CASE("the launch rotation is a rotation, and each of seed, receiver and frame turns it") {
