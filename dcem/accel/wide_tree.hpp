@@ -28,6 +28,10 @@
 
 namespace dcem {
 
+namespace detail {
+class WidePlan;
+}
+
 /// The nearest hit of a ray.
 struct WideHit {
   double t = 0.0;  ///< where the ray meets the plane of the triangle
@@ -73,6 +77,12 @@ class WideTree {
   /// bad place little by little, or by what others do. Returns how many were moved.
   std::size_t reinsert_moved(double growth_limit, std::uint32_t turn_length = default_turn_length);
   static constexpr std::uint32_t default_turn_length = 50;
+
+  /// Builds what hangs below an inner node anew, in place, from the boxes as they are now: the node's part of its layer
+  /// (the tree over all, or the tree within a unit), of which blocks and units are the leaves. Node 0 is all but those.
+  /// Where the result would lie too deep, more is built anew, from a node above on. Returns how many nodes were
+  /// written.
+  std::size_t regrow(std::uint32_t node);
 
   // Queries. `counters`, when given, is added to.
 
@@ -228,6 +238,11 @@ class WideTree {
   Spot cheapest_spot(const Aabb<float>& box);
   void offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best);
   void hang_at(WideChild child, const Aabb<float>& box, const Spot& spot);
+  void fell(std::uint32_t node);
+  std::size_t plant_planned(std::uint32_t node, const detail::WidePlan& plan, std::uint32_t slot);
+  std::size_t hang_planned(WidePlace place, const detail::WidePlan& plan, std::uint32_t slot);
+  void remember_hung(std::uint32_t node);
+  void sum_anew();
 
   WideArrays arrays_;
   WideSettings settings_;
@@ -249,3 +264,4 @@ class WideTree {
 
 #include "dcem/accel/wide_edit.hpp"
 #include "dcem/accel/wide_queries.hpp"
+#include "dcem/accel/wide_regrow.hpp"
