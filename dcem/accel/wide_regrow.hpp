@@ -1,11 +1,10 @@
 #pragma once
 /// Builds parts of a `WideTree` anew in place; included by wide_tree.hpp.
 ///
-/// Blocks and units stay what they are: their boxes are known, and nothing in them is written. So the price is that of
-/// the nodes alone.
+/// The leaves of its layer (wide_layer.hpp) stay what they are: their boxes are known, and nothing in them is written.
+/// So the price is that of the nodes alone.
 ///
-/// How deep that may get: a layer is the tree over all, or the tree within a unit; its leaves are blocks and, in the
-/// tree over all, units. Leaves of a built layer lie on level WideBinner::levels at most, its root being on level 1,
+/// How deep that may get: leaves of a built layer lie on level WideBinner::levels at most, its root being on level 1,
 /// and no edit pushes a leaf further down: hanging makes nodes above `wide_edit_levels` only, and rotations lower
 /// leaves only there. A regrown part has the levels of its plan, which are counted before anything changes. Where they
 /// do not fit below the node, the node above is regrown instead; at the layer's root they always fit, because the
@@ -19,36 +18,18 @@
 #include <string>
 #include <vector>
 
+#include "dcem/accel/wide_layer.hpp"
 #include "dcem/accel/wide_tree.hpp"
 
 namespace dcem {
 
 namespace detail {
 
-/// Nodes of a built layer lie on no deeper level: below them there are leaves.
-inline constexpr std::uint32_t wide_layer_levels = WideBinner::levels - 1;
-
 /// What a node leads to where its layer ends: a block or a unit.
 struct WideLeaf {
   WideChild child;
   Aabb<float> box;
 };
-
-/// Whether a child is a node of the same layer as the node in which it hangs.
-inline bool is_layer_node(const WideArrays& arrays, WideChild child) {
-  return !child.is_none() && !child.is_block() && arrays.node_unit[child.index()] == WideArrays::no_unit;
-}
-
-inline bool is_layer_root(const WideArrays& arrays, std::uint32_t node) {
-  return node == 0 || arrays.node_unit[node] != WideArrays::no_unit;
-}
-
-/// Level of a node within its layer, 1 for its root.
-inline std::uint32_t layer_level(const WideArrays& arrays, std::uint32_t node) {
-  std::uint32_t level = 1;
-  for (; !is_layer_root(arrays, node); node = arrays.node_place[node].node()) ++level;
-  return level;
-}
 
 /// Σ cost · half surface over what hangs in one node.
 inline double weighted_area(const WideArrays& arrays, const WideNode& node) {
@@ -60,8 +41,13 @@ inline double weighted_area(const WideArrays& arrays, const WideNode& node) {
   return sum_m2;
 }
 
-inline bool is_used_node(const WideArrays& arrays, std::uint32_t node) {
-  return node < arrays.nodes.size() && (node == 0 || !arrays.node_place[node].is_none());
+/// The same over all that hangs below a node in its layer.
+inline double layer_area_below(const WideArrays& arrays, std::uint32_t node) {
+  double sum_m2 = weighted_area(arrays, arrays.nodes[node]);
+  for (const WideChild child : arrays.nodes[node].child) {
+    if (is_layer_node(arrays, child)) sum_m2 += layer_area_below(arrays, child.index());
+  }
+  return sum_m2;
 }
 
 /// A plan for the part of a layer that hangs below one node. Changes nothing.
@@ -91,6 +77,17 @@ class WidePlan {
     return count;
   }
 
+  /// Σ cost · half surface of what will hang below the node.
+  double weighted_area_m2(const WideCosts& costs, std::uint32_t slot = 0) const {
+    double sum_m2 = 0.0;
+    if (slot == 0 && is_leaf(0)) return weight_m2(costs, 0);
+    collapse_.for_each_entry(slot, [&](std::uint32_t entry) {
+      sum_m2 += weight_m2(costs, entry);
+      if (!is_leaf(entry)) sum_m2 += weighted_area_m2(costs, entry);
+    });
+    return sum_m2;
+  }
+
   /// Levels of wide nodes.
   std::uint32_t levels(std::uint32_t slot = 0) const {
     if (is_leaf(slot)) return 0;
@@ -100,6 +97,11 @@ class WidePlan {
   }
 
  private:
+  double weight_m2(const WideCosts& costs, std::uint32_t slot) const {
+    const bool is_block = is_leaf(slot) && leaf(slot).child.is_block();
+    return (is_block ? costs.block : costs.node) * static_cast<double>(binary_[slot].half_area_m2);
+  }
+
   static std::vector<WideLeaf> leaves_below(const WideArrays& arrays, std::uint32_t node) {
     std::vector<WideLeaf> leaves;
     collect(arrays, node, leaves);
@@ -138,13 +140,18 @@ class WidePlan {
 
 }  // namespace detail
 
-inline std::size_t WideTree::regrow(std::uint32_t node) {
+inline std::size_t WideTree::regrow(std::uint32_t node, bool only_if_better) {
   if (!detail::is_used_node(arrays_, node)) throw std::invalid_argument("node " + std::to_string(node) + " of none");
   const detail::WidePlan plan(arrays_, node, settings_.threads);
   if (plan.empty()) return 0;
   const std::uint32_t deepest = detail::layer_level(arrays_, node) + plan.levels() - 1;
   if (deepest > detail::wide_layer_levels && !detail::is_layer_root(arrays_, node)) {
-    return regrow(arrays_.node_place[node].node());
+    return regrow(arrays_.node_place[node].node(), only_if_better);
+  }
+  if (only_if_better && !(plan.weighted_area_m2(arrays_.costs) < detail::layer_area_below(arrays_, node))) {
+    wear_.forget(node);
+    wear_.touch(node);
+    return 0;
   }
   fell(node);
   std::size_t made = 1;
@@ -155,6 +162,7 @@ inline std::size_t WideTree::regrow(std::uint32_t node) {
     made = plant_planned(node, plan, 0);
   }
   if (node == 0) sum_anew();
+  wear_.renew_below(arrays_, node);
   return made;
 }
 
