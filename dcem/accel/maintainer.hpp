@@ -32,8 +32,9 @@ struct UpkeepSettings {
   double deformation_limit = 0.4;
   /// Neither measure sees a tree that might be better than it ever was, as when objects gather. The layer above the
   /// groups is therefore built anew whenever refits have visited this many times as many nodes as it has (no unit,
-  /// above 0; infinity switches it off). At 64 that adds about a quarter to the cost of the refits. Of the wide tree:
-  /// all above blocks and units, whose nodes and blocks are counted; it adds a fortieth.
+  /// above 0; infinity switches it off). At 64 that adds about a quarter to the cost of the refits.
+  /// Of the wide tree: all above blocks and units, nodes and blocks being counted, where that makes Σ cost · surface
+  /// fall; for the first time when something moves for the first time. It adds a fortieth.
   double renewal_ratio = 64.0;
   /// Of the wide tree: an object that moved is hung elsewhere when the node around it has grown to more than this many
   /// times what it was when the object came there (no unit, at least 1; infinity switches it off).
@@ -46,14 +47,14 @@ struct UpkeepSettings {
   std::uint32_t rotations_per_node = 0;
   /// Of the wide tree: only in one frame of so many, of those in which something moved, rotations are done and the two
   /// measures are looked at, for all that has moved since (number, at least 1).
-  std::uint32_t wear_interval = 10;
+  std::uint32_t wear_interval = 25;
   /// Of the wide tree: whether a subtree that is worn by either measure is built anew in place, its blocks and units
   /// untouched. Otherwise the whole tree is built anew when its SAH cost has grown by `sah_growth_limit`.
   bool regrowth = true;
   /// Of the wide tree, with `regrowth`: all above blocks and units is built anew once rays have visited this many nodes
   /// more for each block than they would have at the steps per ray that followed the last time (number, above 0;
-  /// infinity switches it off). Counts only where the maintainer is told what rays spend. At 12, about the price of
-  /// building it: so nobody waits for rays longer than twice as long as who knows when to build.
+  /// infinity switches it off). Counts only where the maintainer is told what rays spend. 12 is about what building it
+  /// takes: who has spent as much on rays buys it, and so never spends twice what the best moment would have cost.
   double regrowth_price = 12.0;
   /// Of the wide tree, with `regrowth`: the whole tree is built anew, blocks included, when its SAH cost has grown to
   /// this many times what it was when last built whole (no unit, above 1; infinity switches it off). For what subtrees

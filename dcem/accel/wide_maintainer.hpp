@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -57,11 +58,12 @@ class WideStepMeter {
 /// 3. Rotations along the paths that were touched (WideTree::rotate_touched).
 /// 4. The two measures of wear along these paths (wide_wear.hpp); a subtree past one of the limits is built anew in
 ///    place, the smallest first: what it has mended is no wear of a larger one.
-/// 5. What rays have wasted: once that would have paid for building all nodes anew, they are. Who pays the rent until
-/// it
+/// 5. What rays have wasted: once that would have paid for building all nodes anew, they are. Who rents until the rent
 ///    has reached the price, and then buys, never pays twice as much as who knew before.
-/// 6. All nodes, too, once refits have visited them often enough that building them anew is small change: neither
-///    measure sees a tree that might be better than it ever was.
+/// 6. All nodes, too, where that makes them better, once refits have visited them often enough that building them anew
+///    is small change: neither measure sees a tree that might be better than it ever was. Once, too, in the first frame
+///    in which something moves: a whole build weighs a unit as one patch, and where there are many its nodes are not
+///    the best over the blocks that came out.
 /// 7. The whole tree, blocks included, where the others do not help.
 class WideMaintainer {
  public:
@@ -127,9 +129,9 @@ class WideMaintainer {
     const auto blocks = static_cast<double>(tree.arrays().blocks.size());
     const auto all = static_cast<double>(nodes_in_use(tree));
     if (steps_.wasted_nodes() > settings_.regrowth_price * blocks) {
-      regrow(tree, 0, false, report);
-    } else if (visited_since_renewal_ > settings_.renewal_ratio * all) {
-      regrow(tree, 0, true, report);
+      regrow(tree, 0, infinity, report);
+    } else if (std::isfinite(settings_.renewal_ratio) && visited_since_renewal_ > settings_.renewal_ratio * all) {
+      regrow(tree, 0, worth_writing, report);
       visited_since_renewal_ = 0.0;
     }
   }
@@ -139,17 +141,19 @@ class WideMaintainer {
     worn_.assign(measured.begin(), measured.end());
     for (const std::uint32_t node : worn_) {
       // One that was regrown from further above than was asked for may have taken others with it.
-      if (detail::is_used_node(tree.arrays(), node) && is_worn(tree.wear()[node])) regrow(tree, node, true, report);
+      if (detail::is_used_node(tree.arrays(), node) && is_worn(tree.wear()[node]))
+        regrow(tree, node, worth_writing, report);
     }
   }
 
-  void regrow(WideTree& tree, std::uint32_t node, bool only_if_better, UpkeepReport& report) {
-    const std::size_t written = tree.regrow(node, only_if_better);
+  void regrow(WideTree& tree, std::uint32_t node, double wanted_share, UpkeepReport& report) {
+    const std::size_t written = tree.regrow(node, wanted_share);
     report.nodes_rebuilt += written;
     report.subtrees_rebuilt += written > 0 ? 1U : 0U;
     report.regrown += written > 0 ? 1U : 0U;
     if (node != 0 || written == 0) return;
     note_new_root(report);
+    visited_since_renewal_ = 0.0;
   }
 
   void rebuild(WideTree& tree, const TriangleView& mesh, WideTree::Boxes boxes, UpkeepReport& report) {
@@ -158,22 +162,27 @@ class WideMaintainer {
     report.nodes_rebuilt = nodes_in_use(tree);
     report.subtrees_rebuilt = 1;
     note_new_root(report);
+    visited_since_renewal_ = infinity;
   }
   void note_new_root(UpkeepReport& report) {
     report.root_rebuilt = true;
     steps_.restart();
-    visited_since_renewal_ = 0.0;
   }
   static std::uint64_t nodes_in_use(const WideTree& tree) {
     const WideArrays& arrays = tree.arrays();
     return arrays.nodes.size() - arrays.free_nodes.size() + arrays.blocks.size();
   }
 
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  /// To this share Σ cost · surface must fall where a measure asks for a new plan: units hung one by one by what rays
+  /// cost are as good as a plan that says it gains less.
+  static constexpr double worth_writing = 0.97;
+
   UpkeepSettings settings_;
   WideStepMeter steps_;
-  std::uint64_t frames_moved_ = 0;      ///< frames in which something moved
-  double visited_since_renewal_ = 0.0;  ///< nodes and blocks that refits have visited since the root was built
-  std::vector<std::uint32_t> worn_;     ///< candidates
+  std::uint64_t frames_moved_ = 0;           ///< frames in which something moved
+  double visited_since_renewal_ = infinity;  ///< nodes and blocks, by refits; infinite after a whole build
+  std::vector<std::uint32_t> worn_;          ///< candidates
 };
 
 namespace detail {

@@ -11,6 +11,7 @@
 /// binner makes no more.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -140,15 +141,16 @@ class WidePlan {
 
 }  // namespace detail
 
-inline std::size_t WideTree::regrow(std::uint32_t node, bool only_if_better) {
+inline std::size_t WideTree::regrow(std::uint32_t node, double wanted_share) {
   if (!detail::is_used_node(arrays_, node)) throw std::invalid_argument("node " + std::to_string(node) + " of none");
   const detail::WidePlan plan(arrays_, node, settings_.threads);
   if (plan.empty()) return 0;
   const std::uint32_t deepest = detail::layer_level(arrays_, node) + plan.levels() - 1;
   if (deepest > detail::wide_layer_levels && !detail::is_layer_root(arrays_, node)) {
-    return regrow(arrays_.node_place[node].node(), only_if_better);
+    return regrow(arrays_.node_place[node].node(), wanted_share);
   }
-  if (only_if_better && !(plan.weighted_area_m2(arrays_.costs) < detail::layer_area_below(arrays_, node))) {
+  if (std::isfinite(wanted_share) &&
+      !(plan.weighted_area_m2(arrays_.costs) < wanted_share * detail::layer_area_below(arrays_, node))) {
     wear_.forget(node);
     wear_.touch(node);
     return 0;

@@ -82,9 +82,10 @@ class WideTree {
 
   /// Builds what hangs below an inner node anew, in place, from the boxes as they are now: the node's part of its layer
   /// (wide_layer.hpp), of which blocks and units are the leaves; node 0 is all but those. Where the result would lie
-  /// too deep, more is built anew, from a node above on. Returns how many nodes were written: none where that is wanted
-  /// `only_if_better`, by Σ cost · surface, and it is not; the node's wear is then counted from now on.
-  std::size_t regrow(std::uint32_t node, bool only_if_better = false);
+  /// too deep, more is built anew, from a node above on. Returns how many nodes were written: none where Σ cost ·
+  /// surface below the node would not fall below `wanted_share` of what it is (above 0; infinity: whatever it will be);
+  /// the node's wear is then counted from now on.
+  std::size_t regrow(std::uint32_t node, double wanted_share = std::numeric_limits<double>::infinity());
 
   /// Exchanges entries around the nodes that edits have touched since the last call, where Σ cost · surface falls (see
   /// wide_rotation.hpp), up to so many a node. Needs `watch`. Returns how many entries changed their place.

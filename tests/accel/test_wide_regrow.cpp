@@ -137,6 +137,42 @@ TEST_CASE("regrown twice the same way: the same tree, whatever the number of thr
   }
 }
 
+TEST_CASE("only if better: what a new plan would not improve stays as it is, what it improves gets the plan's sum") {
+  WideTraffic traffic({300, 40.0, false, false, true}, 14);
+  WideTree tree = traffic.built();
+  for (int frame = 0; frame < 40; ++frame) {
+    traffic.step();
+    traffic.refit(tree);
+  }
+  const WideTree worn = tree;
+  const double planned_m2 = detail::WidePlan(tree.arrays(), 0, 1).weighted_area_m2(tree.arrays().costs);
+  CHECK(tree.regrow(0, 1.0) > 0);
+  CHECK(tree.arrays().weighted_area_m2 < 0.8 * worn.arrays().weighted_area_m2);
+  // The sum of the whole tree has the units' own nodes beside what was planned.
+  double units_m2 = 0.0;
+  for (const std::uint32_t node : nodes_of(tree.arrays())) {
+    std::uint32_t above = node;
+    while (above != 0 && tree.arrays().node_unit[above] == WideArrays::no_unit) {
+      above = tree.arrays().node_place[above].node();
+    }
+    if (above == 0) continue;
+    const WideNode& held = tree.arrays().nodes[node];
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+      if (!held.child[lane].is_none()) units_m2 += static_cast<double>(held.box(lane).half_area());
+    }
+  }
+  CHECK(units_m2 > 0.0);
+  CHECK(tree.arrays().weighted_area_m2 == doctest::Approx(planned_m2 + units_m2).epsilon(1e-6));
+  const WideTree kept = tree;
+  WideTree again = worn;
+  const double share = tree.arrays().weighted_area_m2 / worn.arrays().weighted_area_m2;
+  CHECK(again.regrow(0, 0.9 * share) == 0);
+  CHECK(same_nodes(again.arrays(), worn.arrays()));
+  CHECK(tree.regrow(0, 1.0) == 0);
+  CHECK(same_nodes(tree.arrays(), kept.arrays()));
+  CHECK(tree.regrow(0) > 0);
+}
+
 TEST_CASE("thousands of regrown parts: no more nodes, no deeper, and the sum of areas stays right") {
   WideTraffic traffic({100, 25.0, true, true, true}, 8);
   WideTree tree = traffic.built();

@@ -138,6 +138,27 @@ TEST_CASE("reinsertions, rotations and regrown parts: sums stay those of the arr
   for (const std::uint32_t node : nodes_of(tree.arrays())) CHECK(tree.wear()[node].sah_growth() == 1.0);
 }
 
+TEST_CASE("a node that reinsertion makes is new, whatever its number stood for before") {
+  WideTraffic traffic({100, 20.0, false, false, true}, 7);
+  WideTree tree = traffic.built();
+  tree.watch(both());
+  std::size_t made = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    traffic.step();
+    traffic.refit(tree);
+    tree.measure();
+    const std::vector<std::uint32_t> free = tree.arrays().free_nodes;
+    tree.reinsert_moved(1.0);
+    tree.measure();
+    for (const std::uint32_t node : free) {
+      if (tree.arrays().node_place[node].is_none()) continue;
+      ++made;
+      CHECK(tree.wear()[node].sah_growth() == 1.0);
+    }
+  }
+  CHECK(made > 10);
+}
+
 TEST_CASE("measured are the nodes on touched paths, children before parents, and nobody else") {
   WideTraffic traffic({300, 60.0, false, false, true}, 4);
   WideTree tree = traffic.built();
