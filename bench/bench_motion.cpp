@@ -23,6 +23,7 @@
 #include "bench/bench_program.hpp"
 #include "bench/moving_boxes.hpp"
 #include "dcem/accel/maintainer.hpp"
+#include "dcem/accel/wide_maintainer.hpp"
 #include "dcem/accel/wide_tree.hpp"
 #include "dcem/core/parallel_for.hpp"
 #include "dcem/core/statistics.hpp"
@@ -72,6 +73,9 @@ struct Contender {
   /// Milliseconds for all rays.
   std::function<double(const Rays&, Answers&, TraversalCounters&)> nearest_ms{}, blocked_ms{};
   std::function<double()> sah_cost = [] { return 0.0; };
+  /// Told what the frame's rays of one kind have spent.
+  std::function<void(const TraversalCounters&, std::size_t rays)> note_rays = [](const TraversalCounters&,
+                                                                                 std::size_t) {};
 
   std::vector<double> update_ms{}, closest_ms{}, occluded_ms{};  ///< of a frame
   std::vector<double> closest_steps{}, occluded_steps{};         ///< nodes and blocks visited, per ray
@@ -111,14 +115,31 @@ void set_queries(Contender& contender, unsigned threads, Nearest nearest, Blocke
   };
 }
 
+std::shared_ptr<dcem::WideTree> wide_tree(const dcem::Scene& scene, unsigned threads) {
+  auto tree = std::make_shared<dcem::WideTree>();
+  dcem::WideSettings settings;
+  settings.threads = threads;
+  tree->build_grouped({scene.vertices_m(), scene.triangles()}, scene.triangle_boxes(), scene.first_triangles(),
+                      settings);
+  return tree;
+}
+
+void set_wide_queries(Contender& contender, unsigned threads, const std::shared_ptr<dcem::WideTree>& tree) {
+  set_queries(
+      contender, threads,
+      [tree](const Ray<double>& ray, TraversalCounters& sum) {
+        const auto hit = tree->nearest(ray, &sum);
+        return hit ? Answer{hit->t, hit->triangle} : Answer{};
+      },
+      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->blocked(ray, &sum); });
+  contender.sah_cost = [tree] { return tree->sah_cost(); };
+}
+
 enum class WidePolicy { rebuild, refit, reinsert, grown_only };
 
 Contender wide_contender(const dcem::Scene& scene, unsigned threads, WidePolicy policy, double limit = 0.0) {
-  const auto tree = std::make_shared<dcem::WideTree>();
+  const auto tree = wide_tree(scene, threads);
   const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
-  dcem::WideSettings settings;
-  settings.threads = threads;
-  tree->build_grouped(mesh, scene.triangle_boxes(), scene.first_triangles(), settings);
   Contender contender{"wide", "rebuild", limit};
   constexpr std::array names{"rebuild", "refit", "reinsert", "reinsert grown"};
   contender.policy = names[static_cast<std::size_t>(policy)];
@@ -133,15 +154,48 @@ Contender wide_contender(const dcem::Scene& scene, unsigned threads, WidePolicy 
     const std::size_t reinserted = tree->reinsert_moved(limit, turn);
     return {report.blocks_written, report.nodes_visited, reinserted};
   };
-  set_queries(
-      contender, threads,
-      [tree](const Ray<double>& ray, TraversalCounters& sum) {
-        const auto hit = tree->nearest(ray, &sum);
-        return hit ? Answer{hit->t, hit->triangle} : Answer{};
-      },
-      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->blocked(ray, &sum); });
-  contender.sah_cost = [tree] { return tree->sah_cost(); };
+  set_wide_queries(contender, threads, tree);
   return contender;
+}
+
+/// The wide tree as its maintainer keeps it.
+Contender kept_contender(const dcem::Scene& scene, unsigned threads, const char* name,
+                         const dcem::UpkeepSettings& settings) {
+  const auto tree = wide_tree(scene, threads);
+  const auto maintainer = std::make_shared<dcem::WideMaintainer>(settings);
+  const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
+  Contender contender{"wide", name};
+  contender.update = [=, &scene](const Moved& moved) -> Work {
+    const dcem::UpkeepReport report = maintainer->update(*tree, moved.triangles, mesh, scene.triangle_boxes());
+    return {0, report.nodes_refit + report.nodes_rebuilt, report.subtrees_rebuilt + report.rotated};
+  };
+  contender.note_rays = [=](const TraversalCounters& spent, std::size_t rays) { maintainer->note_rays(spent, rays); };
+  set_wide_queries(contender, threads, tree);
+  return contender;
+}
+
+/// Refit, and nothing that mends.
+dcem::UpkeepSettings nothing_mends() {
+  dcem::UpkeepSettings settings;
+  settings.sah_growth_limit = settings.deformation_limit = settings.reinsertion_growth = none;
+  settings.regrowth_price = settings.renewal_ratio = settings.rebuild_growth_limit = none;
+  settings.reinsertion_turn = settings.rotations_per_node = 0;
+  return settings;
+}
+
+/// The ways of the maintainer, each by itself, and what it does by default.
+void add_kept_contenders(const dcem::Scene& scene, unsigned threads, std::vector<Contender>& all) {
+  const dcem::UpkeepSettings usual, nothing = nothing_mends();
+  dcem::UpkeepSettings rotate = nothing, deform = nothing, sah = nothing, steps = nothing;
+  rotate.rotations_per_node = 1;
+  deform.deformation_limit = usual.deformation_limit;
+  sah.sah_growth_limit = usual.sah_growth_limit;
+  steps.regrowth_price = usual.regrowth_price;
+  all.push_back(kept_contender(scene, threads, "rotate", rotate));
+  all.push_back(kept_contender(scene, threads, "deform", deform));
+  all.push_back(kept_contender(scene, threads, "sah", sah));
+  all.push_back(kept_contender(scene, threads, "steps", steps));
+  all.push_back(kept_contender(scene, threads, "adaptive", usual));
 }
 
 Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
@@ -217,6 +271,7 @@ std::vector<Contender> contenders(const dcem::Scene& scene, const Options& optio
     all.push_back(wide_contender(scene, threads, WidePolicy::reinsert, limit));
   }
   all.push_back(wide_contender(scene, threads, WidePolicy::grown_only, options.limit));
+  add_kept_contenders(scene, threads, all);
   all.push_back(binary_contender(scene, threads));
 #if defined(DCEM_HAS_EMBREE)
   using dcem::bench::EmbreeUpkeep;
@@ -299,6 +354,8 @@ void trace(Contender& contender, const FrameRays& rays, const FrameRays& warm_up
   contender.occluded_ms.push_back(contender.blocked_ms(rays.segments, blocked, occluded));
   contender.closest_steps.push_back(static_cast<double>(closest.nodes_visited) / count);
   contender.occluded_steps.push_back(static_cast<double>(occluded.nodes_visited) / count);
+  contender.note_rays(closest, rays.bounces.size());
+  contender.note_rays(occluded, rays.segments.size());
   for (const Answers* answers : {&nearest, &blocked}) {
     for (const Answer& answer : *answers) {
       contender.hash = dcem::hash_values(contender.hash, std::bit_cast<std::uint64_t>(answer.t), answer.triangle);

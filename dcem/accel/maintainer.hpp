@@ -33,6 +33,8 @@ struct UpkeepSettings {
   /// Neither measure sees a tree that might be better than it ever was, as when objects gather. The layer above the
   /// groups is therefore built anew whenever refits have visited this many times as many nodes as it has (no unit,
   /// above 0; infinity switches it off). At 64 that adds about a quarter to the cost of the refits.
+  /// Of the wide tree: all above blocks and units, nodes and blocks being counted, where that makes Σ cost · surface
+  /// fall; for the first time when something moves for the first time. It adds a fortieth.
   double renewal_ratio = 64.0;
   /// Of the wide tree: an object that moved is hung elsewhere when the node around it has grown to more than this many
   /// times what it was when the object came there (no unit, at least 1; infinity switches it off).
@@ -40,6 +42,24 @@ struct UpkeepSettings {
   /// Of the wide tree: in each frame one in this many of the objects that moved is hung anew in turn, whatever its node
   /// has grown (number; 0 switches it off).
   std::uint32_t reinsertion_turn = 50;
+  /// Of the wide tree: around each node that motion has touched, at most so many entries change their place in a frame
+  /// where Σ cost · surface falls (number; 0 switches rotations off).
+  std::uint32_t rotations_per_node = 0;
+  /// Of the wide tree: only in one frame of so many, of those in which something moved, rotations are done and the two
+  /// measures are looked at, for all that has moved since (number, at least 1).
+  std::uint32_t wear_interval = 25;
+  /// Of the wide tree: whether a subtree that is worn by either measure is built anew in place, its blocks and units
+  /// untouched. Otherwise the whole tree is built anew when its SAH cost has grown by `sah_growth_limit`.
+  bool regrowth = true;
+  /// Of the wide tree, with `regrowth`: all above blocks and units is built anew once rays have visited this many nodes
+  /// more for each block than they would have at the steps per ray that followed the last time (number, above 0;
+  /// infinity switches it off). Counts only where the maintainer is told what rays spend. 12 is about what building it
+  /// takes: who has spent as much on rays buys it, and so never spends twice what the best moment would have cost.
+  double regrowth_price = 12.0;
+  /// Of the wide tree, with `regrowth`: the whole tree is built anew, blocks included, when its SAH cost has grown to
+  /// this many times what it was when last built whole (no unit, above 1; infinity switches it off). For what subtrees
+  /// cannot mend: blocks whose triangles have drifted apart.
+  double rebuild_growth_limit = 2.0;
 };
 
 /// Throws std::invalid_argument for limits outside the ranges written above.
@@ -49,6 +69,11 @@ inline void validate(const UpkeepSettings& settings) {
   if (!(settings.renewal_ratio > 0.0)) throw std::invalid_argument("renewal_ratio: expected a number above 0");
   if (!(settings.reinsertion_growth >= 1.0)) {
     throw std::invalid_argument("reinsertion_growth: expected a number of at least 1");
+  }
+  if (settings.wear_interval < 1) throw std::invalid_argument("wear_interval: expected at least 1");
+  if (!(settings.regrowth_price > 0.0)) throw std::invalid_argument("regrowth_price: expected a number above 0");
+  if (!(settings.rebuild_growth_limit > 1.0)) {
+    throw std::invalid_argument("rebuild_growth_limit: expected a number above 1");
   }
 }
 
@@ -62,6 +87,10 @@ struct UpkeepReport {
   bool root_rebuilt = false;
   double sah_cost = 0.0;           ///< after the frame's upkeep, no unit
   double sah_cost_at_build = 0.0;  ///< after the last build of the whole tree, no unit
+  // Of a wide tree:
+  std::uint64_t reinserted = 0;  ///< objects that were hung elsewhere
+  std::uint64_t rotated = 0;     ///< entries that changed their place by rotation; such nodes count as kept or refit
+  std::uint64_t regrown = 0;     ///< subtrees that were built anew in place
 
   friend bool operator==(const UpkeepReport&, const UpkeepReport&) = default;
 };

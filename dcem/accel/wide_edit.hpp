@@ -90,6 +90,7 @@ inline void WideTree::plant(const TriangleView& mesh, Boxes boxes) {
     if (arrays_.unit_root[group].is_none()) continue;
     area_when_hung_m2_[group] = arrays_.nodes[arrays_.place_of(arrays_.unit_root[group]).node()].box().half_area();
   }
+  wear_.renew(arrays_);
 }
 
 inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes) {
@@ -120,6 +121,7 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
     if (box != arrays_.box_at(place)) {
       arrays_.set_box(place, box);
       report.nodes_visited += arrays_.tighten_above(place.node());
+      wear_.touch(place.node());
     }
     note_moved_unit(arrays_.group_of_block[block]);
   }
@@ -168,6 +170,7 @@ inline void WideTree::take_out(WidePlace place) {
   const std::uint32_t node = place.node();
   if (node == 0 || arrays_.nodes[node].child_count() > 1) {
     arrays_.tighten_above(node);
+    wear_.touch(node);
     return;
   }
   const WidePlace above = arrays_.node_place[node];
@@ -180,6 +183,7 @@ inline void WideTree::take_out(WidePlace place) {
   arrays_.node_place[node] = {};
   arrays_.free_nodes.push_back(node);
   arrays_.tighten_above(above.node());
+  wear_.touch(above.node());
 }
 
 /// Offers the lanes of one node: a free one, or an entry that is not divided further, to be joined under a new node, as
@@ -236,8 +240,10 @@ inline void WideTree::hang_at(WideChild child, const Aabb<float>& box, const Spo
     arrays_.hang(WideChild::node(node), place, both);
     arrays_.hang(beside, WidePlace::at(node, 0), beside_box);
     place = WidePlace::at(node, 1);
+    wear_.forget(node);
   }
   arrays_.hang(child, place, box);
+  wear_.touch(place.node());
   // From the node that was there: a new one below it is tight already, and the way up would end at it.
   arrays_.tighten_above(spot.node);
 }

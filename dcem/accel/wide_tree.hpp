@@ -22,11 +22,17 @@
 #include "dcem/accel/wide_builder.hpp"
 #include "dcem/accel/wide_traversal.hpp"
 #include "dcem/accel/wide_validate.hpp"
+#include "dcem/accel/wide_wear.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/ray.hpp"
 #include "dcem/geometry/triangle.hpp"
 
 namespace dcem {
+
+namespace detail {
+class WidePlan;
+struct WideRotation;
+}  // namespace detail
 
 /// The nearest hit of a ray.
 struct WideHit {
@@ -74,6 +80,32 @@ class WideTree {
   /// bad place little by little, or by what others do. Returns how many were moved.
   std::size_t reinsert_moved(double growth_limit, std::uint32_t turn_length = default_turn_length);
   static constexpr std::uint32_t default_turn_length = 50;
+
+  /// Builds what hangs below an inner node anew, in place, from the boxes as they are now: the node's part of its layer
+  /// (wide_layer.hpp), of which blocks and units are the leaves; node 0 is all but those. Where the result would lie
+  /// too deep, more is built anew, from a node above on. Returns how many nodes were written: none where Σ cost ·
+  /// surface below the node would not fall below `wanted_share` of what it is (above 0; infinity: whatever it will be);
+  /// the node's wear is then counted from now on.
+  std::size_t regrow(std::uint32_t node, double wanted_share = std::numeric_limits<double>::infinity());
+
+  /// Exchanges entries around the nodes that edits have touched since the last call, where Σ cost · surface falls (see
+  /// wide_rotation.hpp), up to so many a node. Needs `watch`. Returns how many entries changed their place.
+  std::size_t rotate_touched(std::uint32_t most_per_node = 1);
+
+  // Wear (see wide_wear.hpp).
+
+  /// Says what is noted from now on. What is watched anew counts as built now.
+  void watch(const WideWatch& watched) { wear_.watch(watched, arrays_); }
+  const WideWatch& watched() const { return wear_.watched(); }
+  /// Brings the measures up to date along the paths that edits have touched. Returns the nodes on them, children before
+  /// parents; valid until the next call.
+  std::span<const std::uint32_t> measure() {
+    wear_.refresh(arrays_);
+    return wear_.refreshed();
+  }
+  /// Per node, as of the last `measure` or `regrow`; empty where no measure is watched. Meaningless for nodes that are
+  /// not in use.
+  std::span<const WideWear> wear() const { return wear_.all(); }
 
   // Queries. `counters`, when given, is added to.
 
@@ -223,6 +255,14 @@ class WideTree {
   Spot cheapest_spot(const Aabb<float>& box);
   void offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best);
   void hang_at(WideChild child, const Aabb<float>& box, const Spot& spot);
+  void fell(std::uint32_t node);
+  std::size_t plant_planned(std::uint32_t node, const detail::WidePlan& plan, std::uint32_t slot);
+  std::size_t hang_planned(WidePlace place, const detail::WidePlan& plan, std::uint32_t slot);
+  void remember_hung(std::uint32_t node);
+  void sum_anew();
+  std::size_t rotate_below(std::uint32_t node, std::uint32_t level, std::uint32_t most_per_node);
+  void carry_out(const detail::WideRotation& rotation, std::uint32_t node);
+  void remember_hung(WideChild child);
 
   WideArrays arrays_;
   WideSettings settings_;
@@ -238,9 +278,12 @@ class WideTree {
   std::vector<float> area_when_hung_m2_;  ///< per group: half surface of the node around, when the unit came there
   std::vector<Branch> branches_;
   std::size_t next_turn_ = 0;
+  detail::WideWearLog wear_;
 };
 
 }  // namespace dcem
 
 #include "dcem/accel/wide_edit.hpp"
 #include "dcem/accel/wide_queries.hpp"
+#include "dcem/accel/wide_regrow.hpp"
+#include "dcem/accel/wide_rotation.hpp"

@@ -1,0 +1,229 @@
+#pragma once
+/// Builds parts of a `WideTree` anew in place; included by wide_tree.hpp.
+///
+/// The leaves of its layer (wide_layer.hpp) stay what they are: their boxes are known, and nothing in them is written.
+/// So the price is that of the nodes alone.
+///
+/// How deep that may get: leaves of a built layer lie on level WideBinner::levels at most, its root being on level 1,
+/// and no edit pushes a leaf further down: hanging makes nodes above `wide_edit_levels` only, and rotations lower
+/// leaves only there. A regrown part has the levels of its plan, which are counted before anything changes. Where they
+/// do not fit below the node, the node above is regrown instead; at the layer's root they always fit, because the
+/// binner makes no more.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "dcem/accel/wide_layer.hpp"
+#include "dcem/accel/wide_tree.hpp"
+
+namespace dcem {
+
+namespace detail {
+
+/// What a node leads to where its layer ends: a block or a unit.
+struct WideLeaf {
+  WideChild child;
+  Aabb<float> box;
+};
+
+/// Σ cost · half surface over what hangs in one node.
+inline double weighted_area(const WideArrays& arrays, const WideNode& node) {
+  double sum_m2 = 0.0;
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    const double cost = node.child[lane].is_block() ? arrays.costs.block : arrays.costs.node;
+    if (!node.child[lane].is_none()) sum_m2 += cost * static_cast<double>(node.box(lane).half_area());
+  }
+  return sum_m2;
+}
+
+/// The same over all that hangs below a node in its layer.
+inline double layer_area_below(const WideArrays& arrays, std::uint32_t node) {
+  double sum_m2 = weighted_area(arrays, arrays.nodes[node]);
+  for (const WideChild child : arrays.nodes[node].child) {
+    if (is_layer_node(arrays, child)) sum_m2 += layer_area_below(arrays, child.index());
+  }
+  return sum_m2;
+}
+
+/// A plan for the part of a layer that hangs below one node. Changes nothing.
+class WidePlan {
+ public:
+  using Entries = std::vector<std::uint32_t>;
+
+  WidePlan(const WideArrays& arrays, std::uint32_t node, unsigned threads)
+      : leaves_(leaves_below(arrays, node)),
+        items_(items_around(arrays.nodes[node].box())),
+        binary_(WideBinner().build(items_, 1, threads)),
+        collapse_(binary_, items_, arrays.costs) {}
+
+  bool empty() const { return leaves_.empty(); }
+  /// Of a binary node that becomes no wide one.
+  bool is_leaf(std::uint32_t slot) const { return collapse_.is_block(slot); }
+  const WideLeaf& leaf(std::uint32_t slot) const { return leaves_[items_[binary_[slot].first].index]; }
+
+  /// What the wide node of a binary one holds, the largest first: any-hit queries take the lanes as they come.
+  std::size_t entries(std::uint32_t slot, std::array<std::uint32_t, simd_lanes>& found) const {
+    std::size_t count = 0;
+    collapse_.for_each_entry(slot, [&](std::uint32_t entry) { found[count++] = entry; });
+    std::stable_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
+                     [&](std::uint32_t one, std::uint32_t other) {
+                       return binary_[one].half_area_m2 > binary_[other].half_area_m2;
+                     });
+    return count;
+  }
+
+  /// Σ cost · half surface of what will hang below the node.
+  double weighted_area_m2(const WideCosts& costs, std::uint32_t slot = 0) const {
+    double sum_m2 = 0.0;
+    if (slot == 0 && is_leaf(0)) return weight_m2(costs, 0);
+    collapse_.for_each_entry(slot, [&](std::uint32_t entry) {
+      sum_m2 += weight_m2(costs, entry);
+      if (!is_leaf(entry)) sum_m2 += weighted_area_m2(costs, entry);
+    });
+    return sum_m2;
+  }
+
+  /// Levels of wide nodes.
+  std::uint32_t levels(std::uint32_t slot = 0) const {
+    if (is_leaf(slot)) return 0;
+    std::uint32_t below = 0;
+    collapse_.for_each_entry(slot, [&](std::uint32_t entry) { below = std::max(below, levels(entry)); });
+    return below + 1;
+  }
+
+ private:
+  double weight_m2(const WideCosts& costs, std::uint32_t slot) const {
+    const bool is_block = is_leaf(slot) && leaf(slot).child.is_block();
+    return (is_block ? costs.block : costs.node) * static_cast<double>(binary_[slot].half_area_m2);
+  }
+
+  static std::vector<WideLeaf> leaves_below(const WideArrays& arrays, std::uint32_t node) {
+    std::vector<WideLeaf> leaves;
+    collect(arrays, node, leaves);
+    return leaves;
+  }
+  static void collect(const WideArrays& arrays, std::uint32_t node, std::vector<WideLeaf>& leaves) {
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+      const WideChild child = arrays.nodes[node].child[lane];
+      if (is_layer_node(arrays, child)) {
+        collect(arrays, child.index(), leaves);
+      } else if (!child.is_none()) {
+        leaves.push_back({child, arrays.nodes[node].box(lane)});
+      }
+    }
+  }
+
+  std::vector<WideItem> items_around(const Aabb<float>& all) const {
+    // What is absent is put where it stretches nothing.
+    const Aabb<float> middle =
+        all.empty() ? Aabb<float>{Vector3<float>(0.0F), Vector3<float>(0.0F)} : Aabb<float>{all.center(), all.center()};
+    std::vector<WideItem> items;
+    items.reserve(leaves_.size());
+    for (const WideLeaf& leaf : leaves_) {
+      const Aabb<float>& box = leaf.box.empty() ? middle : leaf.box;
+      items.push_back({Float4{box.min.x, box.min.y, box.min.z, 0.0F}, Float4{box.max.x, box.max.y, box.max.z, 0.0F},
+                       static_cast<std::uint32_t>(items.size()), WideItem::no_kind});
+    }
+    return items;
+  }
+
+  std::vector<WideLeaf> leaves_;
+  std::vector<WideItem> items_;
+  std::vector<WideSplit> binary_;
+  WideCollapse collapse_;
+};
+
+}  // namespace detail
+
+inline std::size_t WideTree::regrow(std::uint32_t node, double wanted_share) {
+  if (!detail::is_used_node(arrays_, node)) throw std::invalid_argument("node " + std::to_string(node) + " of none");
+  const detail::WidePlan plan(arrays_, node, settings_.threads);
+  if (plan.empty()) return 0;
+  const std::uint32_t deepest = detail::layer_level(arrays_, node) + plan.levels() - 1;
+  if (deepest > detail::wide_layer_levels && !detail::is_layer_root(arrays_, node)) {
+    return regrow(arrays_.node_place[node].node(), wanted_share);
+  }
+  if (std::isfinite(wanted_share) &&
+      !(plan.weighted_area_m2(arrays_.costs) < wanted_share * detail::layer_area_below(arrays_, node))) {
+    wear_.forget(node);
+    wear_.touch(node);
+    return 0;
+  }
+  fell(node);
+  std::size_t made = 1;
+  if (plan.is_leaf(0)) {
+    hang_planned(WidePlace::at(node, 0), plan, 0);
+    remember_hung(node);
+  } else {
+    made = plant_planned(node, plan, 0);
+  }
+  if (node == 0) sum_anew();
+  wear_.renew_below(arrays_, node);
+  return made;
+}
+
+/// Differences keep the sum, and their roundings add up; here it is right again.
+inline void WideTree::sum_anew() {
+  arrays_.weighted_area_m2 = 0.0;
+  for (const WideNode& node : arrays_.nodes) arrays_.weighted_area_m2 += detail::weighted_area(arrays_, node);
+}
+
+/// Empties a node; the nodes of its layer below it become free.
+inline void WideTree::fell(std::uint32_t node) {
+  const auto first_freed = static_cast<std::ptrdiff_t>(arrays_.free_nodes.size());
+  const auto empty_below = [&](std::uint32_t from, const auto& self) -> void {
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+      const WideChild child = arrays_.nodes[from].child[lane];
+      if (detail::is_layer_node(arrays_, child)) {
+        self(child.index(), self);
+        arrays_.node_place[child.index()] = {};
+        arrays_.free_nodes.push_back(child.index());
+      }
+      arrays_.hang({}, WidePlace::at(from, lane), {});
+    }
+  };
+  empty_below(node, empty_below);
+  // Taken again in rising order: what is close in the tree stays close in memory.
+  std::sort(arrays_.free_nodes.begin() + first_freed, arrays_.free_nodes.end(), std::greater<>());
+}
+
+/// Fills an empty node. Returns how many nodes that made, itself counted.
+inline std::size_t WideTree::plant_planned(std::uint32_t node, const detail::WidePlan& plan, std::uint32_t slot) {
+  std::array<std::uint32_t, simd_lanes> entries;
+  const std::size_t count = plan.entries(slot, entries);
+  std::size_t made = 1;
+  for (std::uint32_t lane = 0; lane < count; ++lane)
+    made += hang_planned(WidePlace::at(node, lane), plan, entries[lane]);
+  remember_hung(node);
+  return made;
+}
+
+/// Fills an empty lane. Returns how many nodes that made.
+inline std::size_t WideTree::hang_planned(WidePlace place, const detail::WidePlan& plan, std::uint32_t slot) {
+  if (plan.is_leaf(slot)) {
+    arrays_.hang(plan.leaf(slot).child, place, plan.leaf(slot).box);
+    return 0;
+  }
+  const std::uint32_t node = arrays_.take_node();
+  const std::size_t made = plant_planned(node, plan, slot);
+  arrays_.hang(WideChild::node(node), place, arrays_.nodes[node].box());
+  return made;
+}
+
+/// Notes for the units that hang in a node how large it is now.
+inline void WideTree::remember_hung(std::uint32_t node) {
+  const WideNode& held = arrays_.nodes[node];
+  const float area_m2 = held.box().half_area();
+  for (const WideChild child : held.child) {
+    const std::uint32_t unit = child.is_none() ? WideArrays::no_unit : arrays_.unit_of(child);
+    if (unit != WideArrays::no_unit) area_when_hung_m2_[unit] = area_m2;
+  }
+}
+
+}  // namespace dcem
