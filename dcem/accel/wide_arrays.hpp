@@ -74,11 +74,8 @@ struct WideArrays {
   /// Makes the boxes above a node tight again, as far up as they change. Returns how many nodes were looked at.
   std::size_t tighten_above(std::uint32_t node);
 
-  /// Takes over where a triangle is, and whether.
-  void set_triangle(std::uint32_t triangle, std::span<const Vec3> from_m, bool exists) {
-    for (const std::uint32_t vertex : triangles[triangle]) vertices_m[vertex] = from_m[vertex];
-    is_there[triangle] = exists ? 1 : 0;
-  }
+  /// Takes over where the corners of a block are.
+  void copy_vertices(std::uint32_t block, std::span<const Vec3> from_m);
   TriangleCorners corners_m(std::uint32_t triangle) const {
     const auto& [a, b, c] = triangles[triangle];
     return {vertices_m[a], vertices_m[b], vertices_m[c]};
@@ -191,6 +188,14 @@ inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
     result.max[axis] = high + room(high);
   }
   return result;
+}
+
+inline void WideArrays::copy_vertices(std::uint32_t block, std::span<const Vec3> from_m) {
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    const WidePatch& patch = patches[block * simd_lanes + lane];
+    if (patch.is_none()) continue;
+    for (const std::uint32_t vertex : patch.corner) vertices_m[vertex] = from_m[vertex];
+  }
 }
 
 inline Aabb<float> WideArrays::write_block(std::uint32_t index) {

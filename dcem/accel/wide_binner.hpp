@@ -168,6 +168,7 @@ class WideBinner {
 
   /// Reorders the items; the first `middle` of them go to the left.
   static std::size_t place_split(std::span<WideItem> items, std::uint32_t levels_left) {
+    if (items.size() == 2) return 1;
     Float4 low = items.front().twice_centre(), high = low;
     for (const WideItem& item : items) {
       const Float4 centre = item.twice_centre();
@@ -201,7 +202,8 @@ class WideBinner {
         if (!usable[axis]) continue;
         const auto slot = static_cast<std::size_t>(bin[static_cast<int>(axis)]);
         boxes[axis][slot].extend(item.low, item.high);
-        ++counts[axis][slot];
+        // What shares a block with nothing is a unit, and takes a block of its own at least.
+        counts[axis][slot] += item.kind == WideItem::no_kind ? simd_lanes : 1;
       }
     }
     Choice best;

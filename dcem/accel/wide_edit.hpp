@@ -98,16 +98,19 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
     throw std::invalid_argument("one box per triangle of the tree is needed");
   }
   if (mesh.vertices_m.size() != arrays_.vertices_m.size()) throw std::invalid_argument("the vertices are others");
+  is_there_now_.clear();
   for (const std::uint32_t triangle : moved) {
     if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
-    if (!detail::is_plain_box(boxes[triangle])) require_valid_box(boxes[triangle], triangle);
+    const bool is_there = detail::is_plain_box(boxes[triangle]);
+    if (!is_there) require_valid_box(boxes[triangle], triangle);
+    is_there_now_.push_back(is_there ? 1 : 0);
   }
   for (const std::uint32_t unit : moved_units_) unit_is_moved_[unit] = 0;
   moved_units_.clear();
   WideRefitReport report;
-  for (const std::uint32_t triangle : moved) {
-    arrays_.set_triangle(triangle, mesh.vertices_m, detail::is_plain_box(boxes[triangle]));
-    const std::uint32_t block = arrays_.patch_of_triangle[triangle] / simd_lanes;
+  for (std::size_t index = 0; index < moved.size(); ++index) {
+    arrays_.is_there[moved[index]] = is_there_now_[index];
+    const std::uint32_t block = arrays_.patch_of_triangle[moved[index]] / simd_lanes;
     if (block_is_dirty_[block] != 0) continue;
     block_is_dirty_[block] = 1;
     dirty_blocks_.push_back(block);
@@ -116,6 +119,7 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
   for (const std::uint32_t block : dirty_blocks_) {
     block_is_dirty_[block] = 0;
     const WidePlace place = arrays_.block_place[block];
+    arrays_.copy_vertices(block, mesh.vertices_m);
     const Aabb<float> box = arrays_.write_block(block);
     arrays_.note_extent(box);
     if (box != arrays_.box_at(place)) {

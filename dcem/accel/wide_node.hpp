@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "dcem/accel/simd.hpp"
@@ -62,14 +63,31 @@ struct alignas(64) WideNode {
   }
   /// The box around all lanes.
   Aabb<float> box() const {
-    Aabb<float> all;
-    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) all.extend(box(lane));
-    return all;
+    const auto lower = [](const Float4& one, const Float4& other) { return one < other ? one : other; };
+    const auto upper = [](const Float4& one, const Float4& other) { return one > other ? one : other; };
+    const Float4 min = fold(0, lower), max = fold(1, upper);
+    return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}};
   }
   std::uint32_t child_count() const {
     std::uint32_t count = 0;
     for (const WideChild& one : child) count += one.is_none() ? 0U : 1U;
     return count;
+  }
+
+ private:
+  /// What `choose` leaves of the eight numbers in the rows of x, y and z, all lower or all upper bounds.
+  template <typename Choose>
+  Float4 fold(std::size_t first_row, Choose&& choose) const {
+    const auto halves = [&](std::size_t axis) {
+      Float4 low, high;
+      std::memcpy(&low, bounds_m[first_row + 2 * axis].data(), sizeof low);
+      std::memcpy(&high, bounds_m[first_row + 2 * axis].data() + 4, sizeof high);
+      return choose(low, high);
+    };
+    const Float4 x = halves(0), y = halves(1), z = halves(2);
+    const Float4 xy = choose(__builtin_shufflevector(x, y, 0, 1, 4, 5), __builtin_shufflevector(x, y, 2, 3, 6, 7));
+    const Float4 zz = choose(__builtin_shufflevector(z, z, 0, 1, 4, 5), __builtin_shufflevector(z, z, 2, 3, 6, 7));
+    return choose(__builtin_shufflevector(xy, zz, 0, 2, 4, 6), __builtin_shufflevector(xy, zz, 1, 3, 5, 7));
   }
 };
 

@@ -272,7 +272,7 @@ class WideTree {
   double sah_at_build_ = 0.0;
 
   std::vector<std::uint32_t> dirty_blocks_;
-  std::vector<char> block_is_dirty_;
+  std::vector<char> block_is_dirty_, is_there_now_;
   std::vector<std::uint32_t> moved_units_;
   std::vector<char> unit_is_moved_;
   std::vector<float> area_when_hung_m2_;  ///< per group: half surface of the node around, when the unit came there
