@@ -2,7 +2,9 @@
 /// Everything of DCEM that needs no library but GLM. Reading and writing files is `dcem/io/`.
 #include "dcem/accel/brute_force.hpp"
 #include "dcem/accel/bvh.hpp"
+#include "dcem/accel/convex_region.hpp"
 #include "dcem/accel/maintainer.hpp"
+#include "dcem/accel/wide_batch.hpp"
 #include "dcem/accel/wide_maintainer.hpp"
 #include "dcem/accel/wide_tree.hpp"
 #include "dcem/channel/band_limited_profile.hpp"
