@@ -1,6 +1,5 @@
 #pragma once
 /// How a `WideTree` is built and follows motion; included by wide_tree.hpp.
-#include <bit>
 #include <cstring>
 
 #include "dcem/accel/wide_tree.hpp"
@@ -17,9 +16,14 @@ inline bool is_plain_box(const Aabb<double>& box) {
   Double4 first, last;  // min and max.x; min.z and max
   std::memcpy(&first, &box, sizeof first);
   std::memcpy(&last, reinterpret_cast<const char*>(&box) + 16, sizeof last);
-  constexpr std::int64_t size_bits = 0x7fffffffffffffff;
-  const Double4 first_size = std::bit_cast<Double4>(std::bit_cast<Long4>(first) & size_bits);
-  const Double4 last_size = std::bit_cast<Double4>(std::bit_cast<Long4>(last) & size_bits);
+  Long4 first_bits, last_bits;
+  std::memcpy(&first_bits, &first, sizeof first);
+  std::memcpy(&last_bits, &last, sizeof last);
+  first_bits &= std::int64_t{0x7fffffffffffffff};
+  last_bits &= std::int64_t{0x7fffffffffffffff};
+  Double4 first_size, last_size;
+  std::memcpy(&first_size, &first_bits, sizeof first);
+  std::memcpy(&last_size, &last_bits, sizeof last);
   const Double4 max = __builtin_shufflevector(first, last, 5, 6, 7, 5);
   const Long4 holds = (first_size <= maximum_coordinate_m) & (last_size <= maximum_coordinate_m) & (first <= max);
   return (holds[0] & holds[1] & holds[2] & holds[3]) != 0;
