@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -85,6 +86,32 @@ inline std::vector<WideSplit> in_order(std::span<const BinaryNode> nodes, std::u
     if (!split.is_leaf()) split.count = splits[split.left].count + splits[split.right].count;
   }
   return splits;
+}
+
+/// Joins a few nodes in pairs, the smallest box around two first. Returns the node around all; `parts` is used up.
+inline std::uint32_t join(std::span<std::uint32_t> parts, std::vector<BinaryNode>& nodes) {
+  for (std::size_t count = parts.size(); count > 1; --count) {
+    BinaryNode joint;
+    joint.half_area_m2 = std::numeric_limits<float>::infinity();
+    std::size_t one = 0, other = 1;
+    for (std::size_t a = 0; a < count; ++a) {
+      for (std::size_t b = a + 1; b < count; ++b) {
+        FloatBox box = nodes[parts[a]].box;
+        box.extend(nodes[parts[b]].box);
+        if (!(box.half_area() < joint.half_area_m2)) continue;
+        joint.box = box;
+        joint.half_area_m2 = box.half_area();
+        one = a;
+        other = b;
+      }
+    }
+    joint.left = parts[one];
+    joint.right = parts[other];
+    nodes.push_back(joint);
+    parts[one] = static_cast<std::uint32_t>(nodes.size() - 1);
+    parts[other] = parts[count - 1];
+  }
+  return parts[0];
 }
 
 /// Levels of a tree, the root's included.

@@ -46,13 +46,6 @@ inline Aabb<double> WideTree::in_world(const Aabb<float>& box) const {
   return result;
 }
 
-inline void WideTree::offer(std::uint32_t patch, const Ray<double>& ray, Known known,
-                            std::optional<WideHit>& best) const {
-  const std::optional<WideHit> hit = hit_on(patch, ray, known);
-  if (!hit || (best && (hit->t > best->t || (hit->t == best->t && hit->triangle > best->triangle)))) return;
-  best = hit;
-}
-
 template <typename Considers>
 std::optional<WideHit> WideTree::nearest(const Ray<double>& ray, Considers&& considers,
                                          TraversalCounters* counters) const {

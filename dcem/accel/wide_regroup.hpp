@@ -227,7 +227,13 @@ class WideRegroup {
     std::vector<std::uint32_t> made(entries_.size());  // the binary node of an entry
     for (std::size_t at = order.size(); at-- > 0;) {
       const Entry& entry = entries_[order[at]];
-      made[order[at]] = entry.is_block ? add_leaf(entry, nodes, held) : join(entry, made, nodes);
+      if (entry.is_block) {
+        made[order[at]] = add_leaf(entry, nodes, held);
+        continue;
+      }
+      std::array<std::uint32_t, simd_lanes> parts;
+      for (std::uint32_t lane = 0; lane < entry.count; ++lane) parts[lane] = made[entry.held[lane]];
+      made[order[at]] = detail::join(std::span(parts).first(entry.count), nodes);
     }
     std::vector<WideItem> placed(items.size());
     std::vector<WideSplit> result = detail::in_order(nodes, made[0], held, placed);
@@ -241,34 +247,6 @@ class WideRegroup {
     nodes.push_back({block.box, block.half_area_m2, 0, 0, static_cast<std::uint32_t>(held.size()), block.count});
     for (std::uint32_t lane = 0; lane < block.count; ++lane) held.push_back(items_[block.held[lane]]);
     return static_cast<std::uint32_t>(nodes.size() - 1);
-  }
-
-  static std::uint32_t join(const Entry& entry, std::span<const std::uint32_t> made,
-                            std::vector<detail::BinaryNode>& nodes) {
-    std::array<std::uint32_t, simd_lanes> left;
-    for (std::uint32_t lane = 0; lane < entry.count; ++lane) left[lane] = made[entry.held[lane]];
-    for (std::uint32_t count = entry.count; count > 1; --count) {
-      detail::BinaryNode joint;
-      joint.half_area_m2 = std::numeric_limits<float>::infinity();
-      std::uint32_t one = 0, other = 1;
-      for (std::uint32_t a = 0; a < count; ++a) {
-        for (std::uint32_t b = a + 1; b < count; ++b) {
-          detail::FloatBox box = nodes[left[a]].box;
-          box.extend(nodes[left[b]].box);
-          if (!(box.half_area() < joint.half_area_m2)) continue;
-          joint.box = box;
-          joint.half_area_m2 = box.half_area();
-          one = a;
-          other = b;
-        }
-      }
-      joint.left = left[one];
-      joint.right = left[other];
-      nodes.push_back(joint);
-      left[one] = static_cast<std::uint32_t>(nodes.size() - 1);
-      left[other] = left[count - 1];
-    }
-    return left[0];
   }
 
   WideCosts costs_;

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "dcem/accel/ray_order.hpp"
@@ -49,15 +50,16 @@ inline std::span<const Vec3> launch_directions(std::uint32_t count) {
   static std::mutex mutex;
   static std::map<std::uint32_t, std::vector<Vec3>> spheres;
   const std::scoped_lock lock(mutex);
-  std::vector<Vec3>& sphere = spheres[count];
-  if (sphere.size() == count) return sphere;
+  const auto known = spheres.find(count);
+  if (known != spheres.end()) return known->second;
   std::vector<Ray<double>> rays;
   for (std::uint32_t index = 0; index < count; ++index) {
     rays.push_back({Vec3(0.0), fibonacci_direction(index, count)});
   }
+  std::vector<Vec3> sphere;
   RayOrder order;
   for (const std::uint32_t index : order.sort(rays)) sphere.push_back(rays[index].direction);
-  return sphere;
+  return spheres.emplace(count, std::move(sphere)).first->second;
 }
 
 }  // namespace dcem

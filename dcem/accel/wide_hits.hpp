@@ -1,0 +1,59 @@
+#pragma once
+/// Where a ray meets a patch, in double precision; included by wide_tree.hpp.
+#include "dcem/accel/wide_tree.hpp"
+
+namespace dcem {
+
+namespace detail {
+
+inline bool is_in_range(double t, const Ray<double>& ray) {
+  return t >= ray.t_min && t <= ray.t_max && std::isfinite(t);
+}
+
+}  // namespace detail
+
+/// Whether a ray leads anywhere; an infinite direction would meet every plane at t = 0.
+inline bool WideTree::has_direction(const Ray<double>& ray) {
+  const Vec3 size = glm::abs(ray.direction);
+  const bool is_finite = std::isfinite(size.x) && std::isfinite(size.y) && std::isfinite(size.z);
+  return is_finite && ray.direction != Vec3(0.0);
+}
+
+/// Where a ray meets a patch, and in which of its triangles; absent where it does not from t_min to t_max. Double
+/// precision finds out what is not known; the answer is the same whatever is.
+inline std::optional<WideHit> WideTree::hit_on(std::uint32_t patch, const Ray<double>& ray, Known known) const {
+  const PatchPlanes& planes = arrays_.planes[patch];
+  if (known == Known::nothing) return hit_on_either(planes, ray);
+  const PatchPlane& plane = planes.side[known == Known::second ? 1 : 0];
+  if ((known == Known::met && !plane.is_alone()) || !plane.is_steep(ray)) return hit_on_either(planes, ray);
+  const double t = plane.t_of(ray);
+  return detail::is_in_range(t, ray) ? std::optional(WideHit{t, plane.triangle}) : std::nullopt;
+}
+
+/// As hit_on, each triangle asked by itself.
+inline std::optional<WideHit> WideTree::hit_on_either(const PatchPlanes& planes, const Ray<double>& ray) const {
+  const WatertightRay exact(ray);
+  std::optional<WideHit> best;
+  for (const PatchPlane& plane : planes.sides()) {
+    const WideHit hit{plane.t_of(ray), plane.triangle};
+    if (!detail::is_in_range(hit.t, ray) || !exact.intersect(arrays_.corners_m(hit.triangle))) continue;
+    if (!best || hit.t < best->t || (hit.t == best->t && hit.triangle < best->triangle)) best = hit;
+  }
+  return best;
+}
+
+template <typename Considers>
+bool WideTree::is_considered(std::uint32_t patch, Considers& considers) const {
+  if constexpr (std::is_same_v<std::remove_const_t<Considers>, EveryTriangle>) return true;
+  return considers(arrays_.planes[patch].side[0].triangle);
+}
+
+/// Takes over a hit where it is nearer, or as near and of a smaller number.
+inline void WideTree::offer(std::uint32_t patch, const Ray<double>& ray, Known known,
+                            std::optional<WideHit>& best) const {
+  const std::optional<WideHit> hit = hit_on(patch, ray, known);
+  if (!hit || (best && (hit->t > best->t || (hit->t == best->t && hit->triangle > best->triangle)))) return;
+  best = hit;
+}
+
+}  // namespace dcem
