@@ -6,6 +6,15 @@ namespace dcem {
 
 namespace detail {
 
+/// Calls `visit(lane)` for the set bits, lowest first, until one returns true. Returns whether one did.
+template <typename Visit>
+[[gnu::always_inline]] inline bool any_lane(std::uint32_t lanes, Visit&& visit) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    if (visit(static_cast<std::uint32_t>(std::countr_zero(lanes)))) return true;
+  }
+  return false;
+}
+
 inline bool is_in_range(double t, const Ray<double>& ray) {
   return t >= ray.t_min && t <= ray.t_max && std::isfinite(t);
 }
@@ -40,6 +49,26 @@ inline std::optional<WideHit> WideTree::hit_on_either(const PatchPlanes& planes,
     if (!best || hit.t < best->t || (hit.t == best->t && hit.triangle < best->triangle)) best = hit;
   }
   return best;
+}
+
+/// The triangles of a patch that a ray may meet.
+inline std::span<const PatchPlane> WideTree::halves_to_ask(std::uint32_t patch, Known known) const {
+  const std::span<const PatchPlane> all = arrays_.planes[patch].side;
+  if (known == Known::first) return all.first(1);
+  return known == Known::second ? all.subspan(1, 1) : arrays_.planes[patch].sides();
+}
+
+/// Calls `visit(patch) -> bool` for patches of which something is there, until one returns true. Returns whether one
+/// did.
+template <typename Visit>
+bool WideTree::for_each_present_patch(Visit&& visit) const {
+  for (std::uint32_t block = 0; block < arrays_.blocks.size(); ++block) {
+    if (detail::any_lane(arrays_.blocks[block].lanes,
+                         [&](std::uint32_t lane) { return visit(block * simd_lanes + lane); })) {
+      return true;
+    }
+  }
+  return false;
 }
 
 template <typename Considers>

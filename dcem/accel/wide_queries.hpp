@@ -22,15 +22,6 @@ class SpentCounters {
   TraversalCounters* sum_;
 };
 
-/// Calls `visit(lane)` for the set bits, lowest first, until one returns true. Returns whether one did.
-template <typename Visit>
-[[gnu::always_inline]] inline bool any_lane(std::uint32_t lanes, Visit&& visit) {
-  for (; lanes != 0; lanes &= lanes - 1) {
-    if (visit(static_cast<std::uint32_t>(std::countr_zero(lanes)))) return true;
-  }
-  return false;
-}
-
 }  // namespace detail
 
 inline Aabb<double> WideTree::in_world(const Aabb<float>& box) const {
@@ -96,12 +87,11 @@ std::optional<WideHit> WideTree::nearest_of_all(const Ray<double>& ray, Consider
                                                 TraversalCounters& counters) const {
   std::optional<WideHit> best;
   if (!has_direction(ray)) return best;
-  for (std::uint32_t patch = 0; patch < arrays_.patches.size(); ++patch) {
-    const WidePatch& held = arrays_.patches[patch];
-    if (held.is_none() || arrays_.box_of_patch(held).empty()) continue;
+  for_each_present_patch([&](std::uint32_t patch) {
     ++counters.primitives_tested;
     if (is_considered(patch, considers)) offer(patch, ray, Known::nothing, best);
-  }
+    return false;
+  });
   return best;
 }
 
@@ -135,18 +125,18 @@ void WideTree::closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* c
   detail::SpentCounters sum(counters);
   if (primitive_count() == 0) return;
   double t_max = ray.t_max;
-  const auto ask = [&](const WidePatch& patch) {
-    for (const std::uint32_t triangle : patch.triangles()) {
-      if (arrays_.is_there[triangle] == 0) continue;
+  const auto ask = [&](std::uint32_t patch, Known known) {
+    for (const PatchPlane& half : halves_to_ask(patch, known)) {
       ++sum.spent.primitives_tested;
-      leaf(triangle, t_max);
+      leaf(half.triangle, t_max);
     }
   };
   const WideRay wide(ray, arrays_.origin_m, arrays_.extent_m);
   if (!wide.usable()) {
-    for (const WidePatch& patch : arrays_.patches) {
-      if (!patch.is_none() && !arrays_.box_of_patch(patch).empty()) ask(patch);
-    }
+    for_each_present_patch([&](std::uint32_t patch) {
+      ask(patch, Known::nothing);
+      return false;
+    });
     return;
   }
   const auto take = [&](std::uint32_t block, std::uint32_t met, const Hits& hits, float& limit) {
@@ -158,7 +148,7 @@ void WideTree::closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* c
       });
       met &= ~(1U << lane);
       if (hits.first[lane] > limit) continue;
-      ask(arrays_.patches[block * simd_lanes + lane]);
+      ask(block * simd_lanes + lane, hits.known(lane));
       limit = WideRay::padded(t_max);
     }
   };
@@ -169,21 +159,18 @@ template <typename Leaf>
 bool WideTree::any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters) const {
   detail::SpentCounters sum(counters);
   if (primitive_count() == 0) return false;
-  const auto ask = [&](const WidePatch& patch) {
-    return std::ranges::any_of(patch.triangles(), [&](std::uint32_t triangle) {
-      if (arrays_.is_there[triangle] == 0) return false;
+  const auto ask = [&](std::uint32_t patch, Known known) {
+    return std::ranges::any_of(halves_to_ask(patch, known), [&](const PatchPlane& half) {
       ++sum.spent.primitives_tested;
-      return leaf(triangle);
+      return leaf(half.triangle);
     });
   };
   const WideRay wide(ray, arrays_.origin_m, arrays_.extent_m);
   if (!wide.usable()) {
-    return std::ranges::any_of(arrays_.patches, [&](const WidePatch& patch) {
-      return !patch.is_none() && !arrays_.box_of_patch(patch).empty() && ask(patch);
-    });
+    return for_each_present_patch([&](std::uint32_t patch) { return ask(patch, Known::nothing); });
   }
-  const auto take = [&](std::uint32_t block, std::uint32_t met, const Hits&) {
-    return detail::any_lane(met, [&](std::uint32_t lane) { return ask(arrays_.patches[block * simd_lanes + lane]); });
+  const auto take = [&](std::uint32_t block, std::uint32_t met, const Hits& hits) {
+    return detail::any_lane(met, [&](std::uint32_t lane) { return ask(block * simd_lanes + lane, hits.known(lane)); });
   };
   return detail::walk_wide_any(view(), wide, WideRay::padded(ray.t_max), take, sum.spent);
 }
