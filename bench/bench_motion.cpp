@@ -2,11 +2,13 @@
 /// in its ways where it was found.
 ///
 ///   bench_motion FILE.obj [--cars V...] [--frames N] [--rays R] [--limit GROWTH | --sweep] [--two-threads]
+///                [--series FILE]
 ///
 /// In each frame all trees follow the motion, in turns, and then the same rays go through each, in turns. One CSV row
 /// per number of cars and tree; a table that a person reads goes to standard error. The wide trees must give the same
 /// hits to the last bit in every frame, and the binary tree the same to 1e-5 of the distance but for one ray in
-/// 100,000: anything else is an error, exit 1. Embree's differences are counted.
+/// 100,000: anything else is an error, exit 1. Embree's differences are counted. `--series` writes a row per frame and
+/// tree to a file; bench/plot_motion.py draws it.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -27,6 +29,7 @@
 #include "dcem/accel/wide_tree.hpp"
 #include "dcem/core/parallel_for.hpp"
 #include "dcem/core/statistics.hpp"
+#include "dcem/io/atomic_file.hpp"
 #if defined(DCEM_HAS_EMBREE)
 #include "bench/embree_motion.hpp"
 #endif
@@ -61,6 +64,9 @@ struct Moved {
 /// What an update did; zero where a tree does not say.
 struct Work {
   std::uint64_t blocks = 0, nodes = 0, restructured = 0;
+  // Of the last, what is what:
+  std::uint64_t reinserted = 0, rotated = 0, regrown = 0;
+  std::string rebuilt{};  ///< all `nodes` above blocks and units, the whole `tree`, or nothing
 };
 
 /// One tree with its way of following motion.
@@ -79,7 +85,7 @@ struct Contender {
 
   std::vector<double> update_ms{}, closest_ms{}, occluded_ms{};  ///< of a frame
   std::vector<double> closest_steps{}, occluded_steps{};         ///< nodes and blocks visited, per ray
-  Work work{};
+  Work work{}, last_work{};                                      ///< of all frames, of the last one
   std::uint64_t hash = 0, differences = 0;
 };
 
@@ -146,13 +152,13 @@ Contender wide_contender(const dcem::Scene& scene, unsigned threads, WidePolicy 
   contender.update = [=, &scene](const Moved& moved) -> Work {
     if (policy == WidePolicy::rebuild) {
       tree->rebuild(mesh, scene.triangle_boxes());
-      return {tree->arrays().blocks.size(), tree->arrays().nodes.size(), 0};
+      return {tree->arrays().blocks.size(), tree->arrays().nodes.size(), 0, 0, 0, 0, "tree"};
     }
     const dcem::WideRefitReport report = tree->refit(moved.triangles, mesh, scene.triangle_boxes());
-    if (policy == WidePolicy::refit) return {report.blocks_written, report.nodes_visited, 0};
+    if (policy == WidePolicy::refit) return {report.blocks_written, report.nodes_visited};
     const std::uint32_t turn = policy == WidePolicy::reinsert ? dcem::WideTree::default_turn_length : 0;
     const std::size_t reinserted = tree->reinsert_moved(limit, turn);
-    return {report.blocks_written, report.nodes_visited, reinserted};
+    return {report.blocks_written, report.nodes_visited, reinserted, reinserted};
   };
   set_wide_queries(contender, threads, tree);
   return contender;
@@ -167,7 +173,15 @@ Contender kept_contender(const dcem::Scene& scene, unsigned threads, const char*
   Contender contender{"wide", name};
   contender.update = [=, &scene](const Moved& moved) -> Work {
     const dcem::UpkeepReport report = maintainer->update(*tree, moved.triangles, mesh, scene.triangle_boxes());
-    return {0, report.nodes_refit + report.nodes_rebuilt, report.subtrees_rebuilt + report.rotated};
+    // A report does not say of which kind the rebuild was; but of a new tree no node is refit.
+    const char* rebuilt = !report.root_rebuilt ? "" : report.nodes_refit == 0 ? "tree" : "nodes";
+    return {0,
+            report.nodes_refit + report.nodes_rebuilt,
+            report.subtrees_rebuilt + report.rotated,
+            report.reinserted,
+            report.rotated,
+            report.regrown,
+            rebuilt};
   };
   contender.note_rays = [=](const TraversalCounters& spent, std::size_t rays) { maintainer->note_rays(spent, rays); };
   set_wide_queries(contender, threads, tree);
@@ -205,7 +219,8 @@ Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
   Contender contender{"binary", "adaptive"};
   contender.update = [=, &scene](const Moved& moved) -> Work {
     const dcem::UpkeepReport report = maintainer->update(*tree, moved.triangles, scene.triangle_boxes());
-    return {0, report.nodes_refit + report.nodes_rebuilt, report.subtrees_rebuilt};
+    const std::uint64_t nodes = report.nodes_refit + report.nodes_rebuilt, subtrees = report.subtrees_rebuilt;
+    return {0, nodes, subtrees, 0, 0, subtrees, report.root_rebuilt ? "nodes" : ""};
   };
   set_queries(
       contender, threads,
@@ -252,7 +267,7 @@ Contender embree_contender(const dcem::Scene& scene, unsigned threads, const cha
 #endif
 
 struct Options {
-  std::string file;
+  std::string file, series;
   std::vector<std::size_t> cars{100, 300, 1000};
   std::size_t frames = 100, rays = 4000;
   double limit = 1.1;
@@ -337,8 +352,9 @@ class RaySource {
 void follow(Contender& contender, const Moved& moved) {
   contender.prepare(moved);
   const Stopwatch watch;
-  const Work work = contender.update(moved);
+  contender.last_work = contender.update(moved);
   contender.update_ms.push_back(watch.elapsed_ms());
+  const Work& work = contender.last_work;
   contender.work.blocks += work.blocks;
   contender.work.nodes += work.nodes;
   contender.work.restructured += work.restructured;
@@ -402,7 +418,55 @@ bool check(std::size_t frame, std::vector<Contender>& all, const std::vector<Fra
   return true;
 }
 
-bool drive(dcem::Scene& scene, const Options& options, std::vector<Contender>& all) {
+/// The file of `--series`: a row per frame and contender. It appears when it is complete.
+class SeriesFile {
+ public:
+  /// Throws io::OutputError where it cannot be written.
+  explicit SeriesFile(const std::string& path) : file_(path) {
+    file_.write(
+        "cars,frame,tree,policy,update_ms,closest_ns_per_ray,occluded_ns_per_ray,closest_steps,occluded_steps,"
+        "sah_cost,blocks_written,nodes_visited,reinserted,rotated,regrown,rebuilt\n");
+  }
+
+  void add_frame(std::size_t cars, std::size_t frame, const Options& options, const std::vector<Contender>& all) {
+    for (const Contender& each : all) {
+      const std::string begin = std::to_string(cars) + "," + std::to_string(frame) + "," + each.family + "," +
+                                each.policy + (options.sweep && each.limit != 0.0 ? number(" %.2f", each.limit) : "");
+      file_.write(begin + times(each, static_cast<double>(options.rays)) + work(each) + "\n");
+    }
+  }
+
+  void commit() { file_.commit(); }
+
+ private:
+  static std::string number(const char* format, double value) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, format, value);
+    return buffer;
+  }
+
+  static std::string times(const Contender& each, double rays) {
+    return number(",%.5f", each.update_ms.back()) + number(",%.2f", each.closest_ms.back() / rays * 1e6) +
+           number(",%.2f", each.occluded_ms.back() / rays * 1e6);
+  }
+
+  /// Embree does not say.
+  static std::string work(const Contender& each) {
+    if (each.family == "embree") return ",,,,,,,,,";
+    const Work& last = each.last_work;
+    std::string cells = number(",%.3f", each.closest_steps.back()) + number(",%.3f", each.occluded_steps.back()) +
+                        number(",%.4f", each.sah_cost());
+    for (const std::uint64_t count : {last.blocks, last.nodes, last.reinserted, last.rotated, last.regrown}) {
+      cells += "," + std::to_string(count);
+    }
+    return cells + "," + last.rebuilt;
+  }
+
+  dcem::io::AtomicFile file_;
+};
+
+bool drive(dcem::Scene& scene, std::size_t cars, const Options& options, std::vector<Contender>& all,
+           std::optional<SeriesFile>& series) {
   const RaySource source(scene);
   FrameRays rays{Rays(options.rays), Rays(options.rays)};
   FrameRays warm_up{Rays(options.rays / 4), Rays(options.rays / 4)};
@@ -420,6 +484,7 @@ bool drive(dcem::Scene& scene, const Options& options, std::vector<Contender>& a
     in_turns(
         [&](std::size_t index) { trace(all[index], rays, warm_up, answers[index].nearest, answers[index].blocked); });
     if (!check(frame, all, answers)) return false;
+    if (series) series->add_frame(cars, frame, options, all);
   }
   for (const Contender& each : all) {
     const double asked = 2.0 * static_cast<double>(options.rays * options.frames);
@@ -569,14 +634,14 @@ class Report {
   const std::vector<Contender>& all_;
 };
 
-bool bench(const Options& options) {
+bool bench(const Options& options, std::optional<SeriesFile>& series) {
   const dcem::TriangleMesh scenery = dcem::io::read_obj(options.file).mesh;
   const std::string name = std::filesystem::path(options.file).stem().string();
   for (const std::size_t cars : options.cars) {
     const double duration_s = dcem::bench::step_s * static_cast<double>(options.frames);
     dcem::Scene scene = dcem::bench::scene_with_cars(scenery, cars, duration_s, 1);
     std::vector<Contender> all = contenders(scene, options);
-    if (!drive(scene, options, all)) return false;
+    if (!drive(scene, cars, options, all, series)) return false;
     Report(name, scene.triangles().size(), cars, options, all).print();
   }
   return true;
@@ -594,7 +659,10 @@ int main(int count, char** arguments) {
   auto* limit = app.add_option("--limit", options.limit, "growth from which on a car is reinserted; default 1.1");
   app.add_flag("--sweep", options.sweep, "the limits 1.0, 1.05, 1.1, 1.2 and 1.5")->excludes(limit);
   app.add_flag("--two-threads", options.two_threads, "rays on two threads, and what Embree builds");
+  app.add_option("--series", options.series, "CSV file for a row per frame and tree");
   return dcem::bench::run_program(app, count, arguments, [&] {
+    std::optional<SeriesFile> series;  // before anything is read: who cannot write shall not drive for an hour
+    if (!options.series.empty()) series.emplace(options.series);
     std::puts(
         "scene,triangles,cars,frames,rays,threads,tree,policy,growth_limit,update_to_embree_two_levels,"
         "update_to_rebuild,worst_update_to_rebuild,closest_rate_to_embree_two_levels,"
@@ -604,6 +672,8 @@ int main(int count, char** arguments) {
         "occluded_mrays_last,closest_steps_first,closest_steps_middle,closest_steps_last,occluded_steps_first,"
         "occluded_steps_middle,occluded_steps_last,sah_cost,blocks_written,nodes_visited,restructured,differences,"
         "hash");
-    return bench(options);
+    const bool done = bench(options, series);
+    if (done && series) series->commit();
+    return done;
   });
 }
