@@ -1,6 +1,6 @@
 /// Times rays through a scene that stands still: the wide tree, the binary tree, and Embree where it was found.
 ///
-///   bench_trace ROUNDS FILE.obj... [--copies N] [--rays R]
+///   bench_trace ROUNDS FILE.obj... [--copies N] [--rays R] [--two-threads]
 ///
 /// All trees get the same rays, in turns. One CSV row per scene, kind of ray and tree; a table that a person reads goes
 /// to standard error. Hits that differ by more than 1e-5 of their distance from those of the binary tree, which is all
@@ -22,6 +22,7 @@
 #include "dcem/accel/ray_order.hpp"
 #include "dcem/accel/wide_batch.hpp"
 #include "dcem/accel/wide_tree.hpp"
+#include "dcem/core/parallel_for.hpp"
 #include "dcem/core/statistics.hpp"
 #if defined(DCEM_HAS_EMBREE)
 #include "bench/embree_scene.hpp"
@@ -45,10 +46,35 @@ struct Contender {
 
 /// Asks one question of all rays and keeps the answers; the time is that of the loop.
 template <typename Ask>
-double timed(const std::vector<Ray<double>>& rays, std::vector<double>& answers, Ask&& ask) {
+double timed(const std::vector<Ray<double>>& rays, std::vector<double>& answers, TraversalCounters& counters,
+             unsigned threads, Ask&& ask) {
+  const std::size_t piece = threads > 1 ? 1024 : rays.size();
+  std::vector<TraversalCounters> spent(threads);
   const Stopwatch watch;
-  for (std::size_t ray = 0; ray < rays.size(); ++ray) answers[ray] = ask(rays[ray]);
-  return watch.elapsed_ms();
+  dcem::parallel_for((rays.size() + piece - 1) / piece, threads, [&](std::size_t index, unsigned worker) {
+#if defined(DCEM_HAS_EMBREE)
+    if (worker != 0) _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+#endif
+    TraversalCounters sum;
+    const std::size_t end = std::min((index + 1) * piece, rays.size());
+    for (std::size_t ray = index * piece; ray < end; ++ray) answers[ray] = ask(rays[ray], sum);
+    spent[worker] += sum;
+  });
+  const double elapsed_ms = watch.elapsed_ms();
+  for (const TraversalCounters& sum : spent) counters += sum;
+  return elapsed_ms;
+}
+
+/// Gives a contender the two loops over its tree.
+template <typename Nearest, typename Blocked>
+void set_queries(Contender& contender, unsigned threads, Nearest nearest, Blocked blocked) {
+  contender.nearest_ms = [=](const auto& rays, auto& answers, auto& counters) {
+    return timed(rays, answers, counters, threads, nearest);
+  };
+  contender.blocked_ms = [=](const auto& rays, auto& answers, auto& counters) {
+    return timed(rays, answers, counters, threads,
+                 [&](const Ray<double>& ray, TraversalCounters& sum) { return blocked(ray, sum) ? 1.0 : 0.0; });
+  };
 }
 
 constexpr double none = std::numeric_limits<double>::infinity();
@@ -59,27 +85,27 @@ Contender wide_contender(const std::string& name, const dcem::Scene& scene, cons
   const auto tree = std::make_shared<dcem::WideTree>();
   Contender contender{name, {}, {}, {}};
   contender.build = [=, &scene] { tree->build(mesh, scene.triangle_boxes(), settings); };
-  contender.nearest_ms = [=](const auto& rays, auto& answers, auto& counters) {
-    return timed(rays, answers, [&](const Ray<double>& ray) {
-      const auto hit = tree->nearest(ray, &counters);
-      return hit ? hit->t : none;
-    });
-  };
-  contender.blocked_ms = [=](const auto& rays, auto& answers, auto& counters) {
-    return timed(rays, answers, [&](const Ray<double>& ray) { return tree->blocked(ray, &counters) ? 1.0 : 0.0; });
-  };
+  set_queries(
+      contender, settings.threads,
+      [tree](const Ray<double>& ray, TraversalCounters& sum) {
+        const auto hit = tree->nearest(ray, &sum);
+        return hit ? hit->t : none;
+      },
+      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->blocked(ray, &sum); });
   return contender;
 }
 
 /// All rays of a kind at once; the time holds their sorting.
-Contender batch_contender(const dcem::Scene& scene, const dcem::TriangleView& mesh) {
+Contender batch_contender(const dcem::Scene& scene, const dcem::TriangleView& mesh, unsigned threads) {
   struct Tree {
+    explicit Tree(unsigned threads) : batch(threads) {}
+
     dcem::WideTree tree;
     dcem::WideBatch batch;
     std::vector<std::optional<dcem::WideHit>> hits;
     std::vector<std::uint8_t> blocked;
   };
-  const auto own = std::make_shared<Tree>();
+  const auto own = std::make_shared<Tree>(threads);
   Contender contender{"wide, batch", {}, {}, {}};
   contender.build = [=, &scene] { own->tree.build(mesh, scene.triangle_boxes()); };
   contender.nearest_ms = [=](const auto& rays, auto& answers, auto& counters) {
@@ -102,32 +128,30 @@ Contender batch_contender(const dcem::Scene& scene, const dcem::TriangleView& me
   return contender;
 }
 
-Contender binary_contender(const dcem::Scene& scene) {
+Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
   const auto tree = std::make_shared<dcem::Bvh<double>>();
   Contender contender{"binary, double", {}, {}, {}};
   contender.build = [=, &scene] { tree->build(scene.triangle_boxes()); };
-  contender.nearest_ms = [=, &scene](const auto& rays, auto& answers, auto& counters) {
-    return timed(rays, answers, [&](const Ray<double>& ray) {
-      const dcem::WatertightRay exact(ray);
-      double nearest = none;
-      const auto leaf = [&](std::uint32_t triangle, double& t_max) {
-        const auto t = exact.intersect(scene.corners_m(triangle));
-        if (t && *t >= ray.t_min && *t <= t_max && *t < nearest) nearest = t_max = *t;
-      };
-      tree->closest(ray, leaf, &counters);
-      return nearest;
-    });
-  };
-  contender.blocked_ms = [=, &scene](const auto& rays, auto& answers, auto& counters) {
-    return timed(rays, answers, [&](const Ray<double>& ray) {
-      const dcem::WatertightRay exact(ray);
-      const auto leaf = [&](std::uint32_t triangle) {
-        const auto t = exact.intersect(scene.corners_m(triangle));
-        return t && *t >= ray.t_min && *t <= ray.t_max;
-      };
-      return tree->any(ray, leaf, &counters) ? 1.0 : 0.0;
-    });
-  };
+  set_queries(
+      contender, threads,
+      [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
+        const dcem::WatertightRay exact(ray);
+        double nearest = none;
+        const auto leaf = [&](std::uint32_t triangle, double& t_max) {
+          const auto t = exact.intersect(scene.corners_m(triangle));
+          if (t && *t >= ray.t_min && *t <= t_max && *t < nearest) nearest = t_max = *t;
+        };
+        tree->closest(ray, leaf, &sum);
+        return nearest;
+      },
+      [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
+        const dcem::WatertightRay exact(ray);
+        const auto leaf = [&](std::uint32_t triangle) {
+          const auto t = exact.intersect(scene.corners_m(triangle));
+          return t && *t >= ray.t_min && *t <= ray.t_max;
+        };
+        return tree->any(ray, leaf, &sum);
+      });
   return contender;
 }
 
@@ -146,18 +170,16 @@ Contender embree_contender(const std::string& name, const dcem::TriangleView& me
     (*tree)->attach((*tree)->add(mesh, *patches));
     (*tree)->commit();
   };
-  contender.nearest_ms = [=](const auto& rays, auto& answers, auto&) {
-    return timed(rays, answers, [&](const Ray<double>& ray) { return static_cast<double>((*tree)->nearest(ray)); });
-  };
-  contender.blocked_ms = [=](const auto& rays, auto& answers, auto&) {
-    return timed(rays, answers, [&](const Ray<double>& ray) { return (*tree)->blocked(ray) ? 1.0 : 0.0; });
-  };
+  set_queries(
+      contender, settings.threads,
+      [tree](const Ray<double>& ray, TraversalCounters&) { return static_cast<double>((*tree)->nearest(ray)); },
+      [tree](const Ray<double>& ray, TraversalCounters&) { return (*tree)->blocked(ray); });
   return contender;
 }
 
 /// As the robust tree, its rays in the order of our batches; sorting and copying them is not timed.
-Contender sorted_embree_contender(const dcem::TriangleView& mesh) {
-  const Contender plain = embree_contender("embree robust, sorted", mesh, {});
+Contender sorted_embree_contender(const dcem::TriangleView& mesh, unsigned threads) {
+  const Contender plain = embree_contender("embree robust, sorted", mesh, {.threads = threads});
   const auto sorted = [](const auto& trace) {
     return [trace](const std::vector<Ray<double>>& rays, std::vector<double>& answers, TraversalCounters& counters) {
       dcem::RayOrder order;
@@ -175,21 +197,22 @@ Contender sorted_embree_contender(const dcem::TriangleView& mesh) {
 }
 #endif
 
-std::vector<Contender> contenders(const dcem::Scene& scene, const dcem::TriangleView& mesh) {
+std::vector<Contender> contenders(const dcem::Scene& scene, const dcem::TriangleView& mesh, unsigned threads) {
+  using dcem::WideQuality;
   std::vector<Contender> all;
-  all.push_back(wide_contender("wide, pairs", scene, mesh, {}));
-  all.push_back(wide_contender("wide, fast build", scene, mesh, {.quality = dcem::WideQuality::fast}));
-  all.push_back(wide_contender("wide, high quality", scene, mesh, {.quality = dcem::WideQuality::high}));
-  all.push_back(batch_contender(scene, mesh));
+  all.push_back(wide_contender("wide, pairs", scene, mesh, {.threads = threads}));
+  all.push_back(wide_contender("wide, fast build", scene, mesh, {.threads = threads, .quality = WideQuality::fast}));
+  all.push_back(wide_contender("wide, high quality", scene, mesh, {.threads = threads, .quality = WideQuality::high}));
+  all.push_back(batch_contender(scene, mesh, threads));
 #if defined(DCEM_HAS_EMBREE)
-  all.push_back(embree_contender(rival_name, mesh, {}));
-  all.push_back(sorted_embree_contender(mesh));
-  all.push_back(embree_contender("embree robust quads", mesh, {.quads = true}));
-  all.push_back(embree_contender("embree medium", mesh, {.robust = false}));
-  all.push_back(embree_contender("embree medium quads", mesh, {.robust = false, .quads = true}));
+  all.push_back(embree_contender(rival_name, mesh, {.threads = threads}));
+  all.push_back(sorted_embree_contender(mesh, threads));
+  all.push_back(embree_contender("embree robust quads", mesh, {.quads = true, .threads = threads}));
+  all.push_back(embree_contender("embree medium", mesh, {.robust = false, .threads = threads}));
+  all.push_back(embree_contender("embree medium quads", mesh, {.robust = false, .quads = true, .threads = threads}));
 #endif
-  all.push_back(wide_contender("wide, triangles", scene, mesh, {.pair_flatness = -1.0}));
-  all.push_back(binary_contender(scene));
+  all.push_back(wide_contender("wide, triangles", scene, mesh, {.pair_flatness = -1.0, .threads = threads}));
+  all.push_back(binary_contender(scene, threads));
   return all;
 }
 
@@ -266,7 +289,7 @@ struct Row {
 };
 
 bool compare(const std::string& scene_name, std::size_t triangles, std::vector<Contender>& all, const RayKind& kind,
-             bool nearest, std::size_t rounds) {
+             bool nearest, std::size_t rounds, unsigned threads) {
   std::vector<Row> rows(all.size());
   for (std::size_t round = 0; round < rounds; ++round) {
     for (std::size_t turn = 0; turn < all.size(); ++turn) {
@@ -293,7 +316,7 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
       hash = dcem::hash_values(hash, std::bit_cast<std::uint64_t>(answer));
     }
     dcem::bench::CsvRow csv;
-    csv.text(scene_name).count(triangles).text(kind.name).text(nearest ? "closest" : "occluded");
+    csv.text(scene_name).count(triangles).count(threads).text(kind.name).text(nearest ? "closest" : "occluded");
     csv.text("\"" + all[index].name + "\"");
     rival_ms > 0.0 ? csv.number(rival_ms / ms, 3) : csv.empty();
     csv.number(count / ms / 1e3, 3);
@@ -313,6 +336,8 @@ struct Options {
   std::vector<std::string> files;
   int copies = 1;
   std::size_t rays = 131'072;
+  bool two_threads = false;
+  unsigned threads() const { return two_threads ? 2 : 1; }
 };
 
 bool bench(const Options& options, const std::string& file) {
@@ -321,7 +346,7 @@ bool bench(const Options& options, const std::string& file) {
   for (const std::string& name : scenery.material_names) scene.add_material({name, dcem::PerfectConductor{}});
   scene.set_scenery(scenery);
   const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
-  std::vector<Contender> all = contenders(scene, mesh);
+  std::vector<Contender> all = contenders(scene, mesh, options.threads());
   for (std::size_t round = 0; round < options.rounds; ++round) {
     for (Contender& each : all) {
       const Stopwatch watch;
@@ -339,7 +364,7 @@ bool bench(const Options& options, const std::string& file) {
   bool same = true;
   for (const RayKind& kind : ray_kinds(mesh, bounds, options.rays)) {
     for (const bool nearest : {true, false}) {
-      same = compare(name, mesh.size(), all, kind, nearest, options.rounds) && same;
+      same = compare(name, mesh.size(), all, kind, nearest, options.rounds, options.threads()) && same;
     }
   }
   if (!same) std::fputs("hits differ\n", stderr);
@@ -355,9 +380,11 @@ int main(int count, char** arguments) {
   app.add_option("FILES", options.files, "OBJ files")->required();
   app.add_option("--copies", options.copies, "N x N copies of the scene")->check(CLI::Range(1, 16));
   app.add_option("--rays", options.rays, "rays of each kind")->check(CLI::Range(1, 100'000'000));
+  app.add_flag("--two-threads", options.two_threads, "builds and rays on two threads");
   return dcem::bench::run_program(app, count, arguments, [&] {
     std::puts(
-        "scene,triangles,rays,query,tree,ratio_to_embree_robust,mrays_per_s,build_ms,nodes_per_ray,patches_per_ray,"
+        "scene,triangles,threads,rays,query,tree,ratio_to_embree_robust,mrays_per_s,build_ms,nodes_per_ray,patches_per_"
+        "ray,"
         "differences,hash");
     bool same = true;
     for (const std::string& file : options.files) same = bench(options, file) && same;
