@@ -88,8 +88,8 @@ TEST_CASE("the directions of a launch are those of the sphere, each once, neighb
     if (count < 2) continue;
     double turn = 0.0;
     for (std::size_t at = 1; at < launched.size(); ++at) turn += glm::distance(launched[at - 1], launched[at]);
-    // Neighbours are about 2 / √(count / π) apart; points in the sphere's own order 1.3.
-    CHECK(turn / count < 6.0 / std::sqrt(count));
+    // Neighbours are about 3.5 / √count apart, and a Morton order goes about twice as far; points drawn at random 1.33.
+    CHECK(turn / count < 8.0 / std::sqrt(count));
   }
 }
 
