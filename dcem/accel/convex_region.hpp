@@ -17,7 +17,8 @@ namespace dcem {
 ///   tree.visit(ConvexRegion::beam(source_m, window_m), [&](std::uint32_t triangle) { … });
 ///
 /// gives every triangle whose box has a point in common with the region, and some beside it: a box that lies outside
-/// near an edge of the region may be outside of no single plane.
+/// near an edge of the region may be outside of no single plane. The planes themselves are rounded: what lies within
+/// some 1e-9 of its distance from the border of a beam or a frustum may count either way.
 class ConvexRegion {
  public:
   ConvexRegion() = default;
@@ -33,7 +34,9 @@ class ConvexRegion {
     for (const Vec3& corner_m : window_m) centre_m += corner_m / static_cast<double>(window_m.size());
     for (std::size_t index = 0; index < window_m.size(); ++index) {
       const Vec3 &from_m = window_m[index], &to_m = window_m[(index + 1) % window_m.size()];
-      region.add(apex_m, glm::cross(from_m - apex_m, to_m - apex_m), centre_m);
+      const Vec3 across = glm::cross(from_m - apex_m, to_m - apex_m);
+      const double least = least_sine * glm::distance(from_m, apex_m) * glm::distance(to_m, apex_m);
+      if (glm::length(across) > least) region.add(apex_m, across, centre_m);
       normal += glm::cross(from_m - centre_m, to_m - centre_m);
     }
     if (!window_m.empty()) region.add(centre_m, normal, centre_m + (centre_m - apex_m));
@@ -68,13 +71,16 @@ class ConvexRegion {
   }
 
  private:
+  /// An edge that a point sees under a smaller angle gives no plane worth the name, radians.
+  static constexpr double least_sine = 1e-7;
+
   /// `inside_m`: a point on the side that is kept.
   void add(const Vec3& point_m, const Vec3& across, const Vec3& inside_m) {
     const double length = glm::length(across);
     if (!(length > 0.0) || !std::isfinite(length)) return;
     const Vec3 normal = across / length;
     const double side = glm::dot(normal, inside_m - point_m);
-    if (side != 0.0) planes_.push_back({point_m, side < 0.0 ? -normal : normal});
+    if (side < 0.0 || side > 0.0) planes_.push_back({point_m, side < 0.0 ? -normal : normal});
   }
 
   static bool is_behind(const Aabb<double>& box, const Plane& plane) {

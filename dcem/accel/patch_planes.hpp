@@ -26,7 +26,8 @@ struct alignas(64) PatchPlane {
   /// The line of a ray meets it at height / slope.
   double height(const Ray<double>& ray) const { return glm::dot(normal, point_m - ray.origin); }
   double slope(const Ray<double>& ray) const { return glm::dot(normal, ray.direction); }
-  double t_of(const Ray<double>& ray) const { return height(ray) / slope(ray); }
+  /// Zero without a sign: which one it has would depend on the patch.
+  double t_of(const Ray<double>& ray) const { return height(ray) / slope(ray) + 0.0; }
 
   bool is_alone() const { return least_slope_squared == alone; }
   /// Whether a ray that surely meets this half of a pair does so where it meets the plane. A ray along the patch, by

@@ -112,7 +112,14 @@ class PatchBuilder {
 
   /// All edges, by their vertices: a counting sort over the lower one, then short lists.
   void collect_edges(std::uint32_t first, std::uint32_t last) {
-    first_edge_.assign(mesh_.vertices_m.size() + 1, 0);
+    // Lists for the vertices of these triangles alone: a scene has thousands of groups.
+    std::uint32_t lowest = mesh_.triangles[first][0], highest = lowest;
+    for (std::uint32_t triangle = first; triangle < last; ++triangle) {
+      const auto [low, high] = std::ranges::minmax(mesh_.triangles[triangle]);
+      lowest = std::min(lowest, low);
+      highest = std::max(highest, high);
+    }
+    first_edge_.assign(std::size_t{highest - lowest} + 2, 0);
     const auto for_each_edge = [&](auto&& visit) {
       for (std::uint32_t triangle = first; triangle < last; ++triangle) {
         const auto& corners = mesh_.triangles[triangle];
@@ -122,11 +129,11 @@ class PatchBuilder {
         }
       }
     };
-    for_each_edge([&](const Edge& edge) { ++first_edge_[edge.low + 1]; });
+    for_each_edge([&](const Edge& edge) { ++first_edge_[edge.low - lowest + 1]; });
     for (std::size_t vertex = 1; vertex < first_edge_.size(); ++vertex) first_edge_[vertex] += first_edge_[vertex - 1];
     edges_.resize(3 * std::size_t{last - first});
     next_edge_.assign(first_edge_.begin(), first_edge_.end() - 1);
-    for_each_edge([&](const Edge& edge) { edges_[next_edge_[edge.low]++] = edge; });
+    for_each_edge([&](const Edge& edge) { edges_[next_edge_[edge.low - lowest]++] = edge; });
     for (std::size_t vertex = 0; vertex + 1 < first_edge_.size(); ++vertex) {
       std::sort(edges_.begin() + first_edge_[vertex], edges_.begin() + first_edge_[vertex + 1],
                 [](const Edge& one, const Edge& other) {
@@ -186,7 +193,7 @@ class PatchBuilder {
   const TriangleView& mesh_;
   double flatness_;
   std::vector<Edge> edges_;
-  std::vector<std::uint32_t> first_edge_, next_edge_;  ///< per vertex
+  std::vector<std::uint32_t> first_edge_, next_edge_;  ///< per vertex, from the lowest one on
   std::vector<Pair> pairs_;
   std::vector<bool> taken_;
 };

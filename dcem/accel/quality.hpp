@@ -2,6 +2,7 @@
 /// What a tree costs to traverse, by the surface-area heuristic.
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "dcem/accel/bvh_node.hpp"
@@ -43,8 +44,12 @@ struct BvhQuality {
   double sah_now = 0.0;       ///< SAH cost, no unit
   double sah_at_build = 0.0;  ///< SAH cost after the last whole build, no unit
 
-  /// 1 for a tree as good as new, larger when worn; 1 for a tree without surface.
-  double ratio() const { return sah_at_build > 0.0 ? sah_now / sah_at_build : 1.0; }
+  /// 1 for a tree as good as new, larger when worn; 1 for a tree without surface, infinite for one that had none when
+  /// it was built.
+  double ratio() const {
+    if (sah_at_build > 0.0) return sah_now / sah_at_build;
+    return sah_now > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
+  }
 };
 
 }  // namespace dcem

@@ -52,8 +52,7 @@ class RayOrder {
     direction_bits_ = is_point ? axis_bits : 1;
     std::array<std::uint32_t, 3> bits{};
     std::array<std::array<std::uint32_t, axis_bits>, 3> weight{};
-    std::uint32_t given = 0;
-    for (std::uint32_t next = cell_bits; !is_point && next-- > 0; ++given) {
+    for (std::uint32_t next = cell_bits; next-- > 0 && std::max({cell.x, cell.y, cell.z}) > 0.0;) {
       int axis = cell.y > cell.x ? 1 : 0;
       if (cell.z > cell[axis]) axis = 2;
       const auto slot = static_cast<std::size_t>(axis);
@@ -61,7 +60,7 @@ class RayOrder {
       cell[axis] = bits[slot] == axis_bits ? 0.0 : 0.5 * cell[axis];
     }
     for (std::size_t axis = 0; axis < 3; ++axis) fill_cells(axis, bits[axis], weight[axis], box);
-    key_bits_ = 3 * direction_bits_ + given;
+    key_bits_ = 3 * direction_bits_ + (is_point ? 0 : cell_bits);
   }
 
   /// Which bits of the key a cell number along one axis sets.

@@ -51,6 +51,14 @@ struct WideArrays {
   float extent_m = 0.0F;  ///< no finite bound is larger, from the origin; grows only
   WideCosts costs;
   double weighted_area_m2 = 0.0;  ///< Σ cost · half surface over all nodes and blocks but the root
+  double largest_area_m2 = 0.0;   ///< that this has had since it was last summed
+
+  void add_area(double area_m2) {
+    weighted_area_m2 += area_m2;
+    largest_area_m2 = std::max(largest_area_m2, weighted_area_m2);
+  }
+  /// Whether roundings of the sum when it was larger may show in it now.
+  bool is_area_worn() const { return weighted_area_m2 < 1e-3 * largest_area_m2; }
 
   /// Empties everything and keeps the memory.
   void clear();
@@ -123,7 +131,7 @@ inline void WideArrays::clear() {
         patch_of_triangle, vertices_m, triangles, is_there, unit_root);
   origin_m = Vec3(0.0);
   extent_m = 0.0F;
-  weighted_area_m2 = 0.0;
+  weighted_area_m2 = largest_area_m2 = 0.0;
 }
 
 inline std::uint32_t WideArrays::take_node() {
@@ -150,17 +158,17 @@ inline std::uint32_t WideArrays::add_block(std::uint32_t group) {
 
 inline void WideArrays::hang(WideChild child, WidePlace place, const Aabb<float>& box) {
   WideNode& node = nodes[place.node()];
-  weighted_area_m2 -= weight(node.child[place.lane()], box_at(place));
+  add_area(-weight(node.child[place.lane()], box_at(place)));
   node.child[place.lane()] = child;
   node.set_box(place.lane(), box);
-  weighted_area_m2 += weight(child, box);
+  add_area(weight(child, box));
   if (child.is_none()) return;
   (child.is_block() ? block_place[child.index()] : node_place[child.index()]) = place;
 }
 
 inline void WideArrays::set_box(WidePlace place, const Aabb<float>& box) {
   const WideChild child = child_at(place);
-  weighted_area_m2 += weight(child, box) - weight(child, box_at(place));
+  add_area(weight(child, box) - weight(child, box_at(place)));
   nodes[place.node()].set_box(place.lane(), box);
 }
 

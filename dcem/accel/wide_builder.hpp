@@ -47,9 +47,9 @@ struct WideSettings {
 
 /// Throws std::invalid_argument for settings outside the ranges written above.
 inline void validate(const WideSettings& settings) {
-  const auto positive = [](double cost) { return cost > 0.0 && std::isfinite(cost); };
+  const auto positive = [](double cost) { return cost >= 1e-9 && cost <= 1e9; };
   if (!positive(settings.costs.node) || !positive(settings.costs.block)) {
-    throw std::invalid_argument("costs of a wide tree must be positive and finite");
+    throw std::invalid_argument("costs of a wide tree: expected numbers from 1e-9 to 1e9");
   }
   if (std::isnan(settings.pair_flatness)) throw std::invalid_argument("pair_flatness: expected a number");
   if (settings.leaf_limit < 1 || settings.leaf_limit > simd_lanes) {

@@ -134,6 +134,7 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
     note_moved_unit(arrays_.group_of_block[block]);
   }
   dirty_blocks_.clear();
+  if (arrays_.is_area_worn()) sum_anew();
   return report;
 }
 

@@ -15,6 +15,18 @@ template <typename Visit>
   return false;
 }
 
+/// A ray along a plane meets it at a quotient of roundings: that counts only where the triangle is. Rays that are
+/// steeper, by the same measure as what single precision may be sure of, are not asked.
+inline bool is_beside(const PatchPlane& plane, const TriangleCorners& corners_m, const Ray<double>& ray, double t) {
+  const double slope = plane.slope(ray);
+  if (slope * slope > 1e-12 * glm::dot(ray.direction, ray.direction)) return false;
+  const Vec3 size = glm::abs(ray.direction);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const auto at = [&](const Vec3& corner_m) { return (corner_m[axis] - ray.origin[axis]) / ray.direction[axis]; };
+  const auto [low, high] = std::minmax({at(corners_m[0]), at(corners_m[1]), at(corners_m[2])});
+  return t < low || t > high;
+}
+
 inline bool is_in_range(double t, const Ray<double>& ray) {
   return t >= ray.t_min && t <= ray.t_max && std::isfinite(t);
 }
@@ -45,7 +57,9 @@ inline std::optional<WideHit> WideTree::hit_on_either(const PatchPlanes& planes,
   std::optional<WideHit> best;
   for (const PatchPlane& plane : planes.sides()) {
     const WideHit hit{plane.t_of(ray), plane.triangle};
-    if (!detail::is_in_range(hit.t, ray) || !exact.intersect(arrays_.corners_m(hit.triangle))) continue;
+    if (!detail::is_in_range(hit.t, ray)) continue;
+    const TriangleCorners corners_m = arrays_.corners_m(hit.triangle);
+    if (!exact.intersect(corners_m) || detail::is_beside(plane, corners_m, ray, hit.t)) continue;
     if (!best || hit.t < best->t || (hit.t == best->t && hit.triangle < best->triangle)) best = hit;
   }
   return best;

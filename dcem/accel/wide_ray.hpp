@@ -49,10 +49,12 @@ class WideRay {
 
   /// What is known of a ray and the patches of a block.
   struct PatchHits {
-    Float8 first;                       ///< a patch is met no earlier than here
-    Float8 last;                        ///< and no later than here
-    std::uint32_t certain;              ///< bit i: patch i is met, not before t_min
-    std::array<std::uint32_t, 2> side;  ///< bit i: if patch i is met, then it is its first or its second triangle
+    Float8 first;           ///< a patch is met no earlier than here
+    Float8 last;            ///< and no later than here
+    std::uint32_t certain;  ///< bit i: patch i is met, not before t_min
+    /// Bit i: if patch i is met, then it is its first, or its second triangle, by the side of the diagonal on which the
+    /// ray passes; neither where that is not sure.
+    std::array<std::uint32_t, 2> side;
 
     PatchKnowledge known(std::uint32_t lane) const {
       const auto bit = [lane](std::uint32_t lanes) { return lanes >> lane & 1U; };
@@ -65,10 +67,10 @@ class WideRay {
   /// Bit i: the ray may meet patch i of the block between t_min and `t_max` (padded).
   ///
   /// Formula: the edge functions of the sheared corners as in WatertightRay; inside where all four have one sign; t
-  /// from the plane of the patch. Error: a sheared coordinate is off by at most δ = 16 units of (distance + size), an
-  /// edge function of a quadrilateral that holds the origin by at most 10·diameter·δ + 2δ² (its corners are within two
-  /// diameters); a bent pair adds its bend to δ. The plane is off by 2δ + bend along its normal, which t feels divided
-  /// by the slope.
+  /// from the plane of the patch. Error: a sheared coordinate is off by at most δ = 16 units of (distance + size) and
+  /// 2⁻⁴⁸ of the farthest coordinate, which are what double precision leaves of them; an edge function of a
+  /// quadrilateral that holds the origin by at most 10·diameter·δ + 2δ² (its corners are within two diameters); a bent
+  /// pair adds its bend to δ. The plane is off by 2δ + bend along its normal, which t feels divided by the slope.
   std::uint32_t meets(const PatchBlock& block, float t_max, PatchHits& hits) const;
 
  private:
@@ -98,6 +100,7 @@ class WideRay {
   std::array<std::uint32_t, 3> near_;  ///< rows of WideNode::bounds_m that face the ray
   std::array<std::uint32_t, 3> axis_;  ///< the last one is the ray's main axis
   float t_min_;
+  float far_error_m_;  ///< of double precision: origin and corners are counted from the tree's origin
   bool usable_;
 };
 
@@ -142,6 +145,7 @@ namespace detail {
   usable_ = ((longest > 1e-12F) & (longest < 1e12F) & (farthest < 1e12F) & (ray.t_min >= 0.0) &
              (ray.t_min <= ray.t_max) & (size[0] <= longest) & (size[1] <= longest) & (size[2] <= longest) &
              (distance[0] <= farthest) & (distance[1] <= farthest) & (distance[2] <= farthest)) != 0;
+  far_error_m_ = (farthest + extent_m) * 0x1p-48F;
   t_min_ = static_cast<float>(std::min(ray.t_min, 1e30)) * (1.0F - 8 * unit);
   const std::uint32_t z_is_longest = size[2] > std::max(size[0], size[1]) ? 1U : 0U;
   prepare_patches(from, from_low, direction, 2 * z_is_longest + (1 - z_is_longest) * (size[1] > size[0] ? 1U : 0U));
@@ -184,7 +188,7 @@ namespace detail {
   const float y0 = (block.centre_m[axis_[1]] - patch_origin_[1]) - patch_origin_low_[1];
   const float z0 = (block.centre_m[axis_[2]] - patch_origin_[2]) - patch_origin_low_[2];
   const float distance_m = std::max(std::abs(x0), std::max(std::abs(y0), std::abs(z0))) + block.size_m;
-  const float error_m = 16 * unit * distance_m;
+  const float error_m = 16 * unit * distance_m + far_error_m_;
   const float x_shift = x0 - shear_[0] * z0, y_shift = y0 - shear_[1] * z0;
   const Sheared a = shear(block, 0, x_shift, y_shift), b = shear(block, 1, x_shift, y_shift);
   const Sheared c = shear(block, 2, x_shift, y_shift), d = shear(block, 3, x_shift, y_shift);

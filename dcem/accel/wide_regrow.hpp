@@ -170,8 +170,9 @@ inline std::size_t WideTree::regrow(std::uint32_t node, double wanted_share) {
 
 /// Differences keep the sum, and their roundings add up; here it is right again.
 inline void WideTree::sum_anew() {
-  arrays_.weighted_area_m2 = 0.0;
-  for (const WideNode& node : arrays_.nodes) arrays_.weighted_area_m2 += detail::weighted_area(arrays_, node);
+  double sum_m2 = 0.0;
+  for (const WideNode& node : arrays_.nodes) sum_m2 += detail::weighted_area(arrays_, node);
+  arrays_.weighted_area_m2 = arrays_.largest_area_m2 = sum_m2;
 }
 
 /// Empties a node; the nodes of its layer below it become free.
