@@ -240,7 +240,7 @@ def draw(series, cars, points, options):
     frames.set_title(f"(a) Update and {options.rays:,} rays, half closest, half occluded")
     counts.set_title("(b) What the adaptive policy did (in brackets: in how many frames)")
     rays.set_title("(c) Over the number of rays, from the last tenth of the frames")
-    figure.savefig(options.picture + ".svg", metadata={"Date": None})
+    figure.savefig(options.picture + ".svg", metadata=dict.fromkeys(["Date", "Creator", "Format", "Type"]))
     figure.savefig(options.picture + ".png", dpi=110)
 
 

@@ -6,15 +6,6 @@ namespace dcem {
 
 namespace detail {
 
-/// Calls `visit(lane)` for the set bits, lowest first, until one returns true. Returns whether one did.
-template <typename Visit>
-[[gnu::always_inline]] inline bool any_lane(std::uint32_t lanes, Visit&& visit) {
-  for (; lanes != 0; lanes &= lanes - 1) {
-    if (visit(static_cast<std::uint32_t>(std::countr_zero(lanes)))) return true;
-  }
-  return false;
-}
-
 /// A ray along a plane meets it at a quotient of roundings: that counts only where the triangle is. Rays that are
 /// steeper, by the same measure as what single precision may be sure of, are not asked.
 inline bool is_beside(const PatchPlane& plane, const TriangleCorners& corners_m, const Ray<double>& ray, double t) {

@@ -24,6 +24,15 @@ static_assert(wide_edit_levels < WideBinner::levels);
 /// A walk leaves at most seven entries behind per level.
 inline constexpr std::uint32_t wide_stack_size = 7 * wide_levels;
 
+/// Calls `visit(lane)` for the set bits, lowest first, until one returns true. Returns whether one did.
+template <typename Visit>
+[[gnu::always_inline]] inline bool any_lane(std::uint32_t lanes, Visit&& visit) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    if (visit(static_cast<std::uint32_t>(std::countr_zero(lanes)))) return true;
+  }
+  return false;
+}
+
 /// What a walk reads.
 struct WideView {
   std::span<const WideNode> nodes;
