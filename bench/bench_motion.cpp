@@ -24,10 +24,10 @@
 
 #include "bench/bench_program.hpp"
 #include "bench/moving_boxes.hpp"
+#include "bench/timed_rays.hpp"
 #include "dcem/accel/maintainer.hpp"
 #include "dcem/accel/wide_maintainer.hpp"
 #include "dcem/accel/wide_tree.hpp"
-#include "dcem/core/parallel_for.hpp"
 #include "dcem/core/statistics.hpp"
 #include "dcem/io/atomic_file.hpp"
 #if defined(DCEM_HAS_EMBREE)
@@ -39,7 +39,9 @@ namespace {
 using dcem::Ray;
 using dcem::TraversalCounters;
 using dcem::Vec3;
+using dcem::bench::as_float;
 using dcem::bench::Stopwatch;
+using dcem::bench::timed;
 using Rays = std::vector<Ray<double>>;
 
 constexpr double none = std::numeric_limits<double>::infinity();
@@ -88,26 +90,6 @@ struct Contender {
   Work work{}, last_work{};                                      ///< of all frames, of the last one
   std::uint64_t hash = 0, differences = 0;
 };
-
-/// Asks one question of all rays and keeps the answers; the time is that of the loop.
-template <typename Ask>
-double timed(const Rays& rays, Answers& answers, TraversalCounters& counters, unsigned threads, Ask&& ask) {
-  const std::size_t piece = threads > 1 ? 256 : rays.size();
-  std::vector<TraversalCounters> spent(threads);
-  const Stopwatch watch;
-  dcem::parallel_for((rays.size() + piece - 1) / piece, threads, [&](std::size_t index, unsigned worker) {
-#if defined(DCEM_HAS_EMBREE)
-    if (worker != 0) _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-#endif
-    TraversalCounters sum;
-    const std::size_t end = std::min((index + 1) * piece, rays.size());
-    for (std::size_t ray = index * piece; ray < end; ++ray) answers[ray] = ask(rays[ray], sum);
-    spent[worker] += sum;
-  });
-  const double elapsed_ms = watch.elapsed_ms();
-  for (const TraversalCounters& sum : spent) counters += sum;
-  return elapsed_ms;
-}
 
 /// Gives a contender the two loops over its tree.
 template <typename Nearest, typename Blocked>
@@ -296,11 +278,6 @@ std::vector<Contender> contenders(const dcem::Scene& scene, const Options& optio
   all.push_back(embree_contender(scene, threads, "instances", EmbreeUpkeep::instances));
 #endif
   return all;
-}
-
-Vec3 as_float(const Vec3& point) {
-  return {static_cast<double>(static_cast<float>(point.x)), static_cast<double>(static_cast<float>(point.y)),
-          static_cast<double>(static_cast<float>(point.z))};
 }
 
 /// Makes the rays of a frame: other ones in each frame, because surfaces move. All numbers are single-precision ones.

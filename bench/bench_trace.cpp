@@ -18,11 +18,11 @@
 
 #include "bench/bench_program.hpp"
 #include "bench/moving_boxes.hpp"
+#include "bench/timed_rays.hpp"
 #include "dcem/accel/bvh.hpp"
 #include "dcem/accel/ray_order.hpp"
 #include "dcem/accel/wide_batch.hpp"
 #include "dcem/accel/wide_tree.hpp"
-#include "dcem/core/parallel_for.hpp"
 #include "dcem/core/statistics.hpp"
 #if defined(DCEM_HAS_EMBREE)
 #include "bench/embree_scene.hpp"
@@ -33,7 +33,9 @@ namespace {
 using dcem::Ray;
 using dcem::TraversalCounters;
 using dcem::Vec3;
+using dcem::bench::as_float;
 using dcem::bench::Stopwatch;
+using dcem::bench::timed;
 
 /// One tree: how it is built, and what it says of a ray.
 struct Contender {
@@ -43,27 +45,6 @@ struct Contender {
   std::function<double(const std::vector<Ray<double>>&, std::vector<double>&, TraversalCounters&)> blocked_ms;
   std::vector<double> build_ms{};
 };
-
-/// Asks one question of all rays and keeps the answers; the time is that of the loop.
-template <typename Ask>
-double timed(const std::vector<Ray<double>>& rays, std::vector<double>& answers, TraversalCounters& counters,
-             unsigned threads, Ask&& ask) {
-  const std::size_t piece = threads > 1 ? 1024 : rays.size();
-  std::vector<TraversalCounters> spent(threads);
-  const Stopwatch watch;
-  dcem::parallel_for((rays.size() + piece - 1) / piece, threads, [&](std::size_t index, unsigned worker) {
-#if defined(DCEM_HAS_EMBREE)
-    if (worker != 0) _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-#endif
-    TraversalCounters sum;
-    const std::size_t end = std::min((index + 1) * piece, rays.size());
-    for (std::size_t ray = index * piece; ray < end; ++ray) answers[ray] = ask(rays[ray], sum);
-    spent[worker] += sum;
-  });
-  const double elapsed_ms = watch.elapsed_ms();
-  for (const TraversalCounters& sum : spent) counters += sum;
-  return elapsed_ms;
-}
 
 /// Gives a contender the two loops over its tree.
 template <typename Nearest, typename Blocked>
@@ -214,11 +195,6 @@ std::vector<Contender> contenders(const dcem::Scene& scene, const dcem::Triangle
   all.push_back(wide_contender("wide, triangles", scene, mesh, {.pair_flatness = -1.0, .threads = threads}));
   all.push_back(binary_contender(scene, threads));
   return all;
-}
-
-Vec3 as_float(const Vec3& point) {
-  return {static_cast<double>(static_cast<float>(point.x)), static_cast<double>(static_cast<float>(point.y)),
-          static_cast<double>(static_cast<float>(point.z))};
 }
 
 struct RayKind {

@@ -2,7 +2,6 @@
 /// The order in which many rays are best traced.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,7 +18,7 @@ namespace dcem {
 /// finds there.
 ///
 /// Key: the cell of the origin in a grid over all origins, in Morton order, 12 halvings of what is longest at that
-/// point, at most 6 of one axis; within a cell the direction, 3 bits an axis. Where all rays begin in one point, 6 bits
+/// point, at most 6 of one axis; within a cell the direction's octant. Where all rays begin in one point, 6 bits
 /// an axis of the direction. The memory is kept from call to call.
 class RayOrder {
  public:
@@ -103,9 +102,6 @@ class RayOrder {
   static std::uint32_t number(double value, std::size_t count) {
     const auto most = static_cast<double>(count - 1);
     return static_cast<std::uint32_t>(value > 0.0 ? std::min(value, most) : 0.0);
-  }
-  static bool is_finite(const Vec3& point) {
-    return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
   }
 
   void sort_by_digit(std::uint32_t shift) {

@@ -17,8 +17,9 @@
 namespace dcem {
 
 /// Asks a tree about a list of rays in an order in which they are cheap. The answers are those of single queries, for
-/// any number of threads. A batch pays where rays come from everywhere and are more than some hundred, and most where
-/// they have their origin or their target in common. Keeps its memory from call to call; not for two threads at once.
+/// any number of threads. A batch pays where rays begin everywhere and go far, and more in larger scenes; where they
+/// are short, or come in a good order already, sorting costs more than it brings (docs/design/wide_tree.md). Keeps its
+/// memory from call to call; not for two threads at once.
 class WideBatch {
  public:
   /// `threads`: of a call (number); 0: as many as the machine has.

@@ -70,6 +70,8 @@ inline void WideTree::build_grouped(const TriangleView& mesh, Boxes boxes, std::
 inline void WideTree::rebuild(const TriangleView& mesh, Boxes boxes) {
   require_input(mesh, boxes);
   if (boxes.size() != primitive_count()) throw std::invalid_argument("one box per triangle of the tree is needed");
+  // The pairs of the last build name vertices.
+  if (!std::ranges::equal(mesh.triangles, arrays_.triangles)) throw std::invalid_argument("the triangles are others");
   plant(mesh, boxes);
 }
 

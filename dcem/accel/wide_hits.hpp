@@ -26,9 +26,7 @@ inline bool is_in_range(double t, const Ray<double>& ray) {
 
 /// Whether a ray leads anywhere; an infinite direction would meet every plane at t = 0.
 inline bool WideTree::has_direction(const Ray<double>& ray) {
-  const Vec3 size = glm::abs(ray.direction);
-  const bool is_finite = std::isfinite(size.x) && std::isfinite(size.y) && std::isfinite(size.z);
-  return is_finite && ray.direction != Vec3(0.0);
+  return is_finite(ray.direction) && ray.direction != Vec3(0.0);
 }
 
 /// Where a ray meets a patch, and in which of its triangles; absent where it does not from t_min to t_max. Double

@@ -63,7 +63,8 @@ class WideTree {
     const std::uint32_t whole = 0;
     build_grouped(mesh, boxes, {&whole, 1}, settings);
   }
-  /// Builds everything anew, with the groups, the patches and the settings of the last build.
+  /// Builds everything anew, with the groups, the patches and the settings of the last build; the triangles must have
+  /// the vertices that they had then.
   void rebuild(const TriangleView& mesh, Boxes boxes);
 
   // Following motion.

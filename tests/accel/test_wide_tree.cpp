@@ -543,6 +543,9 @@ TEST_CASE("surfaces for some triangles only, and corners that name no vertex, ar
   WideMesh astray = mesh;
   astray.triangles[7][1] = 1000;
   CHECK_THROWS_AS(scene.tree.build(astray.view(), scene.boxes), std::invalid_argument);
+  WideMesh other_way = mesh;
+  std::swap(other_way.triangles[7][0], other_way.triangles[9][0]);
+  CHECK_THROWS_AS(scene.tree.rebuild(other_way.view(), scene.boxes), std::invalid_argument);
   WideMesh shorter = mesh;
   shorter.vertices.pop_back();
   CHECK_THROWS_AS(scene.tree.refit(std::vector<std::uint32_t>{7}, shorter.view(), scene.boxes), std::invalid_argument);
