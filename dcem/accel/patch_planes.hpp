@@ -35,8 +35,8 @@ struct alignas(64) PatchPlane {
   /// far outside: then each triangle is asked by itself.
   bool is_steep(const Ray<double>& ray) const {
     const double along = slope(ray);
-    return is_alone() ||
-           along * along > static_cast<double>(least_slope_squared) * glm::dot(ray.direction, ray.direction);
+    // Below zero for a triangle alone, which every ray is steep to; what it is, no processor foresees.
+    return along * along > static_cast<double>(least_slope_squared) * glm::dot(ray.direction, ray.direction);
   }
   /// From the squared difference of the two normals of a pair. |slope| ≥ |n₁ − n₀| + 10⁻³ on one of them leaves 10⁻³
   /// and the same sign on the other; (x + y)² ≤ 2 x² + 2 y².

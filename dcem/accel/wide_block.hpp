@@ -67,7 +67,10 @@ class BlockWriter {
   /// Writes what there is of each lane; the normals are kept. Corners count from `origin_m` + `centre_m`, which are
   /// subtracted one after the other.
   void write(const Vec3& origin_m, const Vec3& centre_m, PatchBlock& block) {
+    bend_m_ = diameter_m_ = DoublePart{};
     for (std::size_t part = 0; part < parts; ++part) write_part(part, origin_m, centre_m, block);
+    block.bend_m = static_cast<float>(largest_lane(bend_m_));
+    block.reach_m = static_cast<float>(largest_lane(diameter_m_) * PatchBlock::edge_error_factor);
   }
 
   void write_normal(std::size_t side, std::size_t lane, Vec3& to) const {
@@ -79,6 +82,12 @@ class BlockWriter {
   double difference_squared(std::size_t lane) const { return difference_squared_[lane]; }
 
  private:
+  static double largest_lane(const DoublePart& part) {
+    double result = part[0];
+    for (int lane = 1; lane < static_cast<int>(double_part_lanes); ++lane) result = std::max(result, part[lane]);
+    return result;
+  }
+
   static constexpr std::size_t parts = simd_lanes / double_part_lanes;
   /// What is smaller is no length.
   static constexpr double least_squared = 1e-280;
@@ -103,8 +112,7 @@ class BlockWriter {
     VectorPart normal, other_normal;
     set_normals(part, edges, normal, other_normal);
     store(normal, block.normal, first);
-    DoublePart offset, bend, diameter, sound;
-    normal.dot(corner[0], offset);
+    DoublePart bend, diameter, sound;
     normal.dot(edges.ad, bend);
     set_diameter(edges, diameter);
     set_soundness(edges, normal, sound);
@@ -112,9 +120,8 @@ class BlockWriter {
     // ray near it is asked.
     bend = sound > 0.0 ? absolute(bend) * 1.0001 : diameter;
     bend = is_pair ? bend : DoublePart{};
-    store_narrow(offset, block.offset_m.data() + first);
-    store_narrow(bend, block.bend_m.data() + first);
-    store_narrow(diameter * PatchBlock::edge_error_factor, block.reach_m.data() + first);
+    bend_m_ = bend > bend_m_ ? bend : bend_m_;
+    diameter_m_ = diameter > diameter_m_ ? diameter : diameter_m_;
   }
 
   /// Ways between the corners, and the products that point along the normals.
@@ -234,6 +241,7 @@ class BlockWriter {
   alignas(64) Codes is_pair_;
   std::array<std::array<Row, 3>, 2> normal_;
   Row difference_squared_;
+  DoublePart bend_m_, diameter_m_;  ///< the largest of the lanes so far
 };
 
 }  // namespace dcem::detail

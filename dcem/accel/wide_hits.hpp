@@ -22,6 +22,11 @@ inline bool is_in_range(double t, const Ray<double>& ray) {
   return t >= ray.t_min && t <= ray.t_max && std::isfinite(t);
 }
 
+/// The nearer of two hits; of those as near the one of the smaller number.
+inline void take_nearer(const WideHit& hit, std::optional<WideHit>& best) {
+  if (!best || hit.t < best->t || (hit.t == best->t && hit.triangle < best->triangle)) best = hit;
+}
+
 }  // namespace detail
 
 /// Whether a ray leads anywhere; an infinite direction would meet every plane at t = 0.
@@ -29,27 +34,25 @@ inline bool WideTree::has_direction(const Ray<double>& ray) {
   return is_finite(ray.direction) && ray.direction != Vec3(0.0);
 }
 
-/// Where a ray meets a patch, and in which of its triangles; absent where it does not from t_min to t_max. Double
-/// precision finds out what is not known; the answer is the same whatever is.
-inline std::optional<WideHit> WideTree::hit_on(std::uint32_t patch, const Ray<double>& ray, Known known) const {
-  const PatchPlanes& planes = arrays_.planes[patch];
-  if (known == Known::nothing) return hit_on_either(planes, ray);
+/// The plane of the triangle in which a ray meets a patch; null where what is known does not tell.
+[[gnu::always_inline]] inline const PatchPlane* WideTree::plane_met(const PatchPlanes& planes, const Ray<double>& ray,
+                                                                    Known known) {
   const PatchPlane& plane = planes.side[known == Known::second ? 1 : 0];
-  if ((known == Known::met && !plane.is_alone()) || !plane.is_steep(ray)) return hit_on_either(planes, ray);
-  const double t = plane.t_of(ray);
-  return detail::is_in_range(t, ray) ? std::optional(WideHit{t, plane.triangle}) : std::nullopt;
+  if (known == Known::nothing || (known == Known::met && !plane.is_alone())) return nullptr;
+  return plane.is_steep(ray) ? &plane : nullptr;
 }
 
-/// As hit_on, each triangle asked by itself.
-inline std::optional<WideHit> WideTree::hit_on_either(const PatchPlanes& planes, const Ray<double>& ray) const {
+/// Where a ray meets a patch, and in which of its triangles; absent where it does not from t_min to t_max. Each
+/// triangle is asked in double precision. Seldom needed, and kept out of the loops that need it seldom.
+[[gnu::noinline]] inline std::optional<WideHit> WideTree::hit_on(std::uint32_t patch, const Ray<double>& ray) const {
   const WatertightRay exact(ray);
   std::optional<WideHit> best;
-  for (const PatchPlane& plane : planes.sides()) {
+  for (const PatchPlane& plane : arrays_.planes[patch].sides()) {
     const WideHit hit{plane.t_of(ray), plane.triangle};
     if (!detail::is_in_range(hit.t, ray)) continue;
     const TriangleCorners corners_m = arrays_.corners_m(hit.triangle);
     if (!exact.intersect(corners_m) || detail::is_beside(plane, corners_m, ray, hit.t)) continue;
-    if (!best || hit.t < best->t || (hit.t == best->t && hit.triangle < best->triangle)) best = hit;
+    detail::take_nearer(hit, best);
   }
   return best;
 }
@@ -80,12 +83,15 @@ bool WideTree::is_considered(std::uint32_t patch, Considers& considers) const {
   return considers(arrays_.planes[patch].side[0].triangle);
 }
 
-/// Takes over a hit where it is nearer, or as near and of a smaller number.
-inline void WideTree::offer(std::uint32_t patch, const Ray<double>& ray, Known known,
-                            std::optional<WideHit>& best) const {
-  const std::optional<WideHit> hit = hit_on(patch, ray, known);
-  if (!hit || (best && (hit->t > best->t || (hit->t == best->t && hit->triangle > best->triangle)))) return;
-  best = hit;
+/// Takes over where a ray meets a patch, if that is nearer. The answer is the same whatever is known.
+[[gnu::always_inline]] inline void WideTree::offer(std::uint32_t patch, const Ray<double>& ray, Known known,
+                                                   std::optional<WideHit>& best) const {
+  if (const PatchPlane* plane = plane_met(arrays_.planes[patch], ray, known)) {
+    const double t = plane->t_of(ray);
+    if (detail::is_in_range(t, ray)) detail::take_nearer({t, plane->triangle}, best);
+  } else if (const std::optional<WideHit> hit = hit_on(patch, ray)) {
+    detail::take_nearer(*hit, best);
+  }
 }
 
 }  // namespace dcem

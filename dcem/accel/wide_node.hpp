@@ -97,15 +97,14 @@ struct alignas(64) WideNode {
 /// The numbers serve to say of a ray that it surely misses a patch or surely hits it; where neither is sure, double
 /// precision decides. The patches of block b have the numbers 8 b + lane.
 struct alignas(64) PatchBlock {
-  std::array<float, 3> centre_m{};          ///< from the tree's origin, exact
-  float size_m = 0.0F;                      ///< no corner has a larger coordinate, from the centre
-  std::uint32_t lanes = 0;                  ///< bit i: there is a patch in lane i, and it is in the scene
-  std::array<float, simd_lanes> reach_m{};  ///< edge_error_factor · the longest distance between two corners
-  std::array<float, simd_lanes> bend_m{};   ///< how far d is from the plane of a, b, c
+  std::array<float, 3> centre_m{};  ///< from the tree's origin, exact
+  float size_m = 0.0F;              ///< no corner has a larger coordinate, from the centre
+  float reach_m = 0.0F;             ///< edge_error_factor · the longest distance between two corners of a patch
+  float bend_m = 0.0F;              ///< how far d is from the plane of a, b, c, at most
+  std::uint32_t lanes = 0;          ///< bit i: there is a patch in lane i, and it is in the scene
+  std::array<std::array<float, simd_lanes>, 3> normal{};  ///< of a, b, c; zero where they have none
   /// [corner][axis][lane], from the centre.
   std::array<std::array<std::array<float, simd_lanes>, 3>, 4> corner_m{};
-  std::array<std::array<float, simd_lanes>, 3> normal{};  ///< of a, b, c; zero where they have none
-  std::array<float, simd_lanes> offset_m{};               ///< normal · a, from the centre
 
   /// Room for the rounding of the edge functions: see WideRay::meets(const PatchBlock&).
   static constexpr double edge_error_factor = 10.0;

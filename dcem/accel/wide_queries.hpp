@@ -40,11 +40,13 @@ inline Aabb<double> WideTree::in_world(const Aabb<float>& box) const {
 template <typename Considers>
 std::optional<WideHit> WideTree::nearest(const Ray<double>& ray, Considers&& considers,
                                          TraversalCounters* counters) const {
-  detail::SpentCounters sum(counters);
+  // Counted where the caller wants it: a sum that is added at the end would be read before it is all written.
+  TraversalCounters unwanted;
+  TraversalCounters& spent = counters != nullptr ? *counters : unwanted;
   if (primitive_count() == 0) return std::nullopt;
   const WideRay wide(ray, arrays_.origin_m, arrays_.extent_m);
-  if (!wide.usable()) return nearest_of_all(ray, considers, sum.spent);
-  return nearest_among(ray, wide, considers, sum.spent);
+  if (!wide.usable()) return nearest_of_all(ray, considers, spent);
+  return nearest_among(ray, wide, considers, spent);
 }
 
 /// The walk collects what may be the nearest, and a sure hit shortens it at once; double precision looks at what is
@@ -76,8 +78,9 @@ std::optional<WideHit> WideTree::nearest_among(const Ray<double>& ray, const Wid
     walk_limit = limit;
   };
   detail::walk_wide_nearest(view(), wide, limit, take, counters);
-  candidates.drop_beyond(limit);
-  for (const detail::WideCandidates::Candidate& candidate : candidates.held()) look_at(candidate);
+  for (const detail::WideCandidates::Candidate& candidate : candidates.held()) {
+    if (!(candidate.first > limit)) look_at(candidate);
+  }
   return best;
 }
 
@@ -103,7 +106,7 @@ bool WideTree::blocked(const Ray<double>& ray, Considers&& considers, TraversalC
   const auto blocks = [&](std::uint32_t patch, bool certain) {
     if (!is_considered(patch, considers)) return false;
     ++sum.spent.primitives_tested;
-    return certain || hit_on(patch, ray, Known::nothing);
+    return certain || hit_on(patch, ray);
   };
   if (first_try && *first_try < primitive_count() && arrays_.is_there[*first_try] != 0 && has_direction(ray) &&
       blocks(arrays_.patch_of_triangle[*first_try], false)) {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <utility>
 
 #include "dcem/accel/counters.hpp"
+#include "dcem/accel/lane_keys.hpp"
 #include "dcem/accel/wide_binner.hpp"
 #include "dcem/accel/wide_node.hpp"
 #include "dcem/accel/wide_ray.hpp"
@@ -21,8 +21,24 @@ namespace dcem::detail {
 inline constexpr std::uint32_t wide_levels = 2 * WideBinner::levels + 1;
 inline constexpr std::uint32_t wide_edit_levels = 40;
 static_assert(wide_edit_levels < WideBinner::levels);
-/// A walk leaves at most seven entries behind per level.
-inline constexpr std::uint32_t wide_stack_size = 7 * wide_levels;
+
+/// Entries of a node that wait in a walk. They are copied, because by the time they are asked for the node has left the
+/// nearest cache. No initial values: clearing a stack of them would cost more than the walk.
+struct alignas(32) WaitingEntries {
+  std::array<std::uint32_t, simd_lanes> child;
+  std::uint32_t lanes;
+
+  [[gnu::always_inline]] void set(const WideNode& node, std::uint32_t waiting) {
+    std::memcpy(child.data(), node.child.data(), sizeof child);
+    lanes = waiting;
+  }
+  /// Takes a lane out. Returns whether others are left.
+  [[gnu::always_inline]] bool remove(std::uint32_t lane) {
+    lanes ^= 1U << lane;
+    return lanes != 0;
+  }
+};
+static_assert(sizeof(WideChild) == sizeof(std::uint32_t));
 
 /// Calls `visit(lane)` for the set bits, lowest first, until one returns true. Returns whether one did.
 template <typename Visit>
@@ -44,12 +60,9 @@ struct WideView {
 template <typename Take>
 [[gnu::always_inline]] inline void walk_wide_nearest(const WideView& tree, const WideRay& ray, float limit, Take&& take,
                                                      TraversalCounters& counters) {
-  // No initial values: clearing the stack would cost more than the walk.
-  struct Pending {
-    std::uint32_t child;
-    float entry;
-  };
-  std::array<Pending, wide_stack_size> stack;
+  // The entries that wait, by level of the nodes they are from.
+  std::array<LaneKeys, wide_levels> keys;
+  std::array<WaitingEntries, wide_levels> waiting;
   std::uint32_t height = 0;
   WideChild current = WideChild::node(0);
   while (true) {
@@ -57,23 +70,16 @@ template <typename Take>
     if (!current.is_block()) {
       const WideNode& node = tree.nodes[current.index()];
       Float8 entries;
-      std::uint32_t met = ray.meets(node, limit, entries);
+      const Mask8 mask = ray.meets(node, limit, entries);
+      const std::uint32_t met = mask.bits();
       if (met != 0) {
-        alignas(32) std::array<float, simd_lanes> entry;
-        entries.store(entry);
-        std::uint32_t lane = static_cast<std::uint32_t>(std::countr_zero(met));
-        Pending nearest{node.child[lane].code, entry[lane]};
-        const std::uint32_t bottom = height;
-        for (met &= met - 1; met != 0; met &= met - 1) {
-          lane = static_cast<std::uint32_t>(std::countr_zero(met));
-          Pending other{node.child[lane].code, entry[lane]};
-          if (other.entry < nearest.entry) std::swap(other, nearest);
-          // The nearest of those that wait lies on top.
-          std::uint32_t place = height++;
-          for (; place > bottom && stack[place - 1].entry < other.entry; --place) stack[place] = stack[place - 1];
-          stack[place] = other;
-        }
-        current = {nearest.child};
+        LaneKeys entered(entries, mask);
+        const std::int32_t nearest = entered.least();
+        entered.remove(nearest);
+        keys[height] = entered;
+        waiting[height].set(node, met ^ (1U << LaneKeys::lane(nearest)));
+        height += (met & (met - 1)) != 0 ? 1U : 0U;
+        current = node.child[LaneKeys::lane(nearest)];
         continue;
       }
     } else {
@@ -82,11 +88,15 @@ template <typename Take>
       const std::uint32_t met = ray.meets(block, limit, hits);
       if (met != 0) take(current.index(), met, hits, limit);
     }
+    std::int32_t nearest = 0;
     do {
       if (height == 0) return;
       --height;
-    } while (!(stack[height].entry <= limit));
-    current = {stack[height].child};
+      nearest = keys[height].least();
+    } while (!LaneKeys::may_be_within(nearest, limit));
+    keys[height].remove(nearest);
+    current = {waiting[height].child[LaneKeys::lane(nearest)]};
+    height += waiting[height].remove(LaneKeys::lane(nearest)) ? 1U : 0U;
   }
 }
 
@@ -95,11 +105,7 @@ template <typename Take>
 template <typename Take>
 [[gnu::always_inline]] inline bool walk_wide_any(const WideView& tree, const WideRay& ray, float limit, Take&& take,
                                                  TraversalCounters& counters) {
-  // One entry per node with the lanes that wait: pushing them one by one would be a loop that no processor foresees.
-  struct Pending {
-    std::uint32_t node, lanes;
-  };
-  std::array<Pending, wide_stack_size> stack;
+  std::array<WaitingEntries, wide_levels> waiting;  // by level of the nodes they are from
   std::uint32_t height = 0;
   WideChild current = WideChild::node(0);
   while (true) {
@@ -107,10 +113,10 @@ template <typename Take>
     if (!current.is_block()) {
       const WideNode& node = tree.nodes[current.index()];
       Float8 entries;
-      const std::uint32_t met = ray.meets(node, limit, entries);
+      const std::uint32_t met = ray.meets(node, limit, entries).bits();
       if (met != 0) {
         const std::uint32_t rest = met & (met - 1);
-        stack[height] = {current.index(), rest};
+        waiting[height].set(node, rest);
         height += rest != 0 ? 1U : 0U;
         current = node.child[static_cast<std::uint32_t>(std::countr_zero(met))];
         continue;
@@ -122,17 +128,17 @@ template <typename Take>
       if (met != 0 && take(current.index(), met, hits)) return true;
     }
     if (height == 0) return false;
-    Pending& top = stack[height - 1];
-    current = tree.nodes[top.node].child[static_cast<std::uint32_t>(std::countr_zero(top.lanes))];
-    top.lanes &= top.lanes - 1;
-    height -= top.lanes == 0 ? 1U : 0U;
+    WaitingEntries& top = waiting[height - 1];
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(top.lanes));
+    current = {top.child[lane]};
+    height -= top.remove(lane) ? 0U : 1U;
   }
 }
 
 /// All entries of the tree whose box `keep(box)` holds for, in tree coordinates; `take(block_index)` for blocks.
 template <typename Keep, typename Take>
 void walk_wide_boxes(const WideView& tree, Keep&& keep, Take&& take, TraversalCounters& counters) {
-  std::array<std::uint32_t, wide_stack_size + simd_lanes> stack;
+  std::array<std::uint32_t, (simd_lanes - 1) * wide_levels + simd_lanes> stack;
   std::uint32_t height = 0;
   stack[height++] = WideChild::node(0).code;
   while (height > 0) {

@@ -187,8 +187,8 @@ class WideTree {
 
   static bool has_direction(const Ray<double>& ray);
   using Known = PatchKnowledge;
-  std::optional<WideHit> hit_on(std::uint32_t patch, const Ray<double>& ray, Known known) const;
-  std::optional<WideHit> hit_on_either(const PatchPlanes& planes, const Ray<double>& ray) const;
+  static const PatchPlane* plane_met(const PatchPlanes& planes, const Ray<double>& ray, Known known);
+  std::optional<WideHit> hit_on(std::uint32_t patch, const Ray<double>& ray) const;
   std::span<const PatchPlane> halves_to_ask(std::uint32_t patch, Known known) const;
   template <typename Visit>
   bool for_each_present_patch(Visit&& visit) const;

@@ -243,7 +243,7 @@ TEST_CASE("of patches whose vertices have moved in any way, single precision say
 TEST_CASE("a box that the ray meets is met, whatever the direction and however close to a face") {
   RandomStream random(31);
   for (int trial = 0; trial < 300000; ++trial) {
-    const double size = exponent_between(random, -3, 3), distance = size * exponent_between(random, -2, 3);
+    const double size = exponent_between(random, -3, 3), distance = size * exponent_between(random, -2, 5);
     WideArrays arrays;
     arrays.origin_m = trial % 4 == 0 ? random_in_cube(random, 1e4) : Vec3(0.0);
     WideNode node;
@@ -284,7 +284,7 @@ TEST_CASE("a box that the ray meets is met, whatever the direction and however c
     const WideRay wide(ray, arrays.origin_m, arrays.extent_m);
     if (!wide.usable()) continue;
     Float8 entry;
-    const std::uint32_t met = wide.meets(node, WideRay::padded(ray.t_max), entry);
+    const std::uint32_t met = wide.meets(node, WideRay::padded(ray.t_max), entry).bits();
     INFO(text_of(ray));
     REQUIRE((met >> lane & 1U) == 1U);
     REQUIRE(static_cast<double>(entry[lane]) <= static_cast<double>(WideRay::padded(t)));
@@ -304,7 +304,7 @@ TEST_CASE("boxes well beside a ray are not met: the margins are roundings") {
     const WideRay wide({from, Vec3(0, exponent_between(random, -3, 3), 0)}, Vec3(0), arrays.extent_m);
     Float8 entry;
     REQUIRE(wide.usable());
-    REQUIRE(wide.meets(node, WideRay::padded(infinity), entry) == 0U);
+    REQUIRE(wide.meets(node, WideRay::padded(infinity), entry).bits() == 0U);
   }
 }
 
@@ -315,6 +315,8 @@ TEST_CASE("which rays single precision follows") {
   CHECK(usable({from, 1e-11 * along}));
   CHECK(usable({from, 1e11 * along}));
   CHECK(usable({from, along, 0.0, 0.0}));
+  CHECK(usable({from - 0.9e6 * along, along}));
+  CHECK(!usable({from - 1.1e6 * along, along}));
   for (const double bad : {dcem_test::not_a_number, infinity, -infinity}) {
     for (int axis = 0; axis < 3; ++axis) {
       Ray<double> ray{from, along};
