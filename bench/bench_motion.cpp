@@ -4,8 +4,10 @@
 ///   bench_motion FILE.obj [--cars V...] [--frames N] [--rays R] [--limit GROWTH | --sweep] [--two-threads]
 ///                [--series FILE]
 ///
-/// In each frame all trees follow the motion, in turns, and then the same rays go through each, in turns. One CSV row
-/// per number of cars and tree; a table that a person reads goes to standard error. The wide trees must give the same
+/// In each frame every tree in turn follows the motion and gets the same rays. Before, untimed, four times as many
+/// others go through it, because in a program that has one tree the caches hold what its last rays have touched, and
+/// not what a dozen other trees need. One CSV row per number of cars and tree; a table that a person reads goes to
+/// standard error. The wide trees must give the same
 /// hits to the last bit in every frame, and the binary tree the same to 1e-5 of the distance but for one ray in
 /// 100,000: anything else is an error, exit 1. Embree's differences are counted. `--series` writes a row per frame and
 /// tree to a file; bench/plot_motion.py draws it.
@@ -337,12 +339,16 @@ void follow(Contender& contender, const Moved& moved) {
   contender.work.restructured += work.restructured;
 }
 
-/// A few rays first, untimed: what another tree has pushed out of the caches is not this one's fault.
-void trace(Contender& contender, const FrameRays& rays, const FrameRays& warm_up, Answers& nearest, Answers& blocked) {
-  TraversalCounters closest, occluded, unused;
+/// Rays that are not timed; their answers are those of the frame before.
+void warm_up(Contender& contender, const FrameRays& rays, Answers& unused) {
+  TraversalCounters uncounted;
+  contender.nearest_ms(rays.bounces, unused, uncounted);
+  contender.blocked_ms(rays.segments, unused, uncounted);
+}
+
+void trace(Contender& contender, const FrameRays& rays, Answers& nearest, Answers& blocked) {
+  TraversalCounters closest, occluded;
   const double count = static_cast<double>(rays.bounces.size());
-  contender.nearest_ms(warm_up.bounces, nearest, unused);
-  contender.blocked_ms(warm_up.segments, blocked, unused);
   contender.closest_ms.push_back(contender.nearest_ms(rays.bounces, nearest, closest));
   contender.occluded_ms.push_back(contender.blocked_ms(rays.segments, blocked, occluded));
   contender.closest_steps.push_back(static_cast<double>(closest.nodes_visited) / count);
@@ -446,20 +452,21 @@ bool drive(dcem::Scene& scene, std::size_t cars, const Options& options, std::ve
            std::optional<SeriesFile>& series) {
   const RaySource source(scene);
   FrameRays rays{Rays(options.rays), Rays(options.rays)};
-  FrameRays warm_up{Rays(options.rays / 4), Rays(options.rays / 4)};
+  FrameRays others{Rays(4 * options.rays), Rays(4 * options.rays)};
+  Answers unused(4 * options.rays);
   std::vector<FrameAnswers> answers(all.size(), {Answers(options.rays), Answers(options.rays)});
   for (std::size_t frame = 1; frame <= options.frames; ++frame) {
     const dcem::ChangeSet changes =
         scene.apply(scene.frame_at(dcem::bench::step_s * static_cast<double>(frame), frame));
     const Moved moved = moved_by(scene, changes);
     source.make(2 * frame, rays);
-    source.make(2 * frame + 1, warm_up);
-    const auto in_turns = [&](auto&& act) {
-      for (std::size_t turn = 0; turn < all.size(); ++turn) act((frame + turn) % all.size());
-    };
-    in_turns([&](std::size_t index) { follow(all[index], moved); });
-    in_turns(
-        [&](std::size_t index) { trace(all[index], rays, warm_up, answers[index].nearest, answers[index].blocked); });
+    source.make(2 * frame + 1, others);
+    for (std::size_t turn = 0; turn < all.size(); ++turn) {
+      const std::size_t index = (frame + turn) % all.size();
+      warm_up(all[index], others, unused);
+      follow(all[index], moved);
+      trace(all[index], rays, answers[index].nearest, answers[index].blocked);
+    }
     if (!check(frame, all, answers)) return false;
     if (series) series->add_frame(cars, frame, options, all);
   }

@@ -21,6 +21,17 @@ class LaneKeys {
     keys_.with(waiting.lanes, [](auto& part, const auto& waits) { part = waits ? part : IntPart{} + none; });
   }
 
+  /// All lanes wait.
+  [[gnu::always_inline]] explicit LaneKeys(const Float8& numbers) : LaneKeys(numbers, numbers <= numbers) {}
+
+  /// How many keys are smaller, for each lane: its place when all are in order.
+  [[gnu::always_inline]] std::array<std::int32_t, simd_lanes> ranks() const {
+    const auto all = std::bit_cast<std::array<std::int32_t, simd_lanes>>(keys_);
+    SimdLanes<IntPart> ranks{};
+    for (const std::int32_t key : all) ranks.with(keys_, [key](auto& rank, const auto& own) { rank -= own > key; });
+    return std::bit_cast<std::array<std::int32_t, simd_lanes>>(ranks);
+  }
+
   /// The smallest key; one that is within no limit when no lane waits.
   [[gnu::always_inline]] std::int32_t least() const {
 #if defined(__AVX__)

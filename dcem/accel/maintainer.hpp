@@ -84,9 +84,9 @@ struct UpkeepReport {
   std::uint64_t nodes_refit = 0;
   std::uint64_t nodes_rebuilt = 0;
   std::uint64_t subtrees_rebuilt = 0;  ///< the whole tree counts as one
-  bool root_rebuilt = false;
-  double sah_cost = 0.0;           ///< after the frame's upkeep, no unit
-  double sah_cost_at_build = 0.0;  ///< after the last build of the whole tree, no unit
+  bool root_rebuilt = false;           ///< the whole tree was built anew, or the last part of all that can be in place
+  double sah_cost = 0.0;               ///< after the frame's upkeep, no unit
+  double sah_cost_at_build = 0.0;      ///< after the last build of the whole tree, no unit
   // Of a wide tree:
   std::uint64_t reinserted = 0;  ///< objects that were hung elsewhere
   std::uint64_t rotated = 0;     ///< entries that changed their place by rotation; such nodes count as kept or refit

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "dcem/geometry/aabb.hpp"
@@ -56,43 +55,54 @@ struct WidePatch {
 
 namespace detail {
 
-inline double twice_area_m2(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return glm::length(glm::cross(b - a, c - a));
-}
+/// Two triangles on one edge: the ways from one end of it to the other end and to the corners beside it.
+struct EdgePair {
+  Vec3 along_m, first_m, second_m;
+  Vec3 first_normal = glm::cross(along_m, first_m), second_normal = glm::cross(along_m, second_m);  ///< twice the areas
+  double length_squared_m2 = glm::dot(along_m, along_m);
+  double first_squared = glm::dot(first_normal, first_normal);
+  double second_squared = glm::dot(second_normal, second_normal);
 
-/// How far d lies from the plane of a, b, c; infinite where that has no plane.
-inline double distance_from_plane_m(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 normal = glm::cross(b - a, c - a);
-  const double length = glm::length(normal);
-  return length > 0.0 ? std::abs(glm::dot(normal, d - a)) / length : INFINITY;
-}
+  bool is_first_larger() const { return first_squared >= second_squared; }
 
-/// Whether a b c d, all but flat, turns the same way at every corner, and enough to survive rounding.
-inline bool is_convex(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 normal = glm::cross(b - a, c - a) + glm::cross(c - a, d - a);
-  const double least = 1e-3 * glm::dot(normal, normal);
-  const auto turn = [&](const Vec3& from, const Vec3& at, const Vec3& to) {
-    return glm::dot(normal, glm::cross(at - from, to - at)) >= least;
-  };
-  // Two triangles that lie on each other have normals that cancel.
-  return least > 0.0 && turn(a, b, c) && turn(b, c, d) && turn(c, d, a) && turn(d, a, b);
-}
+  /// Whether the corner of the smaller triangle lies within `flatness` edge lengths of the plane of the larger one.
+  bool is_flat(double flatness) const {
+    const double height = is_first_larger() ? glm::dot(first_normal, second_m) : glm::dot(second_normal, first_m);
+    const double larger_squared = std::max(first_squared, second_squared);
+    return larger_squared > 0.0 && height * height <= flatness * flatness * length_squared_m2 * larger_squared;
+  }
+
+  /// Whether the quadrilateral that they make, all but flat, turns the same way at every corner, and enough to survive
+  /// rounding. The turns at opposite corners have the same sum.
+  bool is_convex() const {
+    const Vec3 normal = second_normal - first_normal;
+    const double sum = glm::dot(normal, normal), least = 1e-3 * sum;
+    const double at_first = -glm::dot(normal, first_normal), at_second = glm::dot(normal, second_normal);
+    const double at_end = glm::dot(normal, glm::cross(along_m - first_m, second_m - along_m));
+    // Two triangles that lie on each other have normals that cancel.
+    return least > 0.0 && at_first >= least && at_second >= least && at_end >= least && sum - at_end >= least;
+  }
+};
 
 /// Pairs the triangles [first, last) greedily, the longest shared edge first.
 class PatchBuilder {
  public:
-  /// `flatness`: how far the fourth corner may lie from the plane of the others, relative to the shared edge.
+  /// `flatness`: how far the fourth corner may lie from the plane of the others, relative to the shared edge; below 0
+  /// there are no pairs.
   PatchBuilder(const TriangleView& mesh, double flatness) : mesh_(mesh), flatness_(flatness) {}
 
   void append(std::uint32_t first, std::uint32_t last, std::vector<WidePatch>& patches) {
     if (last == first) return;
-    collect_edges(first, last);
-    collect_pairs();
+    pairs_.clear();
+    if (flatness_ >= 0.0) {
+      collect_edges(first, last);
+      collect_pairs();
+    }
     taken_.assign(last - first, false);
     for (const Pair& pair : pairs_) {
       if (taken_[pair.one - first] || taken_[pair.other - first]) continue;
       taken_[pair.one - first] = taken_[pair.other - first] = true;
-      patches.push_back(pair.patch);
+      patches.push_back(patch_of(pair));
     }
     for (std::uint32_t triangle = first; triangle < last; ++triangle) {
       if (taken_[triangle - first]) continue;
@@ -104,13 +114,21 @@ class PatchBuilder {
   struct Edge {
     std::uint32_t low, high, triangle;
   };
+  /// Of a list of edges with one lower vertex: the higher one, then the triangle.
+  using EdgeKey = std::uint64_t;
+  static EdgeKey key_of(const Edge& edge) { return std::uint64_t{edge.high} << 32 | edge.triangle; }
+  static std::uint32_t high_of(EdgeKey key) { return static_cast<std::uint32_t>(key >> 32); }
+  static std::uint32_t triangle_of(EdgeKey key) { return static_cast<std::uint32_t>(key); }
+
   struct Pair {
-    double length_m;
-    std::uint32_t one, other;
-    WidePatch patch;
+    double length_squared_m2;  ///< of the shared edge
+    std::uint32_t one, other;  ///< the larger triangle and the other
+    std::uint16_t b, d;        ///< their corners that are not on the shared edge
+
+    std::uint64_t numbers() const { return std::uint64_t{std::min(one, other)} << 32 | std::max(one, other); }
   };
 
-  /// All edges, by their vertices: a counting sort over the lower one, then short lists.
+  /// All edges, in a list per lower vertex.
   void collect_edges(std::uint32_t first, std::uint32_t last) {
     // Lists for the vertices of these triangles alone: a scene has thousands of groups.
     std::uint32_t lowest = mesh_.triangles[first][0], highest = lowest;
@@ -133,26 +151,26 @@ class PatchBuilder {
     for (std::size_t vertex = 1; vertex < first_edge_.size(); ++vertex) first_edge_[vertex] += first_edge_[vertex - 1];
     edges_.resize(3 * std::size_t{last - first});
     next_edge_.assign(first_edge_.begin(), first_edge_.end() - 1);
-    for_each_edge([&](const Edge& edge) { edges_[next_edge_[edge.low - lowest]++] = edge; });
-    for (std::size_t vertex = 0; vertex + 1 < first_edge_.size(); ++vertex) {
-      std::sort(edges_.begin() + first_edge_[vertex], edges_.begin() + first_edge_[vertex + 1],
-                [](const Edge& one, const Edge& other) {
-                  return one.high != other.high ? one.high < other.high : one.triangle < other.triangle;
-                });
-    }
+    for_each_edge([&](const Edge& edge) { edges_[next_edge_[edge.low - lowest]++] = key_of(edge); });
+    lowest_ = lowest;
   }
 
   void collect_pairs() {
-    pairs_.clear();
-    for (std::size_t index = 0; index + 1 < edges_.size(); ++index) {
-      for (std::size_t next = index + 1; next < edges_.size() && next < index + 4; ++next) {
-        if (edges_[next].low != edges_[index].low || edges_[next].high != edges_[index].high) break;
-        try_pair(edges_[index], edges_[next]);
+    for (std::size_t vertex = 0; vertex + 1 < first_edge_.size(); ++vertex) {
+      const std::size_t first = first_edge_[vertex], last = first_edge_[vertex + 1];
+      std::sort(edges_.begin() + first, edges_.begin() + last);
+      const std::uint32_t low = lowest_ + static_cast<std::uint32_t>(vertex);
+      for (std::size_t index = first; index + 1 < last; ++index) {
+        for (std::size_t next = index + 1; next < last && next < index + 4; ++next) {
+          const std::uint32_t high = high_of(edges_[index]);
+          if (high_of(edges_[next]) != high) break;
+          try_pair({low, high, triangle_of(edges_[index])}, {low, high, triangle_of(edges_[next])});
+        }
       }
     }
     std::sort(pairs_.begin(), pairs_.end(), [](const Pair& one, const Pair& other) {
-      if (one.length_m != other.length_m) return one.length_m > other.length_m;
-      return std::tie(one.one, one.other) < std::tie(other.one, other.other);
+      return one.length_squared_m2 != other.length_squared_m2 ? one.length_squared_m2 > other.length_squared_m2
+                                                              : one.numbers() < other.numbers();
     });
   }
 
@@ -168,31 +186,29 @@ class PatchBuilder {
   }
 
   void try_pair(const Edge& edge, const Edge& same) {
-    std::uint32_t one = edge.triangle, other = same.triangle;
-    std::uint32_t b = opposite(edge), d = opposite(same);
+    const std::uint32_t one = edge.triangle, other = same.triangle;
+    const std::uint32_t b = opposite(edge), d = opposite(same);
     if (one == other || b == 3 || d == 3 || !mesh_.same_surface(one, other)) return;
-    const Vec3 &low = mesh_.vertices_m[edge.low], &high = mesh_.vertices_m[edge.high];
+    const Vec3& low_m = mesh_.vertices_m[edge.low];
+    const EdgePair ways{mesh_.vertices_m[edge.high] - low_m, at(one, b) - low_m, at(other, d) - low_m};
+    if (!ways.is_flat(flatness_) || !ways.is_convex()) return;
+    const auto corner = [](std::uint32_t at) { return static_cast<std::uint16_t>(at); };
     // The larger triangle gives the plane.
-    if (twice_area_m2(low, at(one, b), high) < twice_area_m2(low, at(other, d), high)) {
-      std::swap(one, other);
-      std::swap(b, d);
-    }
-    const std::uint32_t c = (b + 1) % 3, a = (b + 2) % 3;
-    const Vec3 &at_a = at(one, a), &at_b = at(one, b), &at_c = at(one, c), &at_d = at(other, d);
-    const double length_m = glm::distance(low, high);
-    if (!(distance_from_plane_m(at_a, at_b, at_c, at_d) <= flatness_ * length_m)) return;
-    if (!is_convex(at_a, at_b, at_c, at_d)) return;
-    const auto &vertices = mesh_.triangles[one], &others = mesh_.triangles[other];
-    const std::uint32_t begin = (3 - a) % 3, other_begin = d == 0 ? 2U : others[0] == vertices[a] ? 0U : 1U;
-    pairs_.push_back({length_m,
-                      std::min(one, other),
-                      std::max(one, other),
-                      {{one, other}, {vertices[a], vertices[b], vertices[c], others[d]}, {begin, other_begin}}});
+    pairs_.push_back(ways.is_first_larger() ? Pair{ways.length_squared_m2, one, other, corner(b), corner(d)}
+                                            : Pair{ways.length_squared_m2, other, one, corner(d), corner(b)});
+  }
+
+  WidePatch patch_of(const Pair& pair) const {
+    const auto &vertices = mesh_.triangles[pair.one], &others = mesh_.triangles[pair.other];
+    const std::uint32_t b = pair.b, c = (b + 1) % 3, a = (b + 2) % 3;
+    const std::uint32_t begin = (3 - a) % 3, other_begin = pair.d == 0 ? 2U : others[0] == vertices[a] ? 0U : 1U;
+    return {{pair.one, pair.other}, {vertices[a], vertices[b], vertices[c], others[pair.d]}, {begin, other_begin}};
   }
 
   const TriangleView& mesh_;
   double flatness_;
-  std::vector<Edge> edges_;
+  std::uint32_t lowest_ = 0;  ///< vertex of the triangles
+  std::vector<EdgeKey> edges_;
   std::vector<std::uint32_t> first_edge_, next_edge_;  ///< per vertex, from the lowest one on
   std::vector<Pair> pairs_;
   std::vector<bool> taken_;

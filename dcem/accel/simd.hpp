@@ -111,6 +111,28 @@ struct Float8 {
   [[gnu::always_inline]] explicit Float8(const std::array<float, simd_lanes>& numbers) {
     std::memcpy(&lanes, numbers.data(), sizeof lanes);
   }
+  [[gnu::always_inline]] Float8(const Float4& first, const Float4& last) {
+#if defined(__AVX__)
+    lanes.low = __builtin_shufflevector(first, last, 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+    lanes.low = first;
+    lanes.high = last;
+#endif
+  }
+  [[gnu::always_inline]] Float4 first_four() const {
+#if defined(__AVX__)
+    return __builtin_shufflevector(lanes.low, lanes.low, 0, 1, 2, 3);
+#else
+    return lanes.low;
+#endif
+  }
+  [[gnu::always_inline]] Float4 last_four() const {
+#if defined(__AVX__)
+    return __builtin_shufflevector(lanes.low, lanes.low, 4, 5, 6, 7);
+#else
+    return lanes.high;
+#endif
+  }
   [[gnu::always_inline]] void store(std::array<float, simd_lanes>& numbers) const {
     std::memcpy(numbers.data(), &lanes, sizeof lanes);
   }
@@ -149,7 +171,9 @@ struct Float8 {
                    [](auto& part, const auto& by) { part = std::bit_cast<detail::FloatPart>(part <= by); });
     return std::bit_cast<Mask8>(one.lanes);
   }
-  [[gnu::always_inline]] friend Mask8 operator>(const Float8& one, const Float8& other) { return other < one; }
+  [[gnu::always_inline]] friend Mask8 operator>(const Float8& one, const Float8& other) {
+    return other < one;
+  }
 };
 
 /// Operations on Float8 that have no sign of their own.

@@ -82,6 +82,11 @@ struct WideArrays {
   /// Makes the boxes above a node tight again, as far up as they change. Returns how many nodes were looked at.
   std::size_t tighten_above(std::uint32_t node);
 
+  /// Asks for the memory of a block that will be written soon; then, when that is there, for what it names. Rays have
+  /// pushed most of it out of the caches since the last frame, and writing one block is too much work for the processor
+  /// to look as far ahead as the next.
+  void fetch_block(std::uint32_t block) const;
+  void fetch_around_block(std::uint32_t block, std::span<const Vec3> from_m) const;
   /// Takes over where the corners of a block are.
   void copy_vertices(std::uint32_t block, std::span<const Vec3> from_m);
   TriangleCorners corners_m(std::uint32_t triangle) const {
@@ -111,11 +116,22 @@ struct WideArrays {
 
   Aabb<double> box_of_patch(const WidePatch& patch) const {
     Aabb<double> box;
-    for (const std::uint32_t triangle : patch.triangles()) box.extend(box_of(triangle));
+    const auto is_there_now = [&](std::uint32_t triangle) { return is_there[triangle] != 0; };
+    if (std::ranges::all_of(patch.triangles(), is_there_now)) {
+      for (const std::uint32_t vertex : patch.corner) box.extend(vertices_m[vertex]);
+    } else {
+      for (const std::uint32_t triangle : patch.triangles()) box.extend(box_of(triangle));
+    }
     return box;
   }
 
  private:
+  // Inline: a call of what only fetches does nothing that g++ sees, and is left out.
+  template <typename Item>
+  [[gnu::always_inline]] static void fetch(const Item* first, std::size_t count) {
+    const auto* bytes = reinterpret_cast<const char*>(first);
+    for (std::size_t line = 0; line < count * sizeof(Item); line += 64) __builtin_prefetch(bytes + line, 1);
+  }
   double weight(WideChild child, const Aabb<float>& box) const {
     const double cost = child.is_none() ? 0.0 : child.is_block() ? costs.block : costs.node;
     return cost * static_cast<double>(box.half_area());
@@ -196,6 +212,25 @@ inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
     result.max[axis] = high + room(high);
   }
   return result;
+}
+
+[[gnu::always_inline]] inline void WideArrays::fetch_block(std::uint32_t block) const {
+  fetch(&blocks[block], 1);
+  fetch(&patches[std::size_t{block} * simd_lanes], simd_lanes);
+  fetch(&planes[std::size_t{block} * simd_lanes], simd_lanes);
+}
+
+[[gnu::always_inline]] inline void WideArrays::fetch_around_block(std::uint32_t block,
+                                                                  std::span<const Vec3> from_m) const {
+  fetch(&nodes[block_place[block].node()], 1);
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    const WidePatch& patch = patches[block * simd_lanes + lane];
+    if (patch.is_none()) continue;
+    for (const std::uint32_t vertex : patch.corner) {
+      __builtin_prefetch(&from_m[vertex]);
+      __builtin_prefetch(&vertices_m[vertex], 1);
+    }
+  }
 }
 
 inline void WideArrays::copy_vertices(std::uint32_t block, std::span<const Vec3> from_m) {

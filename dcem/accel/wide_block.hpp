@@ -212,8 +212,8 @@ class BlockWriter {
     result *= longest * 1.00001;
   }
 
-  /// Above 0 where is_convex(a, b, c, d) and there is a plane. The turns at opposite corners of a quadrilateral are the
-  /// normals of the triangles there, and both pairs have the same sum.
+  /// Above 0 where the quadrilateral is convex (see EdgePair) and there is a plane. The turns at opposite corners of a
+  /// quadrilateral are the normals of the triangles there, and both pairs have the same sum.
   [[gnu::always_inline]] static void set_soundness(const Edges& edges, const VectorPart& normal, DoublePart& result) {
     const VectorPart &at_b = edges.at_b, &at_d = edges.at_d;
     VectorPart at_c;

@@ -66,11 +66,12 @@ class WideBuilder {
   void build(WideArrays& arrays, std::span<const WidePatch> patches, std::span<const std::uint32_t> first_patch) {
     arrays_ = &arrays;
     patches_ = patches;
-    place_origin();
+    measure_patches();
     arrays.take_node();  // the root is node 0, before the nodes of any unit
     const std::size_t groups = first_patch.size() - 1;
     arrays.unit_root.assign(groups, WideChild{});
     std::vector<WideItem> items;
+    items.reserve(patches.size());
     for (std::uint32_t group = 0; group < groups; ++group) {
       if (first_patch[group + 1] - first_patch[group] > settings_.unit_limit) {
         for (std::uint32_t patch = first_patch[group]; patch < first_patch[group + 1]; ++patch) {
@@ -86,10 +87,12 @@ class WideBuilder {
   }
 
  private:
-  void place_origin() {
+  void measure_patches() {
+    boxes_.resize(patches_.size());
     Aabb<double> all;
-    for (std::uint32_t triangle = 0; triangle < arrays_->triangles.size(); ++triangle) {
-      all.extend(arrays_->box_of(triangle));
+    for (std::size_t patch = 0; patch < patches_.size(); ++patch) {
+      boxes_[patch] = arrays_->box_of_patch(patches_[patch]);
+      all.extend(boxes_[patch]);
     }
     arrays_->origin_m = all.empty() ? Vec3(0.0) : all.center();
   }
@@ -104,7 +107,7 @@ class WideBuilder {
     return item;
   }
   WideItem patch_item(std::uint32_t patch, std::uint32_t group) const {
-    return item_around(arrays_->box_of_patch(patches_[patch]), patch, group);
+    return item_around(boxes_[patch], patch, group);
   }
 
   /// Makes a group's own subtree and the item that stands for it.
@@ -113,7 +116,7 @@ class WideBuilder {
     Aabb<double> box;
     for (std::uint32_t patch = first; patch < last; ++patch) {
       own.push_back(patch_item(patch, group));
-      box.extend(arrays_->box_of_patch(patches_[patch]));
+      box.extend(boxes_[patch]);
     }
     const WideChild root = own.size() <= simd_lanes ? plant_block(own, group) : plant_tree(own);
     arrays_->unit_root[group] = root;
@@ -190,12 +193,7 @@ class WideBuilder {
   void fill_node(std::uint32_t node, std::span<const WideSplit> binary, const WideCollapse& collapse,
                  std::span<const WideItem> items, std::uint32_t slot) {
     std::array<std::uint32_t, simd_lanes> entries;
-    std::size_t count = 0;
-    collapse.for_each_entry(slot, [&](std::uint32_t entry) { entries[count++] = entry; });
-    // Any-hit queries take the lanes as they come: the largest box is the most likely to be in the way.
-    std::stable_sort(
-        entries.begin(), entries.begin() + static_cast<std::ptrdiff_t>(count),
-        [&](std::uint32_t one, std::uint32_t other) { return binary[one].half_area_m2 > binary[other].half_area_m2; });
+    const std::size_t count = collapse.entries(slot, entries);
     // Siblings side by side in memory, because a ray that looks at one often looks at the next.
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       hang(plant_entry(binary, collapse, items, entries[lane]), WidePlace::at(node, lane));
@@ -238,6 +236,7 @@ class WideBuilder {
   WideSettings settings_;
   WideArrays* arrays_ = nullptr;
   std::span<const WidePatch> patches_;
+  std::vector<Aabb<double>> boxes_;  ///< per patch
 };
 
 }  // namespace dcem

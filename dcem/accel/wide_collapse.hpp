@@ -52,6 +52,20 @@ class WideCollapse {
     divide(slot, most, visit);
   }
 
+  /// The same entries, the largest first: any-hit queries take the lanes as they come, and the largest box is the most
+  /// likely to be in the way. Returns how many.
+  std::size_t entries(std::uint32_t slot, std::array<std::uint32_t, most>& found) const {
+    std::size_t count = 0;
+    for_each_entry(slot, [&](std::uint32_t entry) {
+      std::size_t place = count++;
+      for (; place > 0 && nodes_[found[place - 1]].half_area_m2 < nodes_[entry].half_area_m2; --place) {
+        found[place] = found[place - 1];
+      }
+      found[place] = entry;
+    });
+    return count;
+  }
+
  private:
   struct Plan {
     std::array<float, most> cost{};         ///< [i − 1]: with at most i entries

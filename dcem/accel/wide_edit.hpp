@@ -1,35 +1,8 @@
 #pragma once
 /// How a `WideTree` is built and follows motion; included by wide_tree.hpp.
-#include <cstring>
-
 #include "dcem/accel/wide_tree.hpp"
 
 namespace dcem {
-
-namespace detail {
-
-/// Whether a box is surely valid and not empty: without branches, NaN fails every comparison.
-inline bool is_plain_box(const Aabb<double>& box) {
-  using Double4 = double __attribute__((vector_size(32)));
-  using Long4 = std::int64_t __attribute__((vector_size(32)));
-  static_assert(sizeof box == 48);
-  Double4 first, last;  // min and max.x; min.z and max
-  std::memcpy(&first, &box, sizeof first);
-  std::memcpy(&last, reinterpret_cast<const char*>(&box) + 16, sizeof last);
-  Long4 first_bits, last_bits;
-  std::memcpy(&first_bits, &first, sizeof first);
-  std::memcpy(&last_bits, &last, sizeof last);
-  first_bits &= std::int64_t{0x7fffffffffffffff};
-  last_bits &= std::int64_t{0x7fffffffffffffff};
-  Double4 first_size, last_size;
-  std::memcpy(&first_size, &first_bits, sizeof first);
-  std::memcpy(&last_size, &last_bits, sizeof last);
-  const Double4 max = __builtin_shufflevector(first, last, 5, 6, 7, 5);
-  const Long4 holds = (first_size <= maximum_coordinate_m) & (last_size <= maximum_coordinate_m) & (first <= max);
-  return (holds[0] & holds[1] & holds[2] & holds[3]) != 0;
-}
-
-}  // namespace detail
 
 inline void WideTree::require_input(const TriangleView& mesh, Boxes boxes) {
   if (mesh.size() != boxes.size()) throw std::invalid_argument("one box per triangle is needed");
@@ -107,7 +80,7 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
   is_there_now_.clear();
   for (const std::uint32_t triangle : moved) {
     if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
-    const bool is_there = detail::is_plain_box(boxes[triangle]);
+    const bool is_there = is_plain_box(boxes[triangle]);
     if (!is_there) require_valid_box(boxes[triangle], triangle);
     is_there_now_.push_back(is_there ? 1 : 0);
   }
@@ -122,7 +95,10 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
     dirty_blocks_.push_back(block);
   }
   report.blocks_written = dirty_blocks_.size();
-  for (const std::uint32_t block : dirty_blocks_) {
+  for (std::size_t index = 0; index < dirty_blocks_.size(); ++index) {
+    if (index + 2 < dirty_blocks_.size()) arrays_.fetch_block(dirty_blocks_[index + 2]);
+    if (index + 1 < dirty_blocks_.size()) arrays_.fetch_around_block(dirty_blocks_[index + 1], mesh.vertices_m);
+    const std::uint32_t block = dirty_blocks_[index];
     block_is_dirty_[block] = 0;
     const WidePlace place = arrays_.block_place[block];
     arrays_.copy_vertices(block, mesh.vertices_m);

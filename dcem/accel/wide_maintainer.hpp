@@ -58,12 +58,13 @@ class WideStepMeter {
 /// 3. Rotations along the paths that were touched (WideTree::rotate_touched).
 /// 4. The two measures of wear along these paths (wide_wear.hpp); a subtree past one of the limits is built anew in
 ///    place, the smallest first: what it has mended is no wear of a larger one.
-/// 5. What rays have wasted: once that would have paid for building all nodes anew, they are. Who rents until the rent
-///    has reached the price, and then buys, never pays twice as much as who knew before.
-/// 6. All nodes, too, where that makes them better, once refits have visited them often enough that building them anew
-///    is small change: neither measure sees a tree that might be better than it ever was. Once, too, in the first frame
-///    in which something moves: a whole build weighs a unit as one patch, and where there are many its nodes are not
-///    the best over the blocks that came out.
+/// 5. What rays have wasted: once that would have paid for building all nodes anew, they are, in each frame what hangs
+///    in one entry of the root. Who rents until the rent has reached the price, and then buys, never pays twice as much
+///    as who knew before.
+/// 6. All nodes in the same way, too, where that makes them better, once refits have visited them often enough that
+///    building them anew is small change: neither measure sees a tree that might be better than it ever was. Once, too,
+///    in the first frame in which something moves: a whole build weighs a unit as one patch, and where there are many
+///    its nodes are not the best over the blocks that came out.
 /// 7. The whole tree, blocks included, where the others do not help.
 class WideMaintainer {
  public:
@@ -119,21 +120,42 @@ class WideMaintainer {
     }
     if (settings_.regrowth) {
       if (looks_closer && tree.watched().measures()) regrow_worn(tree, report);
-      regrow_root_where_due(tree, report);
+      renew_where_due(tree, report);
     }
     const double limit = settings_.regrowth ? settings_.rebuild_growth_limit : settings_.sah_growth_limit;
     if (tree.quality().ratio() > limit) rebuild(tree, mesh, boxes, report);
   }
 
-  void regrow_root_where_due(WideTree& tree, UpkeepReport& report) {
+  /// Not all at once, which would make one frame ten times as dear as the others: what hangs in an entry of the root,
+  /// and the next one in the next frame.
+  void renew_where_due(WideTree& tree, UpkeepReport& report) {
     const auto blocks = static_cast<double>(tree.arrays().blocks.size());
     const auto all = static_cast<double>(nodes_in_use(tree));
-    if (steps_.wasted_nodes() > settings_.regrowth_price * blocks) {
-      regrow(tree, 0, infinity, report);
+    if (!parts_.empty()) {
+      // Under way.
+    } else if (steps_.wasted_nodes() > settings_.regrowth_price * blocks) {
+      begin_renewal(tree, infinity);
     } else if (std::isfinite(settings_.renewal_ratio) && visited_since_renewal_ > settings_.renewal_ratio * all) {
-      regrow(tree, 0, worth_writing, report);
-      visited_since_renewal_ = 0.0;
+      begin_renewal(tree, worth_writing);
     }
+    if (!parts_.empty()) renew_next_part(tree, report);
+  }
+
+  void begin_renewal(const WideTree& tree, double wanted_share) {
+    for (const WideChild child : tree.arrays().nodes[0].child) {
+      if (detail::is_layer_node(tree.arrays(), child)) parts_.push_back(child.index());
+    }
+    if (parts_.empty()) parts_.push_back(0);
+    wanted_of_parts_ = wanted_share;
+    visited_since_renewal_ = 0.0;
+  }
+
+  void renew_next_part(WideTree& tree, UpkeepReport& report) {
+    const std::uint32_t node = parts_.back();
+    parts_.pop_back();
+    // Another edit may have given it up.
+    if (detail::is_used_node(tree.arrays(), node)) regrow(tree, node, wanted_of_parts_, report);
+    if (parts_.empty()) note_new_root(report);
   }
 
   void regrow_worn(WideTree& tree, UpkeepReport& report) {
@@ -151,9 +173,6 @@ class WideMaintainer {
     report.nodes_rebuilt += written;
     report.subtrees_rebuilt += written > 0 ? 1U : 0U;
     report.regrown += written > 0 ? 1U : 0U;
-    if (node != 0 || written == 0) return;
-    note_new_root(report);
-    visited_since_renewal_ = 0.0;
   }
 
   void rebuild(WideTree& tree, const TriangleView& mesh, WideTree::Boxes boxes, UpkeepReport& report) {
@@ -163,6 +182,7 @@ class WideMaintainer {
     report.subtrees_rebuilt = 1;
     note_new_root(report);
     visited_since_renewal_ = infinity;
+    parts_.clear();
   }
   void note_new_root(UpkeepReport& report) {
     report.root_rebuilt = true;
@@ -183,6 +203,8 @@ class WideMaintainer {
   std::uint64_t frames_moved_ = 0;           ///< frames in which something moved
   double visited_since_renewal_ = infinity;  ///< nodes and blocks, by refits; infinite after a whole build
   std::vector<std::uint32_t> worn_;          ///< candidates
+  std::vector<std::uint32_t> parts_;         ///< nodes whose turn is still to come in a renewal
+  double wanted_of_parts_ = infinity;        ///< as WideTree::regrow has it
 };
 
 namespace detail {

@@ -67,15 +67,9 @@ class WidePlan {
   bool is_leaf(std::uint32_t slot) const { return collapse_.is_block(slot); }
   const WideLeaf& leaf(std::uint32_t slot) const { return leaves_[items_[binary_[slot].first].index]; }
 
-  /// What the wide node of a binary one holds, the largest first: any-hit queries take the lanes as they come.
+  /// What the wide node of a binary one holds, the largest first. Returns how many.
   std::size_t entries(std::uint32_t slot, std::array<std::uint32_t, simd_lanes>& found) const {
-    std::size_t count = 0;
-    collapse_.for_each_entry(slot, [&](std::uint32_t entry) { found[count++] = entry; });
-    std::stable_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
-                     [&](std::uint32_t one, std::uint32_t other) {
-                       return binary_[one].half_area_m2 > binary_[other].half_area_m2;
-                     });
-    return count;
+    return collapse_.entries(slot, found);
   }
 
   /// Σ cost · half surface of what will hang below the node.

@@ -177,7 +177,7 @@ TEST_CASE("thousands of regrown parts: no more nodes, no deeper, and the sum of 
   WideTraffic traffic({100, 25.0, true, true, true}, 8);
   WideTree tree = traffic.built();
   RandomStream random(9);
-  const std::uint32_t depth = depth_below(tree.arrays());
+  std::uint32_t deepest_early = 0, deepest_late = 0;
   std::size_t most_early = 0;
   for (int frame = 0; frame < 2000; ++frame) {
     traffic.step();
@@ -187,9 +187,13 @@ TEST_CASE("thousands of regrown parts: no more nodes, no deeper, and the sum of 
       tree.regrow(nodes[random.next() % nodes.size()]);
     }
     if (frame <= 1000) most_early = tree.arrays().nodes.size();
+    std::uint32_t& deepest = frame <= 1000 ? deepest_early : deepest_late;
+    deepest = std::max(deepest, depth_below(tree.arrays()));
     if (frame % 100 == 0) REQUIRE(tree.validate(traffic.boxes) == "");
-    REQUIRE(depth_below(tree.arrays()) <= depth + 10);
   }
+  // It sways, by two levels or so between a thousand frames and the next, but does not grow.
+  CHECK(deepest_late <= deepest_early + 5);
+  CHECK(deepest_early <= 30);
   // Free nodes are used again: what grows is the largest number that one frame needed.
   CHECK(tree.arrays().nodes.size() <= most_early + most_early / 8);
   CHECK(tree.validate(traffic.boxes) == "");
