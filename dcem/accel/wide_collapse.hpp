@@ -28,8 +28,17 @@ struct WideCosts {
 class WideCollapse {
  public:
   static constexpr std::uint32_t most = simd_lanes;
-  WideCollapse(std::span<const WideSplit> nodes, std::span<const WideItem> items, const WideCosts& costs)
-      : nodes_(nodes), costs_(costs), plans_(nodes.size()) {
+
+  WideCollapse() = default;
+  WideCollapse(std::span<const WideSplit> nodes, std::span<const WideItem> items, const WideCosts& costs) {
+    plan(nodes, items, costs);
+  }
+
+  /// Decides anew. `nodes` must outlive the questions.
+  void plan(std::span<const WideSplit> nodes, std::span<const WideItem> items, const WideCosts& costs) {
+    nodes_ = nodes;
+    costs_ = costs;
+    plans_.assign(nodes.size(), {});
     // Children stand behind their parents.
     for (std::size_t slot = nodes.size(); slot-- > 0;) {
       if (nodes[slot].is_leaf()) {

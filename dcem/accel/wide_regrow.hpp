@@ -9,135 +9,14 @@
 /// leaves only there. A regrown part has the levels of its plan, which are counted before anything changes. Where they
 /// do not fit below the node, the node above is regrown instead; at the layer's root they always fit, because the
 /// binner makes no more.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
-#include "dcem/accel/wide_layer.hpp"
 #include "dcem/accel/wide_tree.hpp"
 
 namespace dcem {
 
-namespace detail {
-
-/// What a node leads to where its layer ends: a block or a unit.
-struct WideLeaf {
-  WideChild child;
-  Aabb<float> box;
-};
-
-/// Σ cost · half surface over what hangs in one node.
-inline double weighted_area(const WideArrays& arrays, const WideNode& node) {
-  double sum_m2 = 0.0;
-  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    const double cost = node.child[lane].is_block() ? arrays.costs.block : arrays.costs.node;
-    if (!node.child[lane].is_none()) sum_m2 += cost * static_cast<double>(node.box(lane).half_area());
-  }
-  return sum_m2;
-}
-
-/// The same over all that hangs below a node in its layer.
-inline double layer_area_below(const WideArrays& arrays, std::uint32_t node) {
-  double sum_m2 = weighted_area(arrays, arrays.nodes[node]);
-  for (const WideChild child : arrays.nodes[node].child) {
-    if (is_layer_node(arrays, child)) sum_m2 += layer_area_below(arrays, child.index());
-  }
-  return sum_m2;
-}
-
-/// A plan for the part of a layer that hangs below one node. Changes nothing.
-class WidePlan {
- public:
-  using Entries = std::vector<std::uint32_t>;
-
-  WidePlan(const WideArrays& arrays, std::uint32_t node, unsigned threads)
-      : leaves_(leaves_below(arrays, node)),
-        items_(items_around(arrays.nodes[node].box())),
-        binary_(WideBinner().build(items_, 1, threads)),
-        collapse_(binary_, items_, arrays.costs) {}
-
-  bool empty() const { return leaves_.empty(); }
-  /// Of a binary node that becomes no wide one.
-  bool is_leaf(std::uint32_t slot) const { return collapse_.is_block(slot); }
-  const WideLeaf& leaf(std::uint32_t slot) const { return leaves_[items_[binary_[slot].first].index]; }
-
-  /// What the wide node of a binary one holds, the largest first. Returns how many.
-  std::size_t entries(std::uint32_t slot, std::array<std::uint32_t, simd_lanes>& found) const {
-    return collapse_.entries(slot, found);
-  }
-
-  /// Σ cost · half surface of what will hang below the node.
-  double weighted_area_m2(const WideCosts& costs, std::uint32_t slot = 0) const {
-    double sum_m2 = 0.0;
-    if (slot == 0 && is_leaf(0)) return weight_m2(costs, 0);
-    collapse_.for_each_entry(slot, [&](std::uint32_t entry) {
-      sum_m2 += weight_m2(costs, entry);
-      if (!is_leaf(entry)) sum_m2 += weighted_area_m2(costs, entry);
-    });
-    return sum_m2;
-  }
-
-  /// Levels of wide nodes.
-  std::uint32_t levels(std::uint32_t slot = 0) const {
-    if (is_leaf(slot)) return 0;
-    std::uint32_t below = 0;
-    collapse_.for_each_entry(slot, [&](std::uint32_t entry) { below = std::max(below, levels(entry)); });
-    return below + 1;
-  }
-
- private:
-  double weight_m2(const WideCosts& costs, std::uint32_t slot) const {
-    const bool is_block = is_leaf(slot) && leaf(slot).child.is_block();
-    return (is_block ? costs.block : costs.node) * static_cast<double>(binary_[slot].half_area_m2);
-  }
-
-  static std::vector<WideLeaf> leaves_below(const WideArrays& arrays, std::uint32_t node) {
-    std::vector<WideLeaf> leaves;
-    collect(arrays, node, leaves);
-    return leaves;
-  }
-  static void collect(const WideArrays& arrays, std::uint32_t node, std::vector<WideLeaf>& leaves) {
-    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-      const WideChild child = arrays.nodes[node].child[lane];
-      if (is_layer_node(arrays, child)) {
-        collect(arrays, child.index(), leaves);
-      } else if (!child.is_none()) {
-        leaves.push_back({child, arrays.nodes[node].box(lane)});
-      }
-    }
-  }
-
-  std::vector<WideItem> items_around(const Aabb<float>& all) const {
-    // What is absent is put where it stretches nothing.
-    const Aabb<float> middle =
-        all.empty() ? Aabb<float>{Vector3<float>(0.0F), Vector3<float>(0.0F)} : Aabb<float>{all.center(), all.center()};
-    std::vector<WideItem> items;
-    items.reserve(leaves_.size());
-    for (const WideLeaf& leaf : leaves_) {
-      const Aabb<float>& box = leaf.box.empty() ? middle : leaf.box;
-      items.push_back({Float4{box.min.x, box.min.y, box.min.z, 0.0F}, Float4{box.max.x, box.max.y, box.max.z, 0.0F},
-                       static_cast<std::uint32_t>(items.size()), WideItem::no_kind});
-    }
-    return items;
-  }
-
-  std::vector<WideLeaf> leaves_;
-  std::vector<WideItem> items_;
-  std::vector<WideSplit> binary_;
-  WideCollapse collapse_;
-};
-
-}  // namespace detail
-
 inline std::size_t WideTree::regrow(std::uint32_t node, double wanted_share) {
   if (!detail::is_used_node(arrays_, node)) throw std::invalid_argument("node " + std::to_string(node) + " of none");
-  const detail::WidePlan plan(arrays_, node, settings_.threads);
+  detail::WidePlan& plan = plan_;
+  plan.make(arrays_, node, settings_.threads);
   if (plan.empty()) return 0;
   const std::uint32_t deepest = detail::layer_level(arrays_, node) + plan.levels() - 1;
   if (deepest > detail::wide_layer_levels && !detail::is_layer_root(arrays_, node)) {

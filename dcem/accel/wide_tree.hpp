@@ -4,9 +4,11 @@
 ///
 /// Objects own subtrees that edits take as a whole; what moves is followed in place, without allocation.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -20,6 +22,7 @@
 #include "dcem/accel/quality.hpp"
 #include "dcem/accel/wide_arrays.hpp"
 #include "dcem/accel/wide_builder.hpp"
+#include "dcem/accel/wide_plan.hpp"
 #include "dcem/accel/wide_traversal.hpp"
 #include "dcem/accel/wide_validate.hpp"
 #include "dcem/accel/wide_wear.hpp"
@@ -30,7 +33,6 @@
 namespace dcem {
 
 namespace detail {
-class WidePlan;
 struct WideRotation;
 }  // namespace detail
 
@@ -252,6 +254,7 @@ class WideTree {
   std::vector<Branch> branches_;
   std::size_t next_turn_ = 0;
   detail::WideWearLog wear_;
+  detail::WidePlan plan_;  ///< kept for its memory
 };
 
 }  // namespace dcem

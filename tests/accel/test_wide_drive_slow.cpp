@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dcem/accel/wide_maintainer.hpp"
 #include "dcem/accel/wide_tree.hpp"
 #include "tests/accel/wide_scenes.hpp"
 #include "tests/support/shared_data.hpp"
@@ -282,6 +283,31 @@ TEST_CASE("3,000 frames: no deeper, no larger, and nothing is allocated") {
     CHECK(depth_of(trees[tree].arrays()) <= depth_at_build + 6);
   }
   CHECK(trees[1].sah_cost() < trees[0].sah_cost());
+}
+
+TEST_CASE("3,000 frames as the maintainer keeps it, parts built anew: next to nothing is allocated") {
+  Drive drive(50, false, 13);
+  WideTree tree;
+  drive.build(tree);
+  UpkeepSettings settings;
+  settings.renewal_ratio = 8.0;
+  settings.wear_interval = 5;
+  settings.sah_growth_limit = settings.deformation_limit = 1.1;
+  WideMaintainer maintainer(settings);
+  std::size_t spent = 0;
+  std::uint64_t regrown = 0;
+  for (int frame = 0; frame < 3000; ++frame) {
+    drive.step();
+    const std::size_t before = allocations;
+    const UpkeepReport report = maintainer.update(tree, drive.moved, drive.mesh.view(), drive.boxes);
+    if (frame < 1500) continue;
+    spent += allocations - before;
+    regrown += report.regrown;
+  }
+  CHECK(regrown > 100);
+  // The lists may still grow to their longest once or twice; each part built anew would take a dozen.
+  CHECK(spent <= 8);
+  CHECK(tree.validate(drive.boxes) == "");
 }
 
 TEST_CASE("the counter of allocations counts") {
