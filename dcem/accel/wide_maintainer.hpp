@@ -58,9 +58,9 @@ class WideStepMeter {
 /// 3. Rotations along the paths that were touched (WideTree::rotate_touched).
 /// 4. The two measures of wear along these paths (wide_wear.hpp); a subtree past one of the limits is built anew in
 ///    place, the smallest first: what it has mended is no wear of a larger one.
-/// 5. What rays have wasted: once that would have paid for building all nodes anew, they are, in each frame what hangs
-///    in one entry of the root. Who rents until the rent has reached the price, and then buys, never pays twice as much
-///    as who knew before.
+/// 5. What rays have wasted: once that would have paid for building all nodes anew, they are; with reinsertion, in each
+///    frame what hangs in one entry of the root. Who rents until the rent has reached the price, and then buys, never
+///    pays twice as much as who knew before.
 /// 6. All nodes in the same way, too, where that makes them better, once refits have visited them often enough that
 ///    building them anew is small change: neither measure sees a tree that might be better than it ever was. Once, too,
 ///    in the first frame in which something moves: a whole build weighs a unit as one patch, and where there are many
@@ -126,8 +126,6 @@ class WideMaintainer {
     if (tree.quality().ratio() > limit) rebuild(tree, mesh, boxes, report);
   }
 
-  /// Not all at once, which would make one frame ten times as dear as the others: what hangs in an entry of the root,
-  /// and the next one in the next frame.
   void renew_where_due(WideTree& tree, UpkeepReport& report) {
     const auto blocks = static_cast<double>(tree.arrays().blocks.size());
     const auto all = static_cast<double>(nodes_in_use(tree));
@@ -141,9 +139,14 @@ class WideMaintainer {
     if (!parts_.empty()) renew_next_part(tree, report);
   }
 
+  /// Not all at once, which would make one frame ten times as dear as the others, but what hangs in an entry of the
+  /// root, and the next one in the next frame. That needs objects to be hung elsewhere, or those that have driven away
+  /// stay in the entry that they were in.
   void begin_renewal(const WideTree& tree, double wanted_share) {
-    for (const WideChild child : tree.arrays().nodes[0].child) {
-      if (detail::is_layer_node(tree.arrays(), child)) parts_.push_back(child.index());
+    if (std::isfinite(settings_.reinsertion_growth)) {
+      for (const WideChild child : tree.arrays().nodes[0].child) {
+        if (detail::is_layer_node(tree.arrays(), child)) parts_.push_back(child.index());
+      }
     }
     if (parts_.empty()) parts_.push_back(0);
     wanted_of_parts_ = wanted_share;
@@ -154,8 +157,12 @@ class WideMaintainer {
     const std::uint32_t node = parts_.back();
     parts_.pop_back();
     // Another edit may have given it up.
-    if (detail::is_used_node(tree.arrays(), node)) regrow(tree, node, wanted_of_parts_, report);
-    if (parts_.empty()) note_new_root(report);
+    if (detail::is_used_node(tree.arrays(), node)) {
+      is_renewed_ = regrow(tree, node, wanted_of_parts_, report) || is_renewed_;
+    }
+    if (!parts_.empty() || !is_renewed_) return;
+    note_new_root(report);
+    is_renewed_ = false;
   }
 
   void regrow_worn(WideTree& tree, UpkeepReport& report) {
@@ -168,11 +175,13 @@ class WideMaintainer {
     }
   }
 
-  void regrow(WideTree& tree, std::uint32_t node, double wanted_share, UpkeepReport& report) {
+  /// Whether it changed anything.
+  bool regrow(WideTree& tree, std::uint32_t node, double wanted_share, UpkeepReport& report) {
     const std::size_t written = tree.regrow(node, wanted_share);
     report.nodes_rebuilt += written;
     report.subtrees_rebuilt += written > 0 ? 1U : 0U;
     report.regrown += written > 0 ? 1U : 0U;
+    return written > 0;
   }
 
   void rebuild(WideTree& tree, const TriangleView& mesh, WideTree::Boxes boxes, UpkeepReport& report) {
@@ -183,6 +192,7 @@ class WideMaintainer {
     note_new_root(report);
     visited_since_renewal_ = infinity;
     parts_.clear();
+    is_renewed_ = false;
   }
   void note_new_root(UpkeepReport& report) {
     report.root_rebuilt = true;
@@ -205,6 +215,7 @@ class WideMaintainer {
   std::vector<std::uint32_t> worn_;          ///< candidates
   std::vector<std::uint32_t> parts_;         ///< nodes whose turn is still to come in a renewal
   double wanted_of_parts_ = infinity;        ///< as WideTree::regrow has it
+  bool is_renewed_ = false;                  ///< whether one of them has changed anything
 };
 
 namespace detail {

@@ -109,5 +109,6 @@ struct alignas(64) PatchBlock {
   /// Room for the rounding of the edge functions: see WideRay::meets(const PatchBlock&).
   static constexpr double edge_error_factor = 10.0;
 };
+static_assert(sizeof(WideNode) == 256 && sizeof(PatchBlock) == 512, "lines of memory are what rays wait for");
 
 }  // namespace dcem
