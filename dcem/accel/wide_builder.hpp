@@ -62,11 +62,10 @@ class WideBuilder {
  public:
   explicit WideBuilder(const WideSettings& settings) : settings_(settings) {}
 
-  /// Group i has the patches [first_patch[i], first_patch[i + 1]). Boxes and corners of `arrays` are set.
+  /// Group i has the patches [first_patch[i], first_patch[i + 1]). Corners, origin and presence are set in `arrays`.
   void build(WideArrays& arrays, std::span<const WidePatch> patches, std::span<const std::uint32_t> first_patch) {
     arrays_ = &arrays;
     patches_ = patches;
-    measure_patches();
     arrays.take_node();  // the root is node 0, before the nodes of any unit
     const std::size_t groups = first_patch.size() - 1;
     arrays.unit_root.assign(groups, WideChild{});
@@ -87,16 +86,6 @@ class WideBuilder {
   }
 
  private:
-  void measure_patches() {
-    boxes_.resize(patches_.size());
-    Aabb<double> all;
-    for (std::size_t patch = 0; patch < patches_.size(); ++patch) {
-      boxes_[patch] = arrays_->box_of_patch(patches_[patch]);
-      all.extend(boxes_[patch]);
-    }
-    arrays_->origin_m = all.empty() ? Vec3(0.0) : all.center();
-  }
-
   WideItem item_around(const Aabb<double>& box, std::uint32_t index, std::uint32_t kind) const {
     WideItem item{Float4{}, Float4{}, index, kind};
     const Aabb<float> rounded = arrays_->rounded_out(box);
@@ -107,7 +96,7 @@ class WideBuilder {
     return item;
   }
   WideItem patch_item(std::uint32_t patch, std::uint32_t group) const {
-    return item_around(boxes_[patch], patch, group);
+    return item_around(arrays_->box_of_patch(patches_[patch]), patch, group);
   }
 
   /// Makes a group's own subtree and the item that stands for it.
@@ -116,7 +105,7 @@ class WideBuilder {
     Aabb<double> box;
     for (std::uint32_t patch = first; patch < last; ++patch) {
       own.push_back(patch_item(patch, group));
-      box.extend(boxes_[patch]);
+      box.extend(arrays_->box_of_patch(patches_[patch]));
     }
     const WideChild root = own.size() <= simd_lanes ? plant_block(own, group) : plant_tree(own);
     arrays_->unit_root[group] = root;
@@ -236,7 +225,6 @@ class WideBuilder {
   WideSettings settings_;
   WideArrays* arrays_ = nullptr;
   std::span<const WidePatch> patches_;
-  std::vector<Aabb<double>> boxes_;  ///< per patch
 };
 
 }  // namespace dcem

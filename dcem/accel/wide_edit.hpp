@@ -55,9 +55,13 @@ inline void WideTree::plant(const TriangleView& mesh, Boxes boxes) {
   arrays_.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
   arrays_.is_there.resize(boxes.size());
   arrays_.patch_of_triangle.resize(boxes.size());
+  Aabb<double> all;
   for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
-    arrays_.is_there[triangle] = boxes[triangle].empty() ? 0 : 1;
+    const bool is_there = !boxes[triangle].empty();
+    arrays_.is_there[triangle] = is_there ? 1 : 0;
+    if (is_there) all.extend(boxes[triangle]);
   }
+  arrays_.origin_m = all.empty() ? Vec3(0.0) : all.center();
   WideBuilder(settings_).build(arrays_, patches_, first_patch_);
   sah_at_build_ = sah_cost();
   block_is_dirty_.assign(arrays_.blocks.size(), 0);
