@@ -18,7 +18,7 @@ import sys
 POLICIES = ["rebuild", "refit", "adaptive"]  # of the wide tree
 BREAK_EVENS = [("refit", "rebuild"), ("adaptive", "rebuild"), ("refit", "adaptive")]  # (cheaper update, cheaper rays)
 STYLES = {"rebuild": ("#0072B2", "-"), "refit": ("#D55E00", "--"), "adaptive": ("#009E73", "-.")}
-NUMBERS = ["update_ms", "closest_ns_per_ray", "occluded_ns_per_ray", "reinserted", "rotated", "regrown"]
+NUMBERS = ["update_ms", "closest_ns_per_ray", "occluded_ns_per_ray", "sah_cost", "reinserted", "rotated", "regrown"]
 RESAMPLES = 1000
 
 
@@ -165,6 +165,15 @@ def draw_frames(axes, series, rays, window):
     axes.legend(ncol=len(POLICIES), loc="upper left", title=f"running median over {window} frames")
 
 
+def draw_curve(axes, series, window, value, label):
+    for policy in POLICIES:
+        colour, line = STYLES[policy]
+        axes.plot([frame["frame"] for frame in series[policy]],
+                  running_median([value(frame) for frame in series[policy]], window), line, color=colour)
+    axes.set_ylim(bottom=0.0)
+    axes.set_ylabel(label)
+
+
 def draw_reinserted(axes, frames, window):
     colour = STYLES["adaptive"][0]
     numbers, counts = [frame["frame"] for frame in frames], [frame["reinserted"] for frame in frames]
@@ -224,22 +233,26 @@ def draw(series, cars, points, options):
                          "grid.color": "#DDDDDD", "axes.axisbelow": True, "lines.linewidth": 1.6,
                          "axes.titlesize": 10, "axes.titleweight": "bold", "axes.titlelocation": "left",
                          "svg.hashsalt": "motion"})
-    figure = plt.figure(figsize=(7.5, 10.0), layout="constrained")
-    grid = figure.add_gridspec(4, 1, height_ratios=[3.2, 1.1, 1.2, 3.8])
+    figure = plt.figure(figsize=(7.5, 13.0), layout="constrained")
+    grid = figure.add_gridspec(6, 1, height_ratios=[3.0, 1.6, 1.6, 1.1, 1.2, 3.6])
     frames = figure.add_subplot(grid[0])
-    counts, lanes = (figure.add_subplot(grid[row], sharex=frames) for row in (1, 2))
-    rays = figure.add_subplot(grid[3])
-    for axes in (frames, counts):
+    rates, costs, counts, lanes = (figure.add_subplot(grid[row], sharex=frames) for row in (1, 2, 3, 4))
+    rays = figure.add_subplot(grid[5])
+    for axes in (frames, rates, costs, counts):
         axes.tick_params(labelbottom=False)
     draw_frames(frames, series, options.rays, options.window)
+    draw_curve(rates, series, options.window, lambda frame: 1e3 / max(frame["closest_ns_per_ray"], 1e-3), "Mrays/s")
+    draw_curve(costs, series, options.window, lambda frame: frame["sah_cost"], "SAH cost")
     draw_reinserted(counts, series["adaptive"], options.window)
     draw_deeds(lanes, series["adaptive"])
     draw_rays(rays, series, points)
     where = f"{cars} cars" + (f" in {options.scene}" if options.scene else "")
     figure.suptitle(f"{where}: what a frame costs", fontsize=12)
     frames.set_title(f"(a) Update and {options.rays:,} rays, half closest, half occluded")
-    counts.set_title("(b) What the adaptive policy did (in brackets: in how many frames)")
-    rays.set_title("(c) Over the number of rays, from the last tenth of the frames")
+    rates.set_title("(b) Closest rays: millions a second, one thread")
+    costs.set_title("(c) What a long random ray costs by the surface-area heuristic")
+    counts.set_title("(d) What the adaptive policy did (in brackets: in how many frames)")
+    rays.set_title("(e) Over the number of rays, from the last tenth of the frames")
     figure.savefig(options.picture + ".svg", metadata=dict.fromkeys(["Date", "Creator", "Format", "Type"]))
     figure.savefig(options.picture + ".png", dpi=110)
 
