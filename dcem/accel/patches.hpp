@@ -158,7 +158,7 @@ class PatchBuilder {
   void collect_pairs() {
     for (std::size_t vertex = 0; vertex + 1 < first_edge_.size(); ++vertex) {
       const std::size_t first = first_edge_[vertex], last = first_edge_[vertex + 1];
-      std::sort(edges_.begin() + first, edges_.begin() + last);
+      std::ranges::sort(std::span(edges_).subspan(first, last - first));
       const std::uint32_t low = lowest_ + static_cast<std::uint32_t>(vertex);
       for (std::size_t index = first; index + 1 < last; ++index) {
         for (std::size_t next = index + 1; next < last && next < index + 4; ++next) {

@@ -158,9 +158,10 @@ namespace detail {
   far_error_m_ = (farthest + extent_m) * 0x1p-48F;
   t_min_ = static_cast<float>(std::min(ray.t_min, 1e30)) * (1.0F - 8 * unit) + 0.0F;
   // Without branches, because rays point everywhere; NaN fails every comparison.
-  const Int4 fails = ~((size < 1e12F) & (distance < 1e12F));
-  usable_ = (detail::is_zero(fails) & !detail::is_zero(size > 1e-12F) & (farthest <= 1e5F * extent_m) &
-             (ray.t_min >= 0.0) & (ray.t_min <= ray.t_max)) != 0;
+  const bool is_in_range = detail::is_zero(~((size < 1e12F) & (distance < 1e12F)));
+  const bool leads_nowhere = detail::is_zero(size > 1e-12F);
+  usable_ = (is_in_range & !leads_nowhere & (farthest <= 1e5F * extent_m) & (ray.t_min >= 0.0) &
+             (ray.t_min <= ray.t_max)) != 0;
 }
 
 [[gnu::always_inline]] inline Mask8 WideRay::meets(const WideNode& node, float t_max, Float8& entry) const {
