@@ -132,7 +132,8 @@ def deeds(frames):
     done = {"refit only": [], "cars reinserted": [], "subtree regrown": [], "all nodes regrown": [],
             "tree rebuilt": []}
     for frame in frames:
-        in_place = frame["regrown"] - (frame["rebuilt"] == "nodes")  # all nodes count as a subtree, too
+        # All nodes, or their last part, count as a subtree, too.
+        in_place = frame["regrown"] - (frame["rebuilt"] == "nodes")
         for what, happened in [("cars reinserted", frame["reinserted"]), ("subtree regrown", in_place > 0),
                                ("all nodes regrown", frame["rebuilt"] == "nodes"),
                                ("tree rebuilt", frame["rebuilt"] == "tree"),

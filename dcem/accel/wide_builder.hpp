@@ -74,7 +74,7 @@ class WideBuilder {
     for (std::uint32_t group = 0; group < groups; ++group) {
       if (first_patch[group + 1] - first_patch[group] > settings_.unit_limit) {
         for (std::uint32_t patch = first_patch[group]; patch < first_patch[group + 1]; ++patch) {
-          items.push_back(patch_item(patch, group));
+          items.push_back(item_around(arrays_->box_of_patch(patches_[patch]), patch, group));
         }
       } else if (first_patch[group + 1] > first_patch[group]) {
         items.push_back(plant_unit(group, first_patch[group], first_patch[group + 1]));
@@ -95,17 +95,14 @@ class WideBuilder {
     }
     return item;
   }
-  WideItem patch_item(std::uint32_t patch, std::uint32_t group) const {
-    return item_around(arrays_->box_of_patch(patches_[patch]), patch, group);
-  }
-
   /// Makes a group's own subtree and the item that stands for it.
   WideItem plant_unit(std::uint32_t group, std::uint32_t first, std::uint32_t last) {
     std::vector<WideItem> own;
     Aabb<double> box;
     for (std::uint32_t patch = first; patch < last; ++patch) {
-      own.push_back(patch_item(patch, group));
-      box.extend(arrays_->box_of_patch(patches_[patch]));
+      const Aabb<double> held = arrays_->box_of_patch(patches_[patch]);
+      own.push_back(item_around(held, patch, group));
+      box.extend(held);
     }
     const WideChild root = own.size() <= simd_lanes ? plant_block(own, group) : plant_tree(own);
     arrays_->unit_root[group] = root;

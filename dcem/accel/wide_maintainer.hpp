@@ -127,16 +127,18 @@ class WideMaintainer {
   }
 
   void renew_where_due(WideTree& tree, UpkeepReport& report) {
+    if (parts_.empty()) begin_renewal_where_due(tree);
+    if (!parts_.empty()) renew_next_part(tree, report);
+  }
+
+  void begin_renewal_where_due(const WideTree& tree) {
     const auto blocks = static_cast<double>(tree.arrays().blocks.size());
     const auto all = static_cast<double>(nodes_in_use(tree));
-    if (!parts_.empty()) {
-      // Under way.
-    } else if (steps_.wasted_nodes() > settings_.regrowth_price * blocks) {
+    if (steps_.wasted_nodes() > settings_.regrowth_price * blocks) {
       begin_renewal(tree, infinity);
     } else if (std::isfinite(settings_.renewal_ratio) && visited_since_renewal_ > settings_.renewal_ratio * all) {
       begin_renewal(tree, worth_writing);
     }
-    if (!parts_.empty()) renew_next_part(tree, report);
   }
 
   /// Not all at once, which would make one frame ten times as dear as the others, but what hangs in an entry of the
