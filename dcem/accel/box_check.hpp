@@ -3,6 +3,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -36,17 +37,36 @@ bool is_plain_box(const Aabb<Scalar>& box) {
   return (is_plain(box.min.x, box.max.x) & is_plain(box.min.y, box.max.y) & is_plain(box.min.z, box.max.z)) != 0;
 }
 
-/// The same in four numbers at a time.
-inline bool is_plain_box(const Aabb<double>& box) {
+namespace detail {
+
+/// Looks at boxes four numbers at a time, and only at the end whether all were plain: for scenes with many.
+class PlainBoxes {
+ public:
+  void add(const Aabb<double>& box) {
+    static_assert(sizeof box == 48);
+    Double4 first, last;  // min and max.x; min.z and max
+    std::memcpy(&first, &box, sizeof first);
+    std::memcpy(&last, reinterpret_cast<const char*>(&box) + 16, sizeof last);
+    const Double4 max = __builtin_shufflevector(first, last, 5, 6, 7, 5);
+    holds_ &= (first >= -maximum_coordinate_m) & (first <= maximum_coordinate_m) & (last >= -maximum_coordinate_m) &
+              (last <= maximum_coordinate_m) & (first <= max);
+  }
+  bool all() const { return (holds_[0] & holds_[1] & holds_[2] & holds_[3]) != 0; }
+
+ private:
   using Double4 = double __attribute__((vector_size(32)));
-  static_assert(sizeof box == 48);
-  Double4 first, last;  // min and max.x; min.z and max
-  std::memcpy(&first, &box, sizeof first);
-  std::memcpy(&last, reinterpret_cast<const char*>(&box) + 16, sizeof last);
-  const Double4 max = __builtin_shufflevector(first, last, 5, 6, 7, 5);
-  const auto holds = (first >= -maximum_coordinate_m) & (first <= maximum_coordinate_m) &
-                     (last >= -maximum_coordinate_m) & (last <= maximum_coordinate_m) & (first <= max);
-  return (holds[0] & holds[1] & holds[2] & holds[3]) != 0;
+  using Long4 = std::int64_t __attribute__((vector_size(32)));
+
+  Long4 holds_ = ~Long4{};
+};
+
+}  // namespace detail
+
+/// The same for numbers of double precision, faster.
+inline bool is_plain_box(const Aabb<double>& box) {
+  detail::PlainBoxes one;
+  one.add(box);
+  return one.all();
 }
 
 /// True for a plain box, and for an empty one (min > max on some axis) without NaN.

@@ -37,6 +37,18 @@ template <typename Value>
   }
 }
 
+/// What `choose(one, other)`, for numbers as for registers, leaves of all lanes.
+template <typename Choose>
+[[gnu::always_inline]] inline double fold_lanes(const DoublePart& part, Choose&& choose) {
+  if constexpr (double_part_lanes == 4) {
+    using Double2 = double __attribute__((vector_size(16)));
+    const Double2 two = choose(__builtin_shufflevector(part, part, 0, 1), __builtin_shufflevector(part, part, 2, 3));
+    return choose(two[0], two[1]);
+  } else {
+    return choose(part[0], part[1]);
+  }
+}
+
 /// A vector in each lane of a register.
 struct VectorPart {
   DoublePart x, y, z;

@@ -28,6 +28,10 @@ namespace dcem {
 /// Node 0 is the root. Nodes and blocks never move; what an edit gives up is used again. A unit is a group that owns a
 /// subtree: one entry of the tree leads to it, and edits above take it as a whole.
 struct WideArrays {
+  /// Vertices that follow one another, and all are corners of one block; none where its corners lie scattered.
+  struct VertexRun {
+    std::uint32_t first = 0, count = 0;
+  };
   static constexpr std::uint32_t no_unit = 0xffffffffU;
 
   std::vector<WideNode> nodes;
@@ -37,6 +41,7 @@ struct WideArrays {
   std::vector<WidePlace> block_place;
   std::vector<std::uint32_t> block_unit;  ///< the unit whose root it is, or no_unit
   std::vector<std::uint32_t> group_of_block;
+  std::vector<VertexRun> run_of_block;
   std::vector<std::uint32_t> free_nodes;
 
   std::vector<WidePatch> patches;  ///< block b holds 8 b … 8 b + 7
@@ -87,6 +92,8 @@ struct WideArrays {
   /// to look as far ahead as the next.
   void fetch_block(std::uint32_t block) const;
   void fetch_around_block(std::uint32_t block, std::span<const Vec3> from_m) const;
+  /// To be called once the patches of a block are there.
+  void find_run(std::uint32_t block);
   /// Takes over where the corners of a block are.
   void copy_vertices(std::uint32_t block, std::span<const Vec3> from_m);
   TriangleCorners corners_m(std::uint32_t triangle) const {
@@ -143,7 +150,7 @@ struct WideArrays {
 
 inline void WideArrays::clear() {
   const auto empty = [](auto&... lists) { (lists.clear(), ...); };
-  empty(nodes, node_place, node_unit, blocks, block_place, block_unit, group_of_block, free_nodes, patches, planes,
+  empty(nodes, node_place, node_unit, blocks, block_place, block_unit, group_of_block, run_of_block, free_nodes, patches, planes,
         patch_of_triangle, vertices_m, triangles, is_there, unit_root);
   origin_m = Vec3(0.0);
   extent_m = 0.0F;
@@ -167,6 +174,7 @@ inline std::uint32_t WideArrays::add_block(std::uint32_t group) {
   block_place.emplace_back();
   block_unit.push_back(no_unit);
   group_of_block.push_back(group);
+  run_of_block.emplace_back();
   patches.resize(patches.size() + simd_lanes);
   planes.resize(planes.size() + simd_lanes);
   return static_cast<std::uint32_t>(blocks.size() - 1);
@@ -217,12 +225,17 @@ inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
 [[gnu::always_inline]] inline void WideArrays::fetch_block(std::uint32_t block) const {
   fetch(&blocks[block], 1);
   fetch(&patches[std::size_t{block} * simd_lanes], simd_lanes);
-  fetch(&planes[std::size_t{block} * simd_lanes], simd_lanes);
 }
 
 [[gnu::always_inline]] inline void WideArrays::fetch_around_block(std::uint32_t block,
                                                                   std::span<const Vec3> from_m) const {
   fetch(&nodes[block_place[block].node()], 1);
+  fetch(&planes[std::size_t{block} * simd_lanes], std::bit_width(blocks[block].lanes));
+  if (const auto [first, count] = run_of_block[block]; count != 0) {
+    fetch(&from_m[first], count);
+    fetch(&vertices_m[first], count);
+    return;
+  }
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
     const WidePatch& patch = patches[block * simd_lanes + lane];
     if (patch.is_none()) continue;
@@ -233,7 +246,31 @@ inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
   }
 }
 
+inline void WideArrays::find_run(std::uint32_t block) {
+  const std::span<const WidePatch> held = std::span(patches).subspan(std::size_t{block} * simd_lanes, simd_lanes);
+  const auto for_each_corner = [&](auto&& visit) {
+    for (const WidePatch& patch : held) {
+      if (patch.is_none()) continue;
+      for (const std::uint32_t vertex : patch.corner) visit(vertex);
+    }
+  };
+  std::uint32_t lowest = held.front().corner[0], seen = 0;
+  for_each_corner([&](std::uint32_t vertex) { lowest = std::min(lowest, vertex); });
+  bool is_near = true;
+  for_each_corner([&](std::uint32_t vertex) {
+    is_near = is_near && vertex - lowest < 32;
+    seen |= 1U << (vertex - lowest) % 32;
+  });
+  const auto count = static_cast<std::uint32_t>(std::popcount(seen));
+  const bool follows = is_near && count == static_cast<std::uint32_t>(std::countr_one(seen));
+  run_of_block[block] = follows ? VertexRun{lowest, count} : VertexRun{};
+}
+
 inline void WideArrays::copy_vertices(std::uint32_t block, std::span<const Vec3> from_m) {
+  if (const auto [first, count] = run_of_block[block]; count != 0) {
+    std::copy_n(from_m.begin() + first, count, vertices_m.begin() + first);
+    return;
+  }
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
     const WidePatch& patch = patches[block * simd_lanes + lane];
     if (patch.is_none()) continue;

@@ -36,6 +36,10 @@ class BlockWriter {
       begin_[1][lane] = patches[lane]->begin[1];
       is_pair_[lane] = patches[lane]->is_pair() ? 1 : 0;
     }
+    begins_at_a_.fill(true);
+    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+      if ((patches[lane]->begin[0] | patches[lane]->begin[1]) != 0) begins_at_a_[lane / double_part_lanes] = false;
+    }
     for (std::size_t part = 0; part < parts; ++part) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
         world_m_[part][corner].set([&](std::size_t lane) -> const Vec3& {
@@ -57,11 +61,9 @@ class BlockWriter {
         high.z = high.z > corner.z ? high.z : corner.z;
       }
     }
-    Aabb<double> box;
-    for (int lane = 0; lane < static_cast<int>(double_part_lanes); ++lane) {
-      box.extend(Aabb<double>{{low.x[lane], low.y[lane], low.z[lane]}, {high.x[lane], high.y[lane], high.z[lane]}});
-    }
-    return box;
+    const auto lower = [](const auto& one, const auto& other) { return one < other ? one : other; };
+    return {{fold_lanes(low.x, lower), fold_lanes(low.y, lower), fold_lanes(low.z, lower)},
+            {fold_lanes(high.x, larger), fold_lanes(high.y, larger), fold_lanes(high.z, larger)}};
   }
 
   /// Writes what there is of each lane; the normals are kept. Corners count from `origin_m` + `centre_m`, which are
@@ -69,8 +71,8 @@ class BlockWriter {
   void write(const Vec3& origin_m, const Vec3& centre_m, PatchBlock& block) {
     bend_m_ = diameter_m_ = DoublePart{};
     for (std::size_t part = 0; part < parts; ++part) write_part(part, origin_m, centre_m, block);
-    block.bend_m = static_cast<float>(largest_lane(bend_m_));
-    block.reach_m = static_cast<float>(largest_lane(diameter_m_) * PatchBlock::edge_error_factor);
+    block.bend_m = static_cast<float>(fold_lanes(bend_m_, larger));
+    block.reach_m = static_cast<float>(fold_lanes(diameter_m_, larger) * PatchBlock::edge_error_factor);
   }
 
   void write_normal(std::size_t side, std::size_t lane, Vec3& to) const {
@@ -82,11 +84,7 @@ class BlockWriter {
   double difference_squared(std::size_t lane) const { return difference_squared_[lane]; }
 
  private:
-  static double largest_lane(const DoublePart& part) {
-    double result = part[0];
-    for (int lane = 1; lane < static_cast<int>(double_part_lanes); ++lane) result = std::max(result, part[lane]);
-    return result;
-  }
+  static constexpr auto larger = [](const auto& one, const auto& other) { return one > other ? one : other; };
 
   static constexpr std::size_t parts = simd_lanes / double_part_lanes;
   /// What is smaller is no length.
@@ -108,7 +106,7 @@ class BlockWriter {
     place_corners(world_m_[part], origin_m, centre_m, is_pair, corner);
     for (std::size_t index = 0; index < 4; ++index) store(corner[index], block.corner_m[index], first);
     Edges edges;
-    edges.set(corner);
+    edges.set(world_m_[part]);
     VectorPart normal, other_normal;
     set_normals(part, edges, normal, other_normal);
     store(normal, block.normal, first);
@@ -124,7 +122,7 @@ class BlockWriter {
     diameter_m_ = diameter > diameter_m_ ? diameter : diameter_m_;
   }
 
-  /// Ways between the corners, and the products that point along the normals.
+  /// Ways between the corners in the world, and the products that point along the normals.
   struct Edges {
     VectorPart ab, ac, ad, bc, cd, bd, at_b, at_d;
 
@@ -168,8 +166,15 @@ class BlockWriter {
                                           VectorPart& other_normal) {
     const std::array<VectorPart, 4>& world = world_m_[part];
     const std::size_t first = part * double_part_lanes;
-    set_normal(codes(begin_[0], part), {world[0], world[1], world[2]}, edges.at_b, normal);
-    set_normal(codes(begin_[1], part), {world[0], world[2], world[3]}, edges.at_d, other_normal);
+    if (begins_at_a_[part]) {
+      normal = edges.at_b;
+      other_normal = edges.at_d;
+    } else {
+      set_product(codes(begin_[0], part), {world[0], world[1], world[2]}, edges.at_b, normal);
+      set_product(codes(begin_[1], part), {world[0], world[2], world[3]}, edges.at_d, other_normal);
+    }
+    make_unit(normal);
+    make_unit(other_normal);
     normal.store(&normal_[0][0][first], &normal_[0][1][first], &normal_[0][2][first]);
     other_normal.store(&normal_[1][0][first], &normal_[1][1][first], &normal_[1][2][first]);
     DoublePart difference;
@@ -178,10 +183,11 @@ class BlockWriter {
     std::memcpy(&difference_squared_[first], &difference, sizeof difference);
   }
 
-  /// `corner`: of a triangle, in the world. `begin`: which of them is its first. (Which of the others is the second
-  /// changes the sign of the product and nothing else.) `towards`: where the patch's own order of corners points.
-  [[gnu::always_inline]] static void set_normal(const LongPart& begin, const std::array<VectorPart, 3>& corner,
-                                                const VectorPart& towards, VectorPart& result) {
+  /// What points along the normal of a triangle with these corners. `begin`: which of them is its first. (Which of the
+  /// others is the second changes the sign of the product and nothing else.) `towards`: where the patch's own order of
+  /// corners points, and the product itself where the triangle begins with the first.
+  [[gnu::always_inline]] static void set_product(const LongPart& begin, const std::array<VectorPart, 3>& corner,
+                                                 const VectorPart& towards, VectorPart& result) {
     VectorPart first, next, last;
     const LongPart is_one = begin == 1, is_two = begin == 2;
     first.set_where(is_one, corner[1], corner[0]);
@@ -193,12 +199,16 @@ class BlockWriter {
     next.set_difference(next, first);
     last.set_difference(last, first);
     result.set_cross(next, last);
-    DoublePart squared, scale, along;
-    result.dot(result, squared);
+    DoublePart along;
     result.dot(towards, along);
+    result.scale(along < 0.0 ? DoublePart{} - 1.0 : DoublePart{} + 1.0);
+  }
+
+  [[gnu::always_inline]] static void make_unit(VectorPart& vector) {
+    DoublePart squared, scale;
+    vector.dot(vector, squared);
     set_reciprocal_root(scale, squared, 4);
-    scale = along < 0.0 ? -scale : scale;
-    result.scale(squared > least_squared ? scale : DoublePart{});
+    vector.scale(squared > least_squared ? scale : DoublePart{});
   }
 
   [[gnu::always_inline]] static void set_diameter(const Edges& edges, DoublePart& result) {
@@ -239,6 +249,7 @@ class BlockWriter {
   std::array<std::array<VectorPart, 4>, parts> world_m_;
   alignas(64) std::array<Codes, 2> begin_;
   alignas(64) Codes is_pair_;
+  std::array<bool, parts> begins_at_a_;  ///< both triangles, in all lanes
   std::array<std::array<Row, 3>, 2> normal_;
   Row difference_squared_;
   DoublePart bend_m_, diameter_m_;  ///< the largest of the lanes so far

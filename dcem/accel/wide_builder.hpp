@@ -93,6 +93,7 @@ class WideBuilder {
       item.low[axis] = rounded.min[axis];
       item.high[axis] = rounded.max[axis];
     }
+    item.note_size();
     return item;
   }
   /// Makes a group's own subtree and the item that stands for it.
@@ -173,6 +174,7 @@ class WideBuilder {
         arrays_->patch_of_triangle[triangle] = block * simd_lanes + lane;
       }
     }
+    arrays_->find_run(block);
     return WideChild::block(block);
   }
 

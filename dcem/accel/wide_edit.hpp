@@ -81,23 +81,11 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
     throw std::invalid_argument("one box per triangle of the tree is needed");
   }
   if (mesh.vertices_m.size() != arrays_.vertices_m.size()) throw std::invalid_argument("the vertices are others");
-  is_there_now_.clear();
-  for (const std::uint32_t triangle : moved) {
-    if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
-    const bool is_there = is_plain_box(boxes[triangle]);
-    if (!is_there) require_valid_box(boxes[triangle], triangle);
-    is_there_now_.push_back(is_there ? 1 : 0);
-  }
+  look_at_boxes(moved, boxes);
   for (const std::uint32_t unit : moved_units_) unit_is_moved_[unit] = 0;
   moved_units_.clear();
   WideRefitReport report;
-  for (std::size_t index = 0; index < moved.size(); ++index) {
-    arrays_.is_there[moved[index]] = is_there_now_[index];
-    const std::uint32_t block = arrays_.patch_of_triangle[moved[index]] / simd_lanes;
-    if (block_is_dirty_[block] != 0) continue;
-    block_is_dirty_[block] = 1;
-    dirty_blocks_.push_back(block);
-  }
+  mark_dirty(moved);
   report.blocks_written = dirty_blocks_.size();
   for (std::size_t index = 0; index < dirty_blocks_.size(); ++index) {
     if (index + 2 < dirty_blocks_.size()) arrays_.fetch_block(dirty_blocks_[index + 2]);
@@ -118,6 +106,33 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
   dirty_blocks_.clear();
   if (arrays_.is_area_worn()) sum_anew();
   return report;
+}
+
+/// Which of the triangles are there now. `is_there_now_` is empty when all are: then nothing is noted one by one.
+inline void WideTree::look_at_boxes(std::span<const std::uint32_t> moved, Boxes boxes) {
+  is_there_now_.clear();
+  detail::PlainBoxes plain;
+  for (const std::uint32_t triangle : moved) {
+    if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
+    plain.add(boxes[triangle]);
+  }
+  if (plain.all()) return;
+  for (const std::uint32_t triangle : moved) {
+    require_valid_box(boxes[triangle], triangle);
+    is_there_now_.push_back(boxes[triangle].empty() ? 0 : 1);
+  }
+}
+
+/// Notes the blocks in which triangles have moved, each once.
+inline void WideTree::mark_dirty(std::span<const std::uint32_t> moved) {
+  std::uint32_t last = WidePlace::none_code;
+  for (std::size_t index = 0; index < moved.size(); ++index) {
+    arrays_.is_there[moved[index]] = is_there_now_.empty() ? char{1} : is_there_now_[index];
+    const std::uint32_t block = arrays_.patch_of_triangle[moved[index]] / simd_lanes;
+    if (block == last || block_is_dirty_[block] != 0) continue;
+    block_is_dirty_[last = block] = 1;
+    dirty_blocks_.push_back(block);
+  }
 }
 
 inline void WideTree::note_moved_unit(std::uint32_t group) {
@@ -183,22 +198,21 @@ inline void WideTree::take_out(WidePlace place) {
 inline void WideTree::offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best) {
   const auto& [cost_m2, node, level] = branch;
   const WideNode& held = arrays_.nodes[node];
+  const detail::BoxLanes boxes(held);
+  const std::array<float, simd_lanes> own = boxes.half_areas(), grown = boxes.half_areas_with(box);
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
     const WideChild child = held.child[lane];
     if (child.is_none()) {
       if (cost_m2 < best.cost_m2) best = {cost_m2, node, lane, false};
       continue;
     }
-    Aabb<float> both = held.box(lane);
-    const double own_m2 = static_cast<double>(both.half_area());
-    both.extend(box);
-    const double both_m2 = arrays_.costs.node * static_cast<double>(both.half_area());
+    const double both_m2 = arrays_.costs.node * static_cast<double>(grown[lane]);
     if (child.is_block() || arrays_.unit_of(child) != WideArrays::no_unit) {
       const bool may_join = level < detail::wide_edit_levels;
       if (may_join && cost_m2 + both_m2 < best.cost_m2) best = {cost_m2 + both_m2, node, lane, true};
       continue;
     }
-    const double grown_m2 = cost_m2 + both_m2 - arrays_.costs.node * own_m2;
+    const double grown_m2 = cost_m2 + both_m2 - arrays_.costs.node * static_cast<double>(own[lane]);
     if (!(grown_m2 < best.cost_m2)) continue;
     branches_.push_back({grown_m2, child.index(), level + 1});
     std::push_heap(branches_.begin(), branches_.end());

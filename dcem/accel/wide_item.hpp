@@ -9,14 +9,29 @@
 
 namespace dcem {
 
+namespace detail {
+
+/// Of a box of so many metres along the axes.
+inline float half_area_of(const Float4& size_m) {
+  const Float4 faces_m2 = size_m * __builtin_shufflevector(size_m, size_m, 1, 2, 0, 3);
+  return faces_m2[0] + faces_m2[1] + faces_m2[2];
+}
+
+}  // namespace detail
+
 /// What the tree is built from.
 struct WideItem {
   static constexpr std::uint32_t no_kind = 0xffffffffU;  ///< of an item that shares a block with nothing
 
-  Float4 low, high;  ///< the box; the fourth number is 0. An empty box is a point at 0
+  Float4 low, high;  ///< the box; an empty one is a point at 0. The fourth numbers: 0, and what `note_size` says
   std::uint32_t index = 0;
   std::uint32_t kind = no_kind;  ///< items of one kind may share a block
 
+  /// Makes half the surface a fourth coordinate. Items are divided by it, too: the ground of a city is as large as all
+  /// else together, and wherever its centre lies the box of what is beside it would be everything.
+  void note_size() { high[3] = detail::half_area_of(high - low); }
+
+  /// And the size, as the fourth number.
   Float4 twice_centre() const { return low + high; }
 };
 
@@ -30,12 +45,6 @@ struct WideSplit {
 };
 
 namespace detail {
-
-/// Of a box of so many metres along the axes.
-inline float half_area_of(const Float4& size_m) {
-  const Float4 faces_m2 = size_m * __builtin_shufflevector(size_m, size_m, 1, 2, 0, 3);
-  return faces_m2[0] + faces_m2[1] + faces_m2[2];
-}
 
 /// A box in single precision, empty at first; the fourth number is of no account.
 struct FloatBox {

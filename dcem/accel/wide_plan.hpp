@@ -114,6 +114,7 @@ class WidePlan {
       const Aabb<float>& box = leaf.box.empty() ? middle : leaf.box;
       items_.push_back({Float4{box.min.x, box.min.y, box.min.z, 0.0F}, Float4{box.max.x, box.max.y, box.max.z, 0.0F},
                         static_cast<std::uint32_t>(items_.size()), WideItem::no_kind});
+      items_.back().note_size();
     }
   }
 

@@ -34,6 +34,7 @@ class WideSplitter {
  public:
   static constexpr std::uint32_t bins = 16;
   static constexpr std::size_t sweep_limit = 8;  ///< so few items are divided at the best of all places
+  static constexpr std::size_t size_limit = 512;  ///< from so many items on they are divided by size, too
 
   /// Reorders the items. Returns how many of them go to the left: where Σ surface · weight is least. `centres`: around
   /// twice their centres. `spare`: as many places.
@@ -95,21 +96,22 @@ class WideSplitter {
   static std::uint32_t count_of(const WideItem& item) { return item.kind == WideItem::no_kind ? simd_lanes : 1; }
 
   static Choice best_choice(std::span<const WideItem> items, const Float4& low, const Float4& scale) {
-    std::array<std::array<detail::BinBox, bins>, 3> boxes;
-    std::array<std::array<std::uint32_t, bins>, 3> counts{};
+    const std::size_t axes = items.size() < size_limit ? 3 : 4;
+    std::array<std::array<detail::BinBox, bins>, 4> boxes;
+    std::array<std::array<std::uint32_t, bins>, 4> counts{};
     for (const WideItem& item : items) {
       const detail::BinBox box(item);
       const Int4 bin = bin_of(item, low, scale);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t axis = 0; axis < axes; ++axis) {
         const auto slot = static_cast<std::size_t>(bin[static_cast<int>(axis)]);
         boxes[axis][slot].extend(box);
         counts[axis][slot] += count_of(item);
       }
     }
     Choice best;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto index = static_cast<std::size_t>(axis);
-      if (scale[axis] > 0.0F) try_axis(boxes[index], counts[index], axis, best);
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      const int which = static_cast<int>(axis);
+      if (scale[which] > 0.0F) try_axis(boxes[axis], counts[axis], which, best);
     }
     return best;
   }

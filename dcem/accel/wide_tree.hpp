@@ -211,6 +211,8 @@ class WideTree {
   static void require_input(const TriangleView& mesh, Boxes boxes);
   static void require_corners(const TriangleView& mesh, std::uint32_t triangle);
   void plant(const TriangleView& mesh, Boxes boxes);
+  void look_at_boxes(std::span<const std::uint32_t> moved, Boxes boxes);
+  void mark_dirty(std::span<const std::uint32_t> moved);
   void note_moved_unit(std::uint32_t group);
   bool take_out_and_hang(std::uint32_t group);
   void take_out(WidePlace place);
