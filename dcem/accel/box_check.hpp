@@ -9,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "dcem/geometry/aabb.hpp"
 
@@ -86,10 +87,20 @@ void require_valid_box(const Aabb<Scalar>& box, std::size_t primitive) {
   }
 }
 
+/// Whether all of many boxes are plain.
+inline bool are_plain_boxes(std::span<const Aabb<double>> boxes) {
+  detail::PlainBoxes plain;
+  for (const Aabb<double>& box : boxes) plain.add(box);
+  return plain.all();
+}
+
 /// Throws std::invalid_argument for a box that is not valid, and for more boxes than a tree can number.
 template <std::floating_point Scalar>
 void require_valid_boxes(std::span<const Aabb<Scalar>> boxes) {
   if (boxes.size() > maximum_primitive_count) throw std::invalid_argument("a tree holds at most 2^30 primitives");
+  if constexpr (std::is_same_v<Scalar, double>) {
+    if (are_plain_boxes(boxes)) return;
+  }
   for (std::size_t primitive = 0; primitive < boxes.size(); ++primitive) {
     require_valid_box(boxes[primitive], primitive);
   }

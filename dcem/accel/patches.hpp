@@ -2,12 +2,14 @@
 /// Pairs triangles into flat convex quadrilaterals: what a wide tree holds in its leaves.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "dcem/accel/key_order.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/triangle.hpp"
 #include "dcem/geometry/vector.hpp"
@@ -98,8 +100,10 @@ class PatchBuilder {
       collect_edges(first, last);
       collect_pairs();
     }
+    order_pairs();
     taken_.assign(last - first, false);
-    for (const Pair& pair : pairs_) {
+    for (const KeyOrder::Entry& entry : longest_first_.entries) {
+      const Pair& pair = pairs_[entry.index];
       if (taken_[pair.one - first] || taken_[pair.other - first]) continue;
       taken_[pair.one - first] = taken_[pair.other - first] = true;
       patches.push_back(patch_of(pair));
@@ -119,6 +123,8 @@ class PatchBuilder {
   static EdgeKey key_of(const Edge& edge) { return std::uint64_t{edge.high} << 32 | edge.triangle; }
   static std::uint32_t high_of(EdgeKey key) { return static_cast<std::uint32_t>(key >> 32); }
   static std::uint32_t triangle_of(EdgeKey key) { return static_cast<std::uint32_t>(key); }
+
+  static constexpr std::size_t few_pairs = 256;  ///< sorted sooner by comparing
 
   struct Pair {
     double length_squared_m2;  ///< of the shared edge
@@ -168,10 +174,30 @@ class PatchBuilder {
         }
       }
     }
-    std::sort(pairs_.begin(), pairs_.end(), [](const Pair& one, const Pair& other) {
+  }
+
+  /// Most lengths differ in single precision, of which the bits have the order of the numbers; where they do not, pairs
+  /// are compared.
+  void order_pairs() {
+    std::vector<KeyOrder::Entry>& order = longest_first_.entries;
+    order.clear();
+    for (std::uint32_t index = 0; index < pairs_.size(); ++index) {
+      order.push_back({~std::bit_cast<std::uint32_t>(static_cast<float>(pairs_[index].length_squared_m2)), index});
+    }
+    const auto is_before = [&](const KeyOrder::Entry& entry, const KeyOrder::Entry& other_entry) {
+      const Pair &one = pairs_[entry.index], &other = pairs_[other_entry.index];
       return one.length_squared_m2 != other.length_squared_m2 ? one.length_squared_m2 > other.length_squared_m2
                                                               : one.numbers() < other.numbers();
-    });
+    };
+    if (order.size() < few_pairs) {
+      std::ranges::sort(order, is_before);
+      return;
+    }
+    longest_first_.sort();
+    for (auto first = order.begin(), last = first; first != order.end(); first = last) {
+      while (last != order.end() && last->key == first->key) ++last;
+      if (last - first > 1) std::sort(first, last, is_before);
+    }
   }
 
   /// Which corner of a triangle is not on an edge; 3 where the triangle names a vertex twice.
@@ -211,6 +237,7 @@ class PatchBuilder {
   std::vector<EdgeKey> edges_;
   std::vector<std::uint32_t> first_edge_, next_edge_;  ///< per vertex, from the lowest one on
   std::vector<Pair> pairs_;
+  KeyOrder longest_first_;
   std::vector<bool> taken_;
 };
 

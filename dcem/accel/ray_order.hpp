@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
+#include "dcem/accel/key_order.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/ray.hpp"
 #include "dcem/geometry/vector.hpp"
@@ -26,19 +26,16 @@ class RayOrder {
   /// keys in the order given. Rays with numbers that are not finite come somewhere. Valid until the next call.
   std::span<const std::uint32_t> sort(std::span<const Ray<double>> rays) {
     place_grid(rays);
-    entries_.resize(rays.size());
-    for (std::uint32_t index = 0; index < rays.size(); ++index) entries_[index] = {key(rays[index]), index};
-    for (std::uint32_t shift = 0; shift < key_bits_; shift += digit_bits) sort_by_digit(shift);
+    keys_.entries.resize(rays.size());
+    for (std::uint32_t index = 0; index < rays.size(); ++index) keys_.entries[index] = {key(rays[index]), index};
+    keys_.sort(key_bits_);
     order_.resize(rays.size());
-    for (std::size_t index = 0; index < rays.size(); ++index) order_[index] = entries_[index].ray;
+    for (std::size_t index = 0; index < rays.size(); ++index) order_[index] = keys_.entries[index].index;
     return order_;
   }
 
  private:
-  static constexpr std::uint32_t cell_bits = 12, axis_bits = 6, digit_bits = 8;
-  struct Entry {
-    std::uint32_t key, ray;
-  };
+  static constexpr std::uint32_t cell_bits = 12, axis_bits = 6;
 
   void place_grid(std::span<const Ray<double>> rays) {
     Aabb<double> box;
@@ -104,21 +101,10 @@ class RayOrder {
     return static_cast<std::uint32_t>(value > 0.0 ? std::min(value, most) : 0.0);
   }
 
-  void sort_by_digit(std::uint32_t shift) {
-    constexpr std::uint32_t digits = 1U << digit_bits;
-    std::array<std::uint32_t, digits + 1> first{};
-    const auto digit = [shift](const Entry& entry) { return entry.key >> shift & (digits - 1); };
-    for (const Entry& entry : entries_) ++first[digit(entry) + 1];
-    for (std::size_t index = 1; index <= digits; ++index) first[index] += first[index - 1];
-    sorted_.resize(entries_.size());
-    for (const Entry& entry : entries_) sorted_[first[digit(entry)]++] = entry;
-    entries_.swap(sorted_);
-  }
-
   Vec3 low_{0.0}, scale_{0.0};
   std::array<std::vector<std::uint32_t>, 3> cells_;
   std::uint32_t direction_bits_ = 0, key_bits_ = 0;
-  std::vector<Entry> entries_, sorted_;
+  KeyOrder keys_;
   std::vector<std::uint32_t> order_;
 };
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "dcem/accel/patch_planes.hpp"
@@ -17,6 +18,7 @@
 #include "dcem/accel/wide_collapse.hpp"
 #include "dcem/accel/wide_node.hpp"
 #include "dcem/core/error.hpp"
+#include "dcem/core/huge_pages.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/ray.hpp"
 #include "dcem/geometry/triangle.hpp"
@@ -34,20 +36,20 @@ struct WideArrays {
   };
   static constexpr std::uint32_t no_unit = 0xffffffffU;
 
-  std::vector<WideNode> nodes;
+  HugePageVector<WideNode> nodes;
   std::vector<WidePlace> node_place;     ///< where a node hangs; none for the root and for unused nodes
   std::vector<std::uint32_t> node_unit;  ///< the unit whose root it is, or no_unit
-  std::vector<PatchBlock> blocks;
+  HugePageVector<PatchBlock> blocks;
   std::vector<WidePlace> block_place;
   std::vector<std::uint32_t> block_unit;  ///< the unit whose root it is, or no_unit
   std::vector<std::uint32_t> group_of_block;
   std::vector<VertexRun> run_of_block;
   std::vector<std::uint32_t> free_nodes;
 
-  std::vector<WidePatch> patches;  ///< block b holds 8 b … 8 b + 7
-  std::vector<PatchPlanes> planes;
+  HugePageVector<WidePatch> patches;  ///< block b holds 8 b … 8 b + 7
+  HugePageVector<PatchPlanes> planes;
   std::vector<std::uint32_t> patch_of_triangle;
-  std::vector<Vec3> vertices_m;  ///< as edits took them over
+  HugePageVector<Vec3> vertices_m;  ///< as edits took them over
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<char> is_there;        ///< per triangle
   std::vector<WideChild> unit_root;  ///< per group; none for groups without subtree of their own
@@ -67,6 +69,8 @@ struct WideArrays {
 
   /// Empties everything and keeps the memory.
   void clear();
+  /// The same, but gives memory back that was asked for in the other way.
+  void clear_for(bool huge_pages);
 
   WidePlace place_of(WideChild child) const {
     return child.is_block() ? block_place[child.index()] : node_place[child.index()];
@@ -150,11 +154,20 @@ struct WideArrays {
 
 inline void WideArrays::clear() {
   const auto empty = [](auto&... lists) { (lists.clear(), ...); };
-  empty(nodes, node_place, node_unit, blocks, block_place, block_unit, group_of_block, run_of_block, free_nodes, patches, planes,
-        patch_of_triangle, vertices_m, triangles, is_there, unit_root);
+  empty(nodes, node_place, node_unit, blocks, block_place, block_unit, group_of_block, run_of_block, free_nodes,
+        patches, planes, patch_of_triangle, vertices_m, triangles, is_there, unit_root);
   origin_m = Vec3(0.0);
   extent_m = 0.0F;
   weighted_area_m2 = largest_area_m2 = 0.0;
+}
+
+inline void WideArrays::clear_for(bool huge_pages) {
+  clear();
+  if (nodes.get_allocator().asks() == huge_pages) return;
+  const auto exchange = [huge_pages](auto&... lists) {
+    ((lists = std::remove_reference_t<decltype(lists)>(HugePageAllocator<int>(huge_pages))), ...);
+  };
+  exchange(nodes, blocks, patches, planes, vertices_m);
 }
 
 inline std::uint32_t WideArrays::take_node() {

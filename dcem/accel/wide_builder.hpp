@@ -43,6 +43,8 @@ struct WideSettings {
   unsigned threads = 1;
   /// How long a build may take. Default good.
   WideQuality quality = WideQuality::good;
+  /// Whether the system is asked for huge pages where the tree is large (HugePageAllocator). Default true.
+  bool huge_pages = true;
 };
 
 /// Throws std::invalid_argument for settings outside the ranges written above.

@@ -10,6 +10,9 @@ inline void WideTree::require_input(const TriangleView& mesh, Boxes boxes) {
     throw std::invalid_argument("one surface per triangle is needed, or none at all");
   }
   require_valid_boxes(boxes);
+  std::uint32_t highest = 0;
+  for (const auto& [a, b, c] : mesh.triangles) highest = std::max({highest, a, b, c});
+  if (highest < mesh.vertices_m.size()) return;
   for (std::uint32_t triangle = 0; triangle < mesh.size(); ++triangle) require_corners(mesh, triangle);
 }
 
@@ -49,7 +52,7 @@ inline void WideTree::rebuild(const TriangleView& mesh, Boxes boxes) {
 }
 
 inline void WideTree::plant(const TriangleView& mesh, Boxes boxes) {
-  arrays_.clear();
+  arrays_.clear_for(settings_.huge_pages);
   arrays_.costs = settings_.costs;
   arrays_.vertices_m.assign(mesh.vertices_m.begin(), mesh.vertices_m.end());
   arrays_.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());

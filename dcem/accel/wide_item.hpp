@@ -29,7 +29,11 @@ struct WideItem {
 
   /// Makes half the surface a fourth coordinate. Items are divided by it, too: the ground of a city is as large as all
   /// else together, and wherever its centre lies the box of what is beside it would be everything.
-  void note_size() { high[3] = detail::half_area_of(high - low); }
+  void note_size() {
+    constexpr float most_m2 = 1e32F;  // more than any tree has; the sum of two is still a number
+    const float half_area_m2 = detail::half_area_of(high - low);
+    high[3] = half_area_m2 < most_m2 ? half_area_m2 : most_m2;
+  }
 
   /// And the size, as the fourth number.
   Float4 twice_centre() const { return low + high; }

@@ -491,6 +491,29 @@ TEST_CASE("no ray leaks through an edge or a corner of a closed mesh") {
   }
 }
 
+TEST_CASE("in huge pages or not, the tree is the same") {
+  const dcem_test::WideMesh mesh = dcem_test::soup(40'000, 4);  // some megabytes of blocks
+  const std::vector<Aabb<double>> boxes = mesh.boxes();
+  WideTree tree, other;
+  tree.build(mesh.view(), boxes);
+  other.build(mesh.view(), boxes, {.huge_pages = false});
+  CHECK(tree.arrays().blocks.get_allocator().asks());
+  CHECK_FALSE(other.arrays().blocks.get_allocator().asks());
+  REQUIRE(std::span(tree.arrays().blocks).size_bytes() > HugePageAllocator<PatchBlock>::least_bytes);
+  const auto same = [](const auto& one, const auto& another, auto member) {
+    return std::ranges::equal(one, another, {}, member, member);
+  };
+  for (int turn = 0; turn < 2; ++turn) {
+    CHECK(same(tree.arrays().nodes, other.arrays().nodes, &WideNode::bounds_m));
+    CHECK(same(tree.arrays().nodes, other.arrays().nodes, &WideNode::child));
+    CHECK(same(tree.arrays().blocks, other.arrays().blocks, &PatchBlock::corner_m));
+    CHECK(other.validate(boxes).empty());
+    // What was asked for in one way is given back before it is asked for in the other.
+    other.build(mesh.view(), boxes);
+    CHECK(other.arrays().blocks.get_allocator().asks());
+  }
+}
+
 TEST_CASE("bad input is refused before anything changes") {
   const WideMesh mesh = dcem_test::boxes_mesh(10, 161);
   Planted scene(mesh);
