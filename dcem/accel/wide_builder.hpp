@@ -45,6 +45,10 @@ struct WideSettings {
   WideQuality quality = WideQuality::good;
   /// Whether the system is asked for huge pages where the tree is large (HugePageAllocator). Default true.
   bool huge_pages = true;
+  /// Whether many items are divided by their size, too (WideItem::note_size). Default true.
+  bool divide_by_size = true;
+  /// Whether memory is asked for before it is needed: by rays in large trees, and for what moves. Default true.
+  bool fetch_ahead = true;
 };
 
 /// Throws std::invalid_argument for settings outside the ranges written above.
@@ -95,7 +99,7 @@ class WideBuilder {
       item.low[axis] = rounded.min[axis];
       item.high[axis] = rounded.max[axis];
     }
-    item.note_size();
+    if (settings_.divide_by_size) item.note_size();
     return item;
   }
   /// Makes a group's own subtree and the item that stands for it.

@@ -91,8 +91,10 @@ inline WideRefitReport WideTree::refit(std::span<const std::uint32_t> moved, con
   mark_dirty(moved);
   report.blocks_written = dirty_blocks_.size();
   for (std::size_t index = 0; index < dirty_blocks_.size(); ++index) {
-    if (index + 2 < dirty_blocks_.size()) arrays_.fetch_block(dirty_blocks_[index + 2]);
-    if (index + 1 < dirty_blocks_.size()) arrays_.fetch_around_block(dirty_blocks_[index + 1], mesh.vertices_m);
+    if (settings_.fetch_ahead) {
+      if (index + 2 < dirty_blocks_.size()) arrays_.fetch_block(dirty_blocks_[index + 2]);
+      if (index + 1 < dirty_blocks_.size()) arrays_.fetch_around_block(dirty_blocks_[index + 1], mesh.vertices_m);
+    }
     const std::uint32_t block = dirty_blocks_[index];
     block_is_dirty_[block] = 0;
     const WidePlace place = arrays_.block_place[block];

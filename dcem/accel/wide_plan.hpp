@@ -44,17 +44,19 @@ inline double layer_area_below(const WideArrays& arrays, std::uint32_t node) {
 class WidePlan {
  public:
   WidePlan() = default;
-  WidePlan(const WideArrays& arrays, std::uint32_t node, unsigned threads) { make(arrays, node, threads); }
+  WidePlan(const WideArrays& arrays, std::uint32_t node, unsigned threads, bool by_size = true) {
+    make(arrays, node, threads, by_size);
+  }
   // Nothing in it outlives the edit that it is made for.
   WidePlan(const WidePlan&) : WidePlan() {}
   WidePlan& operator=(const WidePlan&) { return *this; }
   ~WidePlan() = default;
 
-  /// With one thread nothing is allocated once the lists have grown.
-  void make(const WideArrays& arrays, std::uint32_t node, unsigned threads) {
+  /// `by_size`: see WideSettings::divide_by_size. With one thread nothing is allocated once the lists have grown.
+  void make(const WideArrays& arrays, std::uint32_t node, unsigned threads, bool by_size = true) {
     leaves_.clear();
     collect(arrays, node);
-    set_items_around(arrays.nodes[node].box());
+    set_items_around(arrays.nodes[node].box(), by_size);
     binner_.build(items_, 1, threads, binary_);
     collapse_.plan(binary_, items_, arrays.costs);
   }
@@ -105,7 +107,7 @@ class WidePlan {
     }
   }
 
-  void set_items_around(const Aabb<float>& all) {
+  void set_items_around(const Aabb<float>& all, bool by_size) {
     // What is absent is put where it stretches nothing.
     const Aabb<float> middle =
         all.empty() ? Aabb<float>{Vector3<float>(0.0F), Vector3<float>(0.0F)} : Aabb<float>{all.center(), all.center()};
@@ -114,7 +116,7 @@ class WidePlan {
       const Aabb<float>& box = leaf.box.empty() ? middle : leaf.box;
       items_.push_back({Float4{box.min.x, box.min.y, box.min.z, 0.0F}, Float4{box.max.x, box.max.y, box.max.z, 0.0F},
                         static_cast<std::uint32_t>(items_.size()), WideItem::no_kind});
-      items_.back().note_size();
+      if (by_size) items_.back().note_size();
     }
   }
 

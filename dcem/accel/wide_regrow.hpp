@@ -16,7 +16,7 @@ namespace dcem {
 inline std::size_t WideTree::regrow(std::uint32_t node, double wanted_share) {
   if (!detail::is_used_node(arrays_, node)) throw std::invalid_argument("node " + std::to_string(node) + " of none");
   detail::WidePlan& plan = plan_;
-  plan.make(arrays_, node, settings_.threads);
+  plan.make(arrays_, node, settings_.threads, settings_.divide_by_size);
   if (plan.empty()) return 0;
   const std::uint32_t deepest = detail::layer_level(arrays_, node) + plan.levels() - 1;
   if (deepest > detail::wide_layer_levels && !detail::is_layer_root(arrays_, node)) {

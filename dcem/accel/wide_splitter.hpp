@@ -33,7 +33,7 @@ struct BinBox {
 class WideSplitter {
  public:
   static constexpr std::uint32_t bins = 16;
-  static constexpr std::size_t sweep_limit = 8;  ///< so few items are divided at the best of all places
+  static constexpr std::size_t sweep_limit = 8;   ///< so few items are divided at the best of all places
   static constexpr std::size_t size_limit = 512;  ///< from so many items on they are divided by size, too
 
   /// Reorders the items. Returns how many of them go to the left: where Σ surface · weight is least. `centres`: around

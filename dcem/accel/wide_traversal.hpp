@@ -53,10 +53,11 @@ template <typename Visit>
 struct WideView {
   std::span<const WideNode> nodes;
   std::span<const PatchBlock> blocks;
+  bool may_fetch = true;  ///< WideSettings::fetch_ahead
 
   /// Whether what a ray needs next is far away as a rule: then it pays to ask for it ahead. Below, asking costs as much
   /// as it gains.
-  bool exceeds_caches() const { return blocks.size_bytes() > 8'000'000; }
+  bool fetches_ahead() const { return may_fetch && blocks.size_bytes() > 8'000'000; }
 
   // Inline: g++ leaves out calls that do nothing else.
   [[gnu::always_inline]] void fetch(WideChild child) const {
@@ -76,7 +77,7 @@ template <typename Take>
   std::array<LaneKeys, wide_levels> keys;
   std::array<WaitingEntries, wide_levels> waiting;
   std::uint32_t height = 0;
-  const bool fetches = tree.exceeds_caches();
+  const bool fetches = tree.fetches_ahead();
   WideChild current = WideChild::node(0);
   while (true) {
     ++counters.nodes_visited;

@@ -183,7 +183,7 @@ class WideTree {
   using Hits = WideRay::PatchHits;
   static bool has(std::uint32_t lanes, std::uint32_t lane) { return (lanes >> lane & 1U) != 0; }
 
-  detail::WideView view() const { return {arrays_.nodes, arrays_.blocks}; }
+  detail::WideView view() const { return {arrays_.nodes, arrays_.blocks, settings_.fetch_ahead}; }
   Aabb<float> root_box() const { return arrays_.nodes.empty() ? Aabb<float>{} : arrays_.nodes[0].box(); }
   Aabb<double> in_world(const Aabb<float>& box) const;
 

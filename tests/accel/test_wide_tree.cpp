@@ -514,6 +514,28 @@ TEST_CASE("in huge pages or not, the tree is the same") {
   }
 }
 
+TEST_CASE("what is switched off changes no answer") {
+  const dcem_test::WideMesh mesh = dcem_test::soup(3000, 8);
+  const std::vector<Aabb<double>> boxes = mesh.boxes();
+  WideTree tree, other;
+  tree.build(mesh.view(), boxes);
+  other.build(mesh.view(), boxes,
+              {.pair_flatness = -1.0, .huge_pages = false, .divide_by_size = false, .fetch_ahead = false});
+  CHECK(other.validate(boxes).empty());
+  std::size_t hits = 0;
+  RandomStream random(5);
+  for (int turn = 0; turn < 2000; ++turn) {
+    const Ray<double> ray{dcem_test::random_point<double>(random, 10.0), dcem_test::random_direction(random)};
+    const auto expected = tree.nearest(ray), found = other.nearest(ray);
+    REQUIRE(found.has_value() == expected.has_value());
+    if (!found) continue;
+    ++hits;
+    REQUIRE(found->t == expected->t);
+    REQUIRE(found->triangle == expected->triangle);
+  }
+  CHECK(hits > 500);
+}
+
 TEST_CASE("bad input is refused before anything changes") {
   const WideMesh mesh = dcem_test::boxes_mesh(10, 161);
   Planted scene(mesh);
