@@ -148,8 +148,9 @@ inline void WideTree::note_moved_unit(std::uint32_t group) {
 
 inline std::size_t WideTree::reinsert_moved(double growth_limit, std::uint32_t turn_length) {
   const auto has_grown = [&](std::uint32_t group) {
-    const WidePlace place = arrays_.place_of(arrays_.unit_root[group]);
-    const double area_m2 = static_cast<double>(arrays_.nodes[place.node()].box().half_area());
+    const std::uint32_t node = arrays_.place_of(arrays_.unit_root[group]).node();
+    const WidePlace above = arrays_.node_place[node];
+    const double area_m2 = static_cast<double>((above.is_none() ? root_box() : arrays_.box_at(above)).half_area());
     return area_m2 > growth_limit * static_cast<double>(area_when_hung_m2_[group]);
   };
   const std::size_t moved = moved_units_.size();

@@ -320,9 +320,9 @@ TEST_CASE("the counter of allocations counts") {
   CHECK(reinterpret_cast<std::uintptr_t>(aligned.data()) % 64 == 0);
 }
 
-TEST_CASE("half a million triangles: the oracle's answers") {
+TEST_CASE("a million triangles: the oracle's answers") {
   for (const double size : {0.05, 1.0}) {
-    const WideMesh mesh = dcem_test::soup(500000, 21, size);
+    const WideMesh mesh = dcem_test::soup(1'000'000, 21, size);
     const auto boxes = mesh.boxes();
     WideTree tree;
     tree.build(mesh.view(), boxes);
