@@ -1,6 +1,5 @@
 #pragma once
 /// The boxes that trees accept: finite ones and empty ones.
-#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -50,25 +49,16 @@ class PlainBoxes {
     std::memcpy(&first, &box, sizeof first);
     std::memcpy(&last, reinterpret_cast<const char*>(&box) + 16, sizeof last);
     const Double4 max = __builtin_shufflevector(first, last, 5, 6, 7, 5);
-    is_ordered_ &= first <= max;
-    // Without the sign the bits of numbers have their order, and those of NaN come last.
-    const Long4 first_size = std::bit_cast<Long4>(first) & without_sign,
-                last_size = std::bit_cast<Long4>(last) & without_sign;
-    largest_ = first_size > largest_ ? first_size : largest_;
-    largest_ = last_size > largest_ ? last_size : largest_;
+    holds_ &= (first >= -maximum_coordinate_m) & (first <= maximum_coordinate_m) & (last >= -maximum_coordinate_m) &
+              (last <= maximum_coordinate_m) & (first <= max);
   }
-  bool all() const {
-    const Long4 holds = is_ordered_ & (largest_ <= std::bit_cast<std::int64_t>(maximum_coordinate_m));
-    return (holds[0] & holds[1] & holds[2] & holds[3]) != 0;
-  }
+  bool all() const { return (holds_[0] & holds_[1] & holds_[2] & holds_[3]) != 0; }
 
  private:
   using Double4 = double __attribute__((vector_size(32)));
   using Long4 = std::int64_t __attribute__((vector_size(32)));
 
-  static constexpr std::int64_t without_sign = 0x7fffffffffffffff;
-
-  Long4 is_ordered_ = ~Long4{}, largest_{};
+  Long4 holds_ = ~Long4{};
 };
 
 }  // namespace detail
