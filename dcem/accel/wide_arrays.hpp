@@ -1,5 +1,5 @@
 #pragma once
-/// The memory of a wide tree, and the writing of its single parts.
+/// The memory of a wide tree, and changes of its single parts.
 #include <algorithm>
 #include <array>
 #include <cmath>

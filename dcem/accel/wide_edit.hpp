@@ -130,12 +130,11 @@ inline void WideTree::look_at_boxes(std::span<const std::uint32_t> moved, Boxes 
 
 /// Notes the blocks in which triangles have moved, each once.
 inline void WideTree::mark_dirty(std::span<const std::uint32_t> moved) {
-  std::uint32_t last = WidePlace::none_code;
   for (std::size_t index = 0; index < moved.size(); ++index) {
     arrays_.is_there[moved[index]] = is_there_now_.empty() ? char{1} : is_there_now_[index];
     const std::uint32_t block = arrays_.patch_of_triangle[moved[index]] / simd_lanes;
-    if (block == last || block_is_dirty_[block] != 0) continue;
-    block_is_dirty_[last = block] = 1;
+    if (block_is_dirty_[block] != 0) continue;
+    block_is_dirty_[block] = 1;
     dirty_blocks_.push_back(block);
   }
 }
