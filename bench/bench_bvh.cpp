@@ -13,7 +13,7 @@
 
 #include "bench/bench_program.hpp"
 #include "bench/moving_boxes.hpp"
-#include "dcem/accel/maintainer.hpp"
+#include "dcem/accel/binary/updater.hpp"
 #include "dcem/core/statistics.hpp"
 #include "dcem/geometry/triangle.hpp"
 

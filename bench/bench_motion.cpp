@@ -28,9 +28,9 @@
 #include "bench/bench_program.hpp"
 #include "bench/moving_boxes.hpp"
 #include "bench/timed_rays.hpp"
-#include "dcem/accel/maintainer.hpp"
-#include "dcem/accel/wide_maintainer.hpp"
-#include "dcem/accel/wide_tree.hpp"
+#include "dcem/accel/binary/updater.hpp"
+#include "dcem/accel/wide/update/updater.hpp"
+#include "dcem/accel/wide_bvh.hpp"
 #include "dcem/core/statistics.hpp"
 #include "dcem/io/atomic_file.hpp"
 #if defined(DCEM_HAS_EMBREE)

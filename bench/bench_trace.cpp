@@ -20,9 +20,9 @@
 #include "bench/moving_boxes.hpp"
 #include "bench/timed_rays.hpp"
 #include "dcem/accel/bvh.hpp"
-#include "dcem/accel/ray_order.hpp"
-#include "dcem/accel/wide_batch.hpp"
-#include "dcem/accel/wide_tree.hpp"
+#include "dcem/accel/wide/trace/batch.hpp"
+#include "dcem/accel/wide/trace/ray_order.hpp"
+#include "dcem/accel/wide_bvh.hpp"
 #include "dcem/core/statistics.hpp"
 #if defined(DCEM_HAS_EMBREE)
 #include "bench/embree_scene.hpp"

@@ -10,7 +10,7 @@
 #include <limits>
 #include <span>
 
-#include "dcem/accel/patches.hpp"
+#include "dcem/accel/wide/build/quads.hpp"
 #include "dcem/geometry/ray.hpp"
 
 namespace dcem::bench {

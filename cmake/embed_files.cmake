@@ -11,7 +11,7 @@ endforeach()
 # A byte is at most "0xff,"; lines of 32 keep compilers and editors quick.
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," values "${bytes}")
 string(REGEX REPLACE "(................................................................................................................................................................)" "\\1\n" values "${values}")
-file(WRITE "${OUT}" "#include \"dcem/io/src/viewer_page.hpp\"
+file(WRITE "${OUT}" "#include \"dcem/io/src/viewer/viewer_page.hpp\"
 
 namespace dcem::io {
 

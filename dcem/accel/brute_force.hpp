@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "dcem/accel/box_check.hpp"
-#include "dcem/accel/bvh_node.hpp"
+#include "dcem/accel/binary/node.hpp"
+#include "dcem/accel/binary/refit.hpp"
+#include "dcem/accel/binary/sah_settings.hpp"
+#include "dcem/accel/binary/slab_test.hpp"
 #include "dcem/accel/counters.hpp"
-#include "dcem/accel/quality.hpp"
-#include "dcem/accel/refit.hpp"
-#include "dcem/accel/sah_settings.hpp"
-#include "dcem/accel/slab_test.hpp"
+#include "dcem/accel/detail/box_check.hpp"
+#include "dcem/accel/sah_cost.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/ray.hpp"
 

@@ -15,17 +15,17 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/accel/box_check.hpp"
-#include "dcem/accel/bvh_arrays.hpp"
-#include "dcem/accel/bvh_node.hpp"
+#include "dcem/accel/binary/arrays.hpp"
+#include "dcem/accel/binary/node.hpp"
+#include "dcem/accel/binary/refit.hpp"
+#include "dcem/accel/binary/sah_builder.hpp"
+#include "dcem/accel/binary/sah_settings.hpp"
+#include "dcem/accel/binary/subtree_degradation.hpp"
+#include "dcem/accel/binary/traversal.hpp"
+#include "dcem/accel/binary/validate.hpp"
 #include "dcem/accel/counters.hpp"
-#include "dcem/accel/quality.hpp"
-#include "dcem/accel/refit.hpp"
-#include "dcem/accel/sah_builder.hpp"
-#include "dcem/accel/sah_settings.hpp"
-#include "dcem/accel/subtree_wear.hpp"
-#include "dcem/accel/traversal.hpp"
-#include "dcem/accel/validate.hpp"
+#include "dcem/accel/detail/box_check.hpp"
+#include "dcem/accel/sah_cost.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/ray.hpp"
 
@@ -210,5 +210,5 @@ class Bvh {
 
 }  // namespace dcem
 
-#include "dcem/accel/bvh_edit.hpp"
-#include "dcem/accel/bvh_layers.hpp"
+#include "dcem/accel/binary/edits.hpp"
+#include "dcem/accel/binary/levels.hpp"

@@ -17,9 +17,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dcem/channel/path_contribution.hpp"
-#include "dcem/channel/power_sample.hpp"
 #include "dcem/core/constants.hpp"
+#include "dcem/field/path_contribution.hpp"
+#include "dcem/field/power_sample.hpp"
 
 namespace dcem {
 

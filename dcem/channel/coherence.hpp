@@ -28,8 +28,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dcem/channel/power_sample.hpp"
 #include "dcem/core/constants.hpp"
+#include "dcem/field/power_sample.hpp"
 
 namespace dcem {
 

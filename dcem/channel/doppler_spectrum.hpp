@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dcem/channel/power_sample.hpp"
+#include "dcem/field/power_sample.hpp"
 
 namespace dcem {
 

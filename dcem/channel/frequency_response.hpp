@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dcem/channel/path_contribution.hpp"
 #include "dcem/core/constants.hpp"
+#include "dcem/field/path_contribution.hpp"
 
 namespace dcem {
 

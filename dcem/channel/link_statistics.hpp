@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "dcem/channel/diffuse_contribution.hpp"
-#include "dcem/channel/path_contribution.hpp"
-#include "dcem/channel/power_sample.hpp"
 #include "dcem/core/units.hpp"
+#include "dcem/field/diffuse/diffuse_contribution.hpp"
+#include "dcem/field/path_contribution.hpp"
+#include "dcem/field/power_sample.hpp"
 
 namespace dcem {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "dcem/channel/band_limited_profile.hpp"
-#include "dcem/channel/path_contribution.hpp"
-#include "dcem/channel/power_sample.hpp"
+#include "dcem/field/path_contribution.hpp"
+#include "dcem/field/power_sample.hpp"
 
 namespace dcem {
 

@@ -4,7 +4,7 @@
 #include <ostream>
 #include <span>
 
-#include "dcem/channel/path_contribution.hpp"
+#include "dcem/field/path_contribution.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/wedge.hpp"
 #include "dcem/paths/path.hpp"

@@ -4,7 +4,7 @@
 ///   E_r = R_te (E·e⊥) e⊥ + R_tm (E·e∥) e∥r,   E_t = T_te (E·e⊥) e⊥ + T_tm (E·e∥) e∥.
 /// With the signs of em/fresnel.hpp a perfect conductor gives E_r = 2(n·E)n − E. Both are the same for n and −n.
 #include "dcem/em/complex.hpp"
-#include "dcem/em/fresnel.hpp"
+#include "dcem/em/surface/fresnel.hpp"
 #include "dcem/geometry/plane.hpp"
 
 namespace dcem {

@@ -2,7 +2,7 @@
 /// Antenna patterns in files: tables over the sphere (CSV), and two cuts (MSI Planet, NSMA WG16.99.050).
 #include <filesystem>
 
-#include "dcem/em/pattern_table.hpp"
+#include "dcem/em/antenna/pattern_table.hpp"
 
 namespace dcem::io {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "dcem/em/material.hpp"
+#include "dcem/em/surface/material.hpp"
 #include "dcem/geometry/aabb.hpp"
-#include "dcem/geometry/surface_mesh.hpp"
-#include "dcem/geometry/surface_settings.hpp"
+#include "dcem/geometry/surfaces/surface_mesh.hpp"
+#include "dcem/geometry/surfaces/surface_settings.hpp"
 #include "dcem/io/obj_reader.hpp"
 
 namespace dcem::io {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dcem/em/material.hpp"
+#include "dcem/em/surface/material.hpp"
 #include "dcem/geometry/triangle_mesh.hpp"
 
 namespace dcem::io {

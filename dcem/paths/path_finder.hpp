@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/paths/path_search.hpp"
+#include "dcem/paths/discover/path_search.hpp"
 
 namespace dcem {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "dcem/em/antenna.hpp"
+#include "dcem/em/antenna/antenna.hpp"
 #include "dcem/geometry/vector.hpp"
-#include "dcem/scene/motion.hpp"
+#include "dcem/world/motion.hpp"
 
 namespace dcem {
 

@@ -17,11 +17,11 @@
 
 #include "dcem/core/error.hpp"
 #include "dcem/core/ids.hpp"
-#include "dcem/em/material.hpp"
-#include "dcem/geometry/facet_builder.hpp"
+#include "dcem/em/surface/material.hpp"
+#include "dcem/geometry/surfaces/facet_builder.hpp"
 #include "dcem/scene/device.hpp"
-#include "dcem/scene/frame.hpp"
-#include "dcem/scene/world_geometry.hpp"
+#include "dcem/world/frame.hpp"
+#include "dcem/world/world_geometry.hpp"
 
 namespace dcem {
 

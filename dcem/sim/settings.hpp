@@ -9,12 +9,12 @@
 #include <string>
 #include <variant>
 
-#include "dcem/accel/maintainer.hpp"
-#include "dcem/channel/diffraction_chain.hpp"
-#include "dcem/channel/diffuse_settings.hpp"
-#include "dcem/em/atmosphere.hpp"
-#include "dcem/em/itu_p2040.hpp"
-#include "dcem/em/path_loss.hpp"
+#include "dcem/accel/binary/updater.hpp"
+#include "dcem/em/medium/atmosphere.hpp"
+#include "dcem/em/medium/path_loss.hpp"
+#include "dcem/em/surface/itu_p2040.hpp"
+#include "dcem/field/diffraction_chain.hpp"
+#include "dcem/field/diffuse/diffuse_settings.hpp"
 
 namespace dcem {
 

@@ -8,21 +8,21 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/accel/binary/updater.hpp"
 #include "dcem/accel/bvh.hpp"
-#include "dcem/accel/maintainer.hpp"
-#include "dcem/channel/diffuse_power.hpp"
-#include "dcem/channel/field_evaluator.hpp"
 #include "dcem/channel/link_statistics.hpp"
-#include "dcem/channel/medium_loss.hpp"
 #include "dcem/channel/radio_map.hpp"
 #include "dcem/core/parallel_for.hpp"
-#include "dcem/paths/obstruction.hpp"
+#include "dcem/field/diffuse/diffuse_power.hpp"
+#include "dcem/field/element_paths.hpp"
+#include "dcem/field/field_evaluator.hpp"
+#include "dcem/field/medium_loss.hpp"
 #include "dcem/paths/path_finder.hpp"
+#include "dcem/paths/query/obstruction.hpp"
 #include "dcem/scene/scene.hpp"
+#include "dcem/sim/detail/scene_tree.hpp"
 #include "dcem/sim/discovery.hpp"
-#include "dcem/sim/element_paths.hpp"
 #include "dcem/sim/frame_result.hpp"
-#include "dcem/sim/scene_tree.hpp"
 #include "dcem/sim/settings.hpp"
 
 namespace dcem {
@@ -172,6 +172,6 @@ Simulator<Surface, Tree>::Simulator(Scene scene, SimulationSettings settings, Su
 
 }  // namespace dcem
 
-#include "dcem/sim/simulator_frames.hpp"
-#include "dcem/sim/simulator_links.hpp"
-#include "dcem/sim/simulator_maps.hpp"
+#include "dcem/sim/detail/simulator_frames.hpp"
+#include "dcem/sim/detail/simulator_links.hpp"
+#include "dcem/sim/detail/simulator_maps.hpp"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "dcem/accel/bvh.hpp"
-#include "dcem/accel/wide_tree.hpp"
-#include "tests/accel/wide_scenes.hpp"
+#include "dcem/accel/wide_bvh.hpp"
+#include "tests/accel/wide/wide_scenes.hpp"
 
 using namespace dcem;
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "dcem/channel/power_sample.hpp"
+#include "dcem/field/power_sample.hpp"
 #include "tests/paths/small_scenes.hpp"
 
 namespace dcem::test {

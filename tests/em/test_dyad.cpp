@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "dcem/em/antenna/polarization.hpp"
 #include "dcem/em/dyad.hpp"
-#include "dcem/em/polarization.hpp"
-#include "dcem/em/slab.hpp"
+#include "dcem/em/surface/slab.hpp"
 
 using namespace dcem;
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/accel/maintainer.hpp"
+#include "dcem/accel/binary/updater.hpp"
 #include "tests/accel/random_boxes.hpp"
 
 using namespace dcem;

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "dcem/core/random.hpp"
-#include "dcem/em/antenna_pattern.hpp"
+#include "dcem/em/antenna/antenna_pattern.hpp"
 #include "dcem/io/input_error.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "dcem/io/src/fcd_reader.hpp"
+#include "dcem/io/src/traffic/fcd_reader.hpp"
 
 #include <doctest/doctest.h>
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "dcem/io/src/colour_map.hpp"
+#include "dcem/io/src/pictures/colour_map.hpp"
 #include "tests/io/png_reader.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "dcem/io/src/poses_csv.hpp"
+#include "dcem/io/src/traffic/poses_csv.hpp"
 
 #include <doctest/doctest.h>
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "dcem/core/random.hpp"
-#include "dcem/io/src/number_text.hpp"
+#include "dcem/io/src/text/number_text.hpp"
 #include "dcem/io/summary.hpp"
 #include "tests/io/temporary_folder.hpp"
 

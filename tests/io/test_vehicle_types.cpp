@@ -1,4 +1,4 @@
-#include "dcem/io/src/vehicle_types.hpp"
+#include "dcem/io/src/traffic/vehicle_types.hpp"
 
 #include <doctest/doctest.h>
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/sim/verifier.hpp"
+#include "dcem/sim/verify/verifier.hpp"
 #include "tests/support/law_scenes.hpp"
 
 using namespace dcem;

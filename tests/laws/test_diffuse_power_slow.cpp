@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "dcem/accel/bvh.hpp"
-#include "dcem/channel/scattered_power.hpp"
 #include "dcem/core/random.hpp"
+#include "dcem/field/diffuse/scattered_power.hpp"
 #include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/scenario.hpp"
-#include "dcem/paths/scatter_solver.hpp"
+#include "dcem/paths/solve/scatter_solver.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 using namespace dcem;

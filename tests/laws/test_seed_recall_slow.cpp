@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dcem/io/scenario.hpp"
-#include "dcem/sim/verifier.hpp"
+#include "dcem/sim/verify/verifier.hpp"
 
 using namespace dcem;
 

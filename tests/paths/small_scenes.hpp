@@ -9,8 +9,8 @@
 #include "dcem/accel/brute_force.hpp"
 #include "dcem/accel/bvh.hpp"
 #include "dcem/core/random.hpp"
-#include "dcem/paths/link_end.hpp"
-#include "dcem/paths/scene_tracer.hpp"
+#include "dcem/paths/query/link_end.hpp"
+#include "dcem/paths/query/scene_tracer.hpp"
 
 namespace dcem::test {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "dcem/em/fresnel.hpp"
+#include "dcem/em/surface/fresnel.hpp"
 
 namespace dcem::test {
 

@@ -7,7 +7,7 @@
 
 #include "dcem/paths/path_id.hpp"
 #include "dcem/sim/simulator.hpp"
-#include "dcem/sim/verifier.hpp"
+#include "dcem/sim/verify/verifier.hpp"
 #include "tests/paths/small_scenes.hpp"
 
 using namespace dcem;

@@ -1,0 +1,235 @@
+#pragma once
+/// Builds a wide tree: a binary tree over patches and units, collapsed to eight children a node.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "dcem/accel/wide/arrays.hpp"
+#include "dcem/accel/wide/build/binner.hpp"
+#include "dcem/accel/wide/build/collapse.hpp"
+#include "dcem/accel/wide/build/leaf_optimizer.hpp"
+#include "dcem/accel/wide/build/quads.hpp"
+#include "dcem/accel/wide/build/reinsertion_optimizer.hpp"
+#include "dcem/core/parallel_for.hpp"
+
+namespace dcem {
+
+/// How long a build may take. Answers are the same.
+enum class WideQuality {
+  fast,  ///< what the splits give: for what is built again in every frame
+  good,  ///< a third longer, 5 % fewer steps a ray
+  high   ///< several times as long, 9 % fewer: scenery that stands still
+};
+
+/// How a wide tree is built.
+struct WideSettings {
+  /// Relative costs of nodes and blocks, by which the binary tree is collapsed.
+  WideCosts costs{};
+  /// Two triangles become one patch where the fourth corner is no further from the plane of the others than this times
+  /// the shared edge (no unit). Default 1e-3; negative switches pairing off.
+  double pair_flatness = 1e-3;
+  /// A group of at most this many patches owns a subtree that moves as a whole; a larger one, such as a city, is mixed
+  /// with its surroundings (number). Default 512.
+  std::uint32_t unit_limit = 512;
+  /// Splitting ends at this many patches of one group where it gains little (number, 1 … 8). Default 8; 1 leaves it to
+  /// the collapse alone.
+  std::uint32_t leaf_limit = 8;
+  /// Threads of a build (number); 0: as many as the machine has. The tree does not depend on it. Default 1.
+  unsigned threads = 1;
+  /// How long a build may take. Default good.
+  WideQuality quality = WideQuality::good;
+  /// Whether the system is asked for huge pages where the tree is large (HugePageAllocator). Default true.
+  bool huge_pages = true;
+  /// Whether many items are divided by their size, too (WideItem::note_size). Default true.
+  bool divide_by_size = true;
+  /// Whether memory is asked for before it is needed: by rays in large trees, and for what moves. Default true.
+  bool fetch_ahead = true;
+};
+
+/// Throws std::invalid_argument for settings outside the ranges written above.
+inline void validate(const WideSettings& settings) {
+  const auto positive = [](double cost) { return cost >= 1e-9 && cost <= 1e9; };
+  if (!positive(settings.costs.node) || !positive(settings.costs.block)) {
+    throw std::invalid_argument("costs of a wide tree: expected numbers from 1e-9 to 1e9");
+  }
+  if (std::isnan(settings.pair_flatness)) throw std::invalid_argument("pair_flatness: expected a number");
+  if (settings.leaf_limit < 1 || settings.leaf_limit > simd_lanes) {
+    throw std::invalid_argument("leaf_limit: expected 1 to 8");
+  }
+}
+
+/// Fills the arrays of one tree.
+class WideBuilder {
+ public:
+  explicit WideBuilder(const WideSettings& settings) : settings_(settings) {}
+
+  /// Group i has the patches [first_patch[i], first_patch[i + 1]). Corners, origin and presence are set in `arrays`.
+  void build(WideArrays& arrays, std::span<const WidePatch> patches, std::span<const std::uint32_t> first_patch) {
+    arrays_ = &arrays;
+    patches_ = patches;
+    arrays.take_node();  // the root is node 0, before the nodes of any unit
+    const std::size_t groups = first_patch.size() - 1;
+    arrays.unit_root.assign(groups, WideChild{});
+    std::vector<WideItem> items;
+    items.reserve(patches.size());
+    for (std::uint32_t group = 0; group < groups; ++group) {
+      if (first_patch[group + 1] - first_patch[group] > settings_.unit_limit) {
+        for (std::uint32_t patch = first_patch[group]; patch < first_patch[group + 1]; ++patch) {
+          items.push_back(item_around(arrays_->box_of_patch(patches_[patch]), patch, group));
+        }
+      } else if (first_patch[group + 1] > first_patch[group]) {
+        items.push_back(plant_unit(group, first_patch[group], first_patch[group + 1]));
+      }
+    }
+    if (items.empty()) return;
+    plant_root(items);
+    write_boxes();
+  }
+
+ private:
+  WideItem item_around(const Aabb<double>& box, std::uint32_t index, std::uint32_t kind) const {
+    WideItem item{Float4{}, Float4{}, index, kind};
+    const Aabb<float> rounded = arrays_->rounded_out(box);
+    for (int axis = 0; axis < 3 && !rounded.empty(); ++axis) {
+      item.low[axis] = rounded.min[axis];
+      item.high[axis] = rounded.max[axis];
+    }
+    if (settings_.divide_by_size) item.note_size();
+    return item;
+  }
+  /// Makes a group's own subtree and the item that stands for it.
+  WideItem plant_unit(std::uint32_t group, std::uint32_t first, std::uint32_t last) {
+    std::vector<WideItem> own;
+    Aabb<double> box;
+    for (std::uint32_t patch = first; patch < last; ++patch) {
+      const Aabb<double> held = arrays_->box_of_patch(patches_[patch]);
+      own.push_back(item_around(held, patch, group));
+      box.extend(held);
+    }
+    const WideChild root = own.size() <= simd_lanes ? plant_block(own, group) : plant_tree(own);
+    arrays_->unit_root[group] = root;
+    (root.is_block() ? arrays_->block_unit[root.index()] : arrays_->node_unit[root.index()]) = group;
+    return item_around(box, group, WideItem::no_kind);
+  }
+
+  /// The binary tree that the wide one is made from.
+  std::vector<WideSplit> divided(std::span<WideItem> items) const {
+    std::vector<WideSplit> binary = WideBinner().build(items, settings_.leaf_limit, settings_.threads);
+    if (settings_.quality == WideQuality::fast) return binary;
+    if (settings_.quality == WideQuality::good) {
+      WideRegroup::optimize(binary, items, settings_.costs, 1);
+      return binary;
+    }
+    // What reinsertion leaves behind regrouping improves, and the other way round; a third turn gains next to nothing.
+    for (int turn = 0; turn < 2; ++turn) {
+      reinsert(binary, items);
+      WideRegroup::optimize(binary, items, settings_.costs, 10);
+    }
+    return binary;
+  }
+
+  /// A better binary tree is not always a better wide one.
+  void reinsert(std::vector<WideSplit>& binary, std::span<WideItem> items) const {
+    const std::vector<WideSplit> before = binary;
+    const std::vector<WideItem> items_before(items.begin(), items.end());
+    const double cost_before_m2 = WideCollapse(binary, items, settings_.costs).cost_m2();
+    WideOptimizer::optimize(binary, items, settings_.threads);
+    if (WideCollapse(binary, items, settings_.costs).cost_m2() <= cost_before_m2) return;
+    binary = before;
+    std::copy(items_before.begin(), items_before.end(), items.begin());
+  }
+
+  WideChild plant_tree(std::span<WideItem> items) {
+    const std::vector<WideSplit> binary = divided(items);
+    const WideCollapse collapse(binary, items, settings_.costs);
+    const WideChild root = plant_entry(binary, collapse, items, 0);
+    if (!root.is_block()) fill_node(root.index(), binary, collapse, items, 0);
+    return root;
+  }
+
+  void plant_root(std::span<WideItem> items) {
+    const std::vector<WideSplit> binary = divided(items);
+    const WideCollapse collapse(binary, items, settings_.costs);
+    if (collapse.is_block(0)) {
+      hang(plant_entry(binary, collapse, items, 0), WidePlace::at(0, 0));
+    } else {
+      fill_node(0, binary, collapse, items, 0);
+    }
+  }
+
+  /// A block, or a node that is filled later.
+  WideChild plant_entry(std::span<const WideSplit> binary, const WideCollapse& collapse,
+                        std::span<const WideItem> items, std::uint32_t slot) {
+    if (!collapse.is_block(slot)) return WideChild::node(arrays_->take_node());
+    const std::span<const WideItem> held = items.subspan(binary[slot].first, binary[slot].count);
+    if (held.front().kind == WideItem::no_kind) return arrays_->unit_root[held.front().index];
+    return plant_block(held, held.front().kind);
+  }
+
+  WideChild plant_block(std::span<const WideItem> held, std::uint32_t group) {
+    const std::uint32_t block = arrays_->add_block(group);
+    for (std::uint32_t lane = 0; lane < held.size(); ++lane) {
+      const WidePatch& patch = patches_[held[lane].index];
+      arrays_->patches[block * simd_lanes + lane] = patch;
+      for (const std::uint32_t triangle : patch.triangles()) {
+        arrays_->patch_of_triangle[triangle] = block * simd_lanes + lane;
+      }
+    }
+    arrays_->find_run(block);
+    return WideChild::block(block);
+  }
+
+  void fill_node(std::uint32_t node, std::span<const WideSplit> binary, const WideCollapse& collapse,
+                 std::span<const WideItem> items, std::uint32_t slot) {
+    std::array<std::uint32_t, simd_lanes> entries;
+    const std::size_t count = collapse.entries(slot, entries);
+    // Siblings side by side in memory, because a ray that looks at one often looks at the next.
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      hang(plant_entry(binary, collapse, items, entries[lane]), WidePlace::at(node, lane));
+    }
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      if (collapse.is_block(entries[lane])) continue;
+      fill_node(arrays_->child_at(WidePlace::at(node, lane)).index(), binary, collapse, items, entries[lane]);
+    }
+  }
+
+  /// Boxes come last, all at once.
+  void hang(WideChild child, WidePlace place) { arrays_->hang(child, place, {}); }
+
+  void write_boxes() {
+    std::vector<Aabb<float>> boxes(arrays_->blocks.size());
+    parallel_for(boxes.size() / blocks_at_a_time + 1, settings_.threads, [&](std::size_t part, unsigned) {
+      const std::size_t last = std::min(boxes.size(), (part + 1) * blocks_at_a_time);
+      for (std::size_t block = part * blocks_at_a_time; block < last; ++block) {
+        boxes[block] = arrays_->write_block(static_cast<std::uint32_t>(block));
+      }
+    });
+    for (std::uint32_t block = 0; block < boxes.size(); ++block) {
+      arrays_->note_extent(boxes[block]);
+      arrays_->set_box(arrays_->block_place[block], boxes[block]);
+    }
+    tighten_below(0);
+  }
+
+  void tighten_below(std::uint32_t node) {
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+      const WideChild child = arrays_->nodes[node].child[lane];
+      if (child.is_none() || child.is_block()) continue;
+      tighten_below(child.index());
+      arrays_->set_box(WidePlace::at(node, lane), arrays_->nodes[child.index()].box());
+    }
+  }
+
+  static constexpr std::size_t blocks_at_a_time = 256;
+
+  WideSettings settings_;
+  WideArrays* arrays_ = nullptr;
+  std::span<const WidePatch> patches_;
+};
+
+}  // namespace dcem

@@ -1,0 +1,258 @@
+#pragma once
+/// Computes the numbers of a block of patches, several lanes at once.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <utility>
+
+#include "dcem/accel/wide/build/quads.hpp"
+#include "dcem/accel/wide/node.hpp"
+#include "dcem/accel/wide/update/double_lanes.hpp"
+#include "dcem/core/simd.hpp"
+#include "dcem/geometry/aabb.hpp"
+#include "dcem/geometry/vector.hpp"
+
+namespace dcem::detail {
+
+/// The patches of a block, one in every lane.
+struct BlockPatches {
+  std::array<const WidePatch*, simd_lanes> in_lane;
+  std::array<WidePatch, simd_lanes> halves;  ///< what is left of pairs that are there in part
+};
+
+/// The numbers of a block, from the patches in it.
+class BlockWriter {
+ public:
+  /// Takes the corners of eight patches, none of them absent. What stands in lanes that do not count must be a patch of
+  /// the block as well: `bounds_m` goes around all.
+  BlockWriter(const std::array<const WidePatch*, simd_lanes>& patches, std::span<const Vec3> vertices_m) {
+    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+      begin_[0][lane] = patches[lane]->begin[0];
+      begin_[1][lane] = patches[lane]->begin[1];
+      is_pair_[lane] = patches[lane]->is_pair() ? 1 : 0;
+    }
+    begins_at_a_.fill(true);
+    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+      if ((patches[lane]->begin[0] | patches[lane]->begin[1]) != 0) begins_at_a_[lane / double_part_lanes] = false;
+    }
+    for (std::size_t part = 0; part < parts; ++part) {
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        world_m_[part][corner].set([&](std::size_t lane) -> const Vec3& {
+          return vertices_m[patches[part * double_part_lanes + lane]->corner[corner]];
+        });
+      }
+    }
+  }
+
+  Aabb<double> bounds_m() const {
+    VectorPart low = world_m_[0][0], high = low;
+    for (const std::array<VectorPart, 4>& part : world_m_) {
+      for (const VectorPart& corner : part) {
+        low.x = low.x < corner.x ? low.x : corner.x;
+        low.y = low.y < corner.y ? low.y : corner.y;
+        low.z = low.z < corner.z ? low.z : corner.z;
+        high.x = high.x > corner.x ? high.x : corner.x;
+        high.y = high.y > corner.y ? high.y : corner.y;
+        high.z = high.z > corner.z ? high.z : corner.z;
+      }
+    }
+    const auto lower = [](const auto& one, const auto& other) { return one < other ? one : other; };
+    return {{fold_lanes(low.x, lower), fold_lanes(low.y, lower), fold_lanes(low.z, lower)},
+            {fold_lanes(high.x, larger), fold_lanes(high.y, larger), fold_lanes(high.z, larger)}};
+  }
+
+  /// Writes what there is of each lane; the normals are kept. Corners count from `origin_m` + `centre_m`, which are
+  /// subtracted one after the other.
+  void write(const Vec3& origin_m, const Vec3& centre_m, PatchBlock& block) {
+    bend_m_ = diameter_m_ = DoublePart{};
+    for (std::size_t part = 0; part < parts; ++part) write_part(part, origin_m, centre_m, block);
+    block.bend_m = static_cast<float>(fold_lanes(bend_m_, larger));
+    block.reach_m = static_cast<float>(fold_lanes(diameter_m_, larger) * PatchBlock::edge_error_factor);
+  }
+
+  void write_normal(std::size_t side, std::size_t lane, Vec3& to) const {
+    to.x = normal_[side][0][lane];
+    to.y = normal_[side][1][lane];
+    to.z = normal_[side][2][lane];
+  }
+  /// |n₁ − n₀|² of a pair.
+  double difference_squared(std::size_t lane) const { return difference_squared_[lane]; }
+
+ private:
+  static constexpr auto larger = [](const auto& one, const auto& other) { return one > other ? one : other; };
+
+  static constexpr std::size_t parts = simd_lanes / double_part_lanes;
+  /// What is smaller is no length.
+  static constexpr double least_squared = 1e-280;
+  using Row = std::array<double, simd_lanes>;
+  using Codes = std::array<std::int64_t, simd_lanes>;
+
+  [[gnu::always_inline]] static LongPart codes(const Codes& of, std::size_t part) {
+    LongPart result;
+    std::memcpy(&result, of.data() + part * double_part_lanes, sizeof result);
+    return result;
+  }
+
+  [[gnu::always_inline]] void write_part(std::size_t part, const Vec3& origin_m, const Vec3& centre_m,
+                                         PatchBlock& block) {
+    const std::size_t first = part * double_part_lanes;
+    const LongPart is_pair = codes(is_pair_, part) != 0;
+    std::array<VectorPart, 4> corner;
+    place_corners(world_m_[part], origin_m, centre_m, is_pair, corner);
+    for (std::size_t index = 0; index < 4; ++index) store(corner[index], block.corner_m[index], first);
+    Edges edges;
+    edges.set(world_m_[part]);
+    VectorPart normal, other_normal;
+    set_normals(part, edges, normal, other_normal);
+    store(normal, block.normal, first);
+    DoublePart bend, diameter, sound;
+    normal.dot(edges.ad, bend);
+    set_diameter(edges, diameter);
+    set_soundness(edges, normal, sound);
+    // Without a plane, or where the vertices have moved until the pair is not convex, nothing is certain, but every
+    // ray near it is asked.
+    bend = sound > 0.0 ? absolute(bend) * 1.0001 : diameter;
+    bend = is_pair ? bend : DoublePart{};
+    bend_m_ = bend > bend_m_ ? bend : bend_m_;
+    diameter_m_ = diameter > diameter_m_ ? diameter : diameter_m_;
+  }
+
+  /// Ways between the corners in the world, and the products that point along the normals.
+  struct Edges {
+    VectorPart ab, ac, ad, bc, cd, bd, at_b, at_d;
+
+    [[gnu::always_inline]] void set(const std::array<VectorPart, 4>& corner) {
+      const auto& [a, b, c, d] = corner;
+      ab.set_difference(b, a);
+      ac.set_difference(c, a);
+      ad.set_difference(d, a);
+      bc.set_difference(c, b);
+      cd.set_difference(d, c);
+      bd.set_difference(d, b);
+      at_b.set_cross(ab, ac);
+      at_d.set_cross(ac, ad);
+    }
+  };
+
+  [[gnu::always_inline]] static void store(const VectorPart& vector, std::array<std::array<float, simd_lanes>, 3>& rows,
+                                           std::size_t first) {
+    store_narrow(vector.x, rows[0].data() + first);
+    store_narrow(vector.y, rows[1].data() + first);
+    store_narrow(vector.z, rows[2].data() + first);
+  }
+
+  /// A triangle becomes a quadrilateral with its fourth corner in the middle of an edge: it has no edge without length.
+  [[gnu::always_inline]] static void place_corners(const std::array<VectorPart, 4>& world, const Vec3& origin_m,
+                                                   const Vec3& centre_m, const LongPart& is_pair,
+                                                   std::array<VectorPart, 4>& corner) {
+    for (std::size_t index = 0; index < 4; ++index) {
+      corner[index].x = (world[index].x - origin_m.x) - centre_m.x;
+      corner[index].y = (world[index].y - origin_m.y) - centre_m.y;
+      corner[index].z = (world[index].z - origin_m.z) - centre_m.z;
+    }
+    VectorPart middle;
+    middle.x = 0.5 * (corner[0].x + corner[2].x);
+    middle.y = 0.5 * (corner[0].y + corner[2].y);
+    middle.z = 0.5 * (corner[0].z + corner[2].z);
+    corner[3].set_where(is_pair, corner[3], middle);
+  }
+
+  [[gnu::always_inline]] void set_normals(std::size_t part, const Edges& edges, VectorPart& normal,
+                                          VectorPart& other_normal) {
+    const std::array<VectorPart, 4>& world = world_m_[part];
+    const std::size_t first = part * double_part_lanes;
+    if (begins_at_a_[part]) {
+      normal = edges.at_b;
+      other_normal = edges.at_d;
+    } else {
+      set_product(codes(begin_[0], part), {world[0], world[1], world[2]}, edges.at_b, normal);
+      set_product(codes(begin_[1], part), {world[0], world[2], world[3]}, edges.at_d, other_normal);
+    }
+    make_unit(normal);
+    make_unit(other_normal);
+    normal.store(&normal_[0][0][first], &normal_[0][1][first], &normal_[0][2][first]);
+    other_normal.store(&normal_[1][0][first], &normal_[1][1][first], &normal_[1][2][first]);
+    DoublePart difference;
+    other_normal.set_difference(other_normal, normal);
+    other_normal.dot(other_normal, difference);
+    std::memcpy(&difference_squared_[first], &difference, sizeof difference);
+  }
+
+  /// What points along the normal of a triangle with these corners. `begin`: which of them is its first. (Which of the
+  /// others is the second changes the sign of the product and nothing else.) `towards`: where the patch's own order of
+  /// corners points, and the product itself where the triangle begins with the first.
+  [[gnu::always_inline]] static void set_product(const LongPart& begin, const std::array<VectorPart, 3>& corner,
+                                                 const VectorPart& towards, VectorPart& result) {
+    VectorPart first, next, last;
+    const LongPart is_one = begin == 1, is_two = begin == 2;
+    first.set_where(is_one, corner[1], corner[0]);
+    first.set_where(is_two, corner[2], first);
+    next.set_where(is_one, corner[2], corner[1]);
+    next.set_where(is_two, corner[0], next);
+    last.set_where(is_one, corner[0], corner[2]);
+    last.set_where(is_two, corner[1], last);
+    next.set_difference(next, first);
+    last.set_difference(last, first);
+    result.set_cross(next, last);
+    DoublePart along;
+    result.dot(towards, along);
+    result.scale(along < 0.0 ? DoublePart{} - 1.0 : DoublePart{} + 1.0);
+  }
+
+  [[gnu::always_inline]] static void make_unit(VectorPart& vector) {
+    DoublePart squared, scale;
+    vector.dot(vector, squared);
+    set_reciprocal_root(scale, squared, 4);
+    vector.scale(squared > least_squared ? scale : DoublePart{});
+  }
+
+  [[gnu::always_inline]] static void set_diameter(const Edges& edges, DoublePart& result) {
+    DoublePart longest = DoublePart{} + least_squared, squared;
+    for (const VectorPart* way :
+         std::array<const VectorPart*, 6>{&edges.ab, &edges.ac, &edges.ad, &edges.bc, &edges.cd, &edges.bd}) {
+      way->dot(*way, squared);
+      longest = squared > longest ? squared : longest;
+    }
+    set_reciprocal_root(result, longest, 2);
+    result *= longest * 1.00001;
+  }
+
+  /// Above 0 where the quadrilateral is convex (see EdgePair) and there is a plane. The turns at opposite corners of a
+  /// quadrilateral are the normals of the triangles there, and both pairs have the same sum.
+  [[gnu::always_inline]] static void set_soundness(const Edges& edges, const VectorPart& normal, DoublePart& result) {
+    const VectorPart &at_b = edges.at_b, &at_d = edges.at_d;
+    VectorPart at_c;
+    at_c.set_cross(edges.bc, edges.cd);
+    VectorPart sum;
+    sum.x = at_b.x + at_d.x;
+    sum.y = at_b.y + at_d.y;
+    sum.z = at_b.z + at_d.z;
+    DoublePart least, turn_b, turn_c, turn_d, length;
+    sum.dot(sum, least);
+    sum.dot(at_b, turn_b);
+    sum.dot(at_c, turn_c);
+    sum.dot(at_d, turn_d);
+    const DoublePart turn_a = least - turn_c;
+    turn_b = turn_b < turn_c ? turn_b : turn_c;
+    turn_d = turn_d < turn_a ? turn_d : turn_a;
+    turn_b = turn_b < turn_d ? turn_b : turn_d;
+    normal.dot(normal, length);
+    result = turn_b >= 1e-3 * least ? least : DoublePart{};
+    result = length > 0.0 ? result : DoublePart{};
+  }
+
+  std::array<std::array<VectorPart, 4>, parts> world_m_;
+  alignas(64) std::array<Codes, 2> begin_;
+  alignas(64) Codes is_pair_;
+  std::array<bool, parts> begins_at_a_;  ///< both triangles, in all lanes
+  std::array<std::array<Row, 3>, 2> normal_;
+  Row difference_squared_;
+  DoublePart bend_m_, diameter_m_;  ///< the largest of the lanes so far
+};
+
+}  // namespace dcem::detail

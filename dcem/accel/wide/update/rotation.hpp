@@ -1,0 +1,185 @@
+#pragma once
+/// Rotations in a `WideTree`; included by wide_tree.hpp.
+///
+/// Around a node of eight entries, some of them nodes themselves, three changes cost nothing but the surface of those
+/// inner entries (Kopta, Ize, Spjut, Brunvand, Davis, Kensler, "Fast, effective BVH updates for animated scenes", I3D
+/// 2012, for eight children): an entry of a child node comes up into a free lane; it changes places with an entry of
+/// the node; it goes over into a free lane of another child node. The best is taken where Σ cost · surface falls.
+///
+/// Nothing leaves its layer (wide_layer.hpp), so units stay whole. What goes down are leaves alone, and no deeper than
+/// hanging puts them: so a tree gets no deeper by rotations, however many there are.
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "dcem/accel/wide/levels.hpp"
+#include "dcem/accel/wide_bvh.hpp"
+
+namespace dcem {
+
+namespace detail {
+
+/// One change around a node.
+struct WideRotation {
+  enum class Kind { none, up, exchange, over };
+
+  Kind kind = Kind::none;
+  float gain_m2 = 0.0F;     ///< by which the surface of inner entries falls
+  std::uint32_t from = 0;   ///< lane of the child node that gives an entry away
+  std::uint32_t entry = 0;  ///< the lane of that entry, in the child node
+  std::uint32_t other = 0;  ///< lane of the node: free, or exchanged, or the child node that takes the entry
+};
+
+/// Looks for the best change around one node.
+class WideRotationSearch {
+ public:
+  /// A change must gain more than this share of the node's surface: what is less is not worth the writing, and
+  /// roundings cannot be taken for gains.
+  static constexpr float least_share = 1e-3F;
+
+  WideRotationSearch(const WideArrays& arrays, std::uint32_t node, std::uint32_t level)
+      : arrays_(arrays), node_(arrays.nodes[node]), lanes_(node_), areas_m2_(lanes_.half_areas()) {
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+      const WideChild child = node_.child[lane];
+      const std::uint32_t bit = 1U << lane;
+      if (child.is_none()) {
+        free_ |= bit;
+      } else if (is_layer_node(arrays, child)) {
+        inner_ |= bit;
+        if (arrays.nodes[child.index()].child_count() < simd_lanes) open_ |= bit;
+      } else if (level < wide_edit_levels) {
+        lowerable_ |= bit;
+      }
+    }
+  }
+
+  WideRotation best() {
+    if (inner_ == 0) return best_;
+    best_.gain_m2 = least_share * node_.box().half_area();
+    for (std::uint32_t rest = inner_; rest != 0; rest &= rest - 1) {
+      try_child(static_cast<std::uint32_t>(std::countr_zero(rest)));
+    }
+    return best_;
+  }
+
+ private:
+  void try_child(std::uint32_t from) {
+    const WideNode& child = arrays_.nodes[node_.child[from].index()];
+    // boxes_after[i]: around the entries behind i.
+    std::array<Aabb<float>, simd_lanes + 1> boxes_after;
+    for (std::uint32_t lane = simd_lanes; lane-- > 0;) {
+      boxes_after[lane] = boxes_after[lane + 1];
+      boxes_after[lane].extend(child.box(lane));
+    }
+    const bool dissolves = child.child_count() <= 2;
+    Aabb<float> before;
+    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+      if (child.child[lane].is_none()) continue;
+      Aabb<float> others = before;
+      others.extend(boxes_after[lane + 1]);
+      before.extend(child.box(lane));
+      try_entry(from, lane, child.box(lane), others, dissolves);
+    }
+  }
+
+  void try_entry(std::uint32_t from, std::uint32_t entry, const Aabb<float>& box, const Aabb<float>& others,
+                 bool dissolves) {
+    const float lightened_m2 = areas_m2_[from] - (dissolves ? 0.0F : others.half_area());
+    if (free_ != 0) {  // nothing else gains more
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(free_));
+      offer({WideRotation::Kind::up, lightened_m2, from, entry, lane});
+      return;
+    }
+    if (lowerable_ != 0) {
+      const std::array<float, simd_lanes> exchanged_m2 = lanes_.half_areas_with(others);
+      for (std::uint32_t rest = lowerable_; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+        offer({WideRotation::Kind::exchange, areas_m2_[from] - exchanged_m2[lane], from, entry, lane});
+      }
+    }
+    const std::uint32_t takers = open_ & ~(1U << from);
+    if (takers == 0 || lightened_m2 <= best_.gain_m2) return;
+    const std::array<float, simd_lanes> grown_m2 = lanes_.half_areas_with(box);
+    for (std::uint32_t rest = takers; rest != 0; rest &= rest - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+      offer({WideRotation::Kind::over, lightened_m2 - (grown_m2[lane] - areas_m2_[lane]), from, entry, lane});
+    }
+  }
+
+  void offer(const WideRotation& rotation) {
+    if (rotation.gain_m2 > best_.gain_m2) best_ = rotation;
+  }
+
+  const WideArrays& arrays_;
+  const WideNode& node_;
+  BoxLanes lanes_;
+  std::array<float, simd_lanes> areas_m2_;
+  std::uint32_t free_ = 0, inner_ = 0, open_ = 0, lowerable_ = 0;  ///< lanes of the node
+  WideRotation best_;
+};
+
+}  // namespace detail
+
+inline std::size_t WideTree::rotate_touched(std::uint32_t most_per_node) {
+  if (arrays_.nodes.empty()) return 0;
+  wear_.mark_paths(arrays_);
+  if (!wear_.watched().measures()) wear_.forget_touches();
+  const std::size_t count = wear_.is_marked(0) ? rotate_below(0, 1, most_per_node) : 0;
+  wear_.unmark();
+  return count;
+}
+
+/// Children first: what comes up from them may go further up. `level`: of the node, in its layer.
+inline std::size_t WideTree::rotate_below(std::uint32_t node, std::uint32_t level, std::uint32_t most_per_node) {
+  std::size_t count = 0;
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    const WideChild child = arrays_.nodes[node].child[lane];
+    if (child.is_none() || child.is_block() || !wear_.is_marked(child.index())) continue;
+    const bool same_layer = detail::is_layer_node(arrays_, child);
+    count += rotate_below(child.index(), same_layer ? level + 1 : 1, most_per_node);
+  }
+  for (std::uint32_t turn = 0; turn < most_per_node; ++turn) {
+    const detail::WideRotation rotation = detail::WideRotationSearch(arrays_, node, level).best();
+    if (rotation.kind == detail::WideRotation::Kind::none) break;
+    carry_out(rotation, node);
+    ++count;
+  }
+  return count;
+}
+
+inline void WideTree::carry_out(const detail::WideRotation& rotation, std::uint32_t node) {
+  using Kind = detail::WideRotation::Kind;
+  const std::uint32_t giver = arrays_.nodes[node].child[rotation.from].index();
+  const WidePlace from = WidePlace::at(giver, rotation.entry), own = WidePlace::at(node, rotation.other);
+  const WideChild entry = arrays_.child_at(from), other = arrays_.child_at(own);
+  const Aabb<float> entry_box = arrays_.box_at(from), other_box = arrays_.box_at(own);
+  wear_.touch(giver);
+  if (rotation.kind == Kind::exchange) {
+    arrays_.hang(entry, own, entry_box);
+    arrays_.hang(other, from, other_box);
+    arrays_.tighten_above(giver);
+    remember_hung(other);
+  } else if (rotation.kind == Kind::up) {
+    arrays_.hang(entry, own, entry_box);
+    take_out(from);
+  } else {
+    const std::uint32_t taker = other.index();
+    std::uint32_t lane = 0;
+    while (!arrays_.nodes[taker].child[lane].is_none()) ++lane;
+    arrays_.hang(entry, WidePlace::at(taker, lane), entry_box);
+    arrays_.tighten_above(taker);
+    take_out(from);
+    wear_.touch(taker);
+  }
+  remember_hung(entry);
+}
+
+/// Notes for a unit how large the node is in which it hangs now.
+inline void WideTree::remember_hung(WideChild child) {
+  const std::uint32_t unit = arrays_.unit_of(child);
+  if (unit == WideArrays::no_unit) return;
+  area_when_hung_m2_[unit] = arrays_.nodes[arrays_.place_of(child).node()].box().half_area();
+}
+
+}  // namespace dcem

@@ -1,0 +1,268 @@
+#pragma once
+/// Tree of eight children a node over triangles: the fast one. Boxes and first tests are in single precision and never
+/// decide against double precision, so that its answers are those of `BruteForce`.
+///
+/// Objects own subtrees that edits take as a whole; what moves is followed in place, without allocation.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "dcem/accel/counters.hpp"
+#include "dcem/accel/detail/box_check.hpp"
+#include "dcem/accel/sah_cost.hpp"
+#include "dcem/accel/wide/arrays.hpp"
+#include "dcem/accel/wide/build/builder.hpp"
+#include "dcem/accel/wide/build/plan.hpp"
+#include "dcem/accel/wide/trace/traversal.hpp"
+#include "dcem/accel/wide/update/degradation.hpp"
+#include "dcem/accel/wide/validate.hpp"
+#include "dcem/geometry/aabb.hpp"
+#include "dcem/geometry/ray.hpp"
+#include "dcem/geometry/triangle.hpp"
+
+namespace dcem {
+
+namespace detail {
+struct WideRotation;
+}  // namespace detail
+
+/// The nearest hit of a ray.
+struct WideHit {
+  double t = 0.0;  ///< where the ray meets the plane of the triangle
+  std::uint32_t triangle = WidePatch::no_triangle;
+};
+
+/// What following a motion took.
+struct WideRefitReport {
+  std::size_t blocks_written = 0;
+  std::size_t nodes_visited = 0;
+};
+
+/// Boxes and triangles are passed in full to every edit, indexed by triangle; a triangle with an empty box is not
+/// there, any other box is that around its corners. Edits throw std::invalid_argument, before anything changes, for bad
+/// boxes (see Bvh) and numbers out of range. Queries may run on several threads at once, edits may not.
+class WideTree {
+ public:
+  using Boxes = std::span<const Aabb<double>>;
+
+  // Building.
+
+  /// A new tree. Triangles [group_first[i], group_first[i + 1]) are group i, the last group ends with the triangles.
+  /// Groups of up to WideSettings::unit_limit patches own a subtree.
+  void build_grouped(const TriangleView& mesh, Boxes boxes, std::span<const std::uint32_t> group_first,
+                     const WideSettings& settings = {});
+  void build(const TriangleView& mesh, Boxes boxes, const WideSettings& settings = {}) {
+    const std::uint32_t whole = 0;
+    build_grouped(mesh, boxes, {&whole, 1}, settings);
+  }
+  /// Builds everything anew, with the groups, the patches and the settings of the last build; the triangles must have
+  /// the vertices that they had then.
+  void rebuild(const TriangleView& mesh, Boxes boxes);
+
+  // Following motion.
+
+  /// Takes over the corners of the triangles in `moved`, and which of them are there, and makes all boxes above them
+  /// tight again. Vertices may move in any way; which vertices a triangle has stays as it was built. `moved` names
+  /// every triangle of which a corner has moved. Allocates nothing once the lists have grown.
+  WideRefitReport refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes);
+
+  /// Takes units out of the tree that the last refit moved, and hangs each where it costs least (branch and bound over
+  /// Σ cost · surface: Bittner, Hapala, Havran, "Fast insertion-based optimization of bounding volume hierarchies",
+  /// Computer Graphics Forum 2013): those that make the node they hang in larger than `growth_limit` times what it was
+  /// when they came there, and of all one in `turn_length`, in turn (0: none). Growth alone misses what has become a
+  /// bad place little by little, or by what others do. Returns how many were moved.
+  std::size_t reinsert_moved(double growth_limit, std::uint32_t turn_length = default_turn_length);
+  static constexpr std::uint32_t default_turn_length = 50;
+
+  /// Builds what hangs below an inner node anew, in place, from the boxes as they are now: the node's part of its layer
+  /// (wide_layer.hpp), of which blocks and units are the leaves; node 0 is all but those. Where the result would lie
+  /// too deep, more is built anew, from a node above on. Returns how many nodes were written: none where Σ cost ·
+  /// surface below the node would not fall below `wanted_share` of what it is (above 0; infinity: whatever it will be);
+  /// the node's wear is then counted from now on.
+  std::size_t regrow(std::uint32_t node, double wanted_share = std::numeric_limits<double>::infinity());
+
+  /// Exchanges entries around the nodes that edits have touched since the last call, where Σ cost · surface falls (see
+  /// wide_rotation.hpp), up to so many a node. Needs `watch`. Returns how many entries changed their place.
+  std::size_t rotate_touched(std::uint32_t most_per_node = 1);
+
+  // Wear (see wide_wear.hpp).
+
+  /// Says what is noted from now on. What is watched anew counts as built now.
+  void watch(const WideWatch& watched) { wear_.watch(watched, arrays_); }
+  const WideWatch& watched() const { return wear_.watched(); }
+  /// Brings the measures up to date along the paths that edits have touched. Returns the nodes on them, children before
+  /// parents; valid until the next call.
+  std::span<const std::uint32_t> measure() {
+    wear_.refresh(arrays_);
+    return wear_.refreshed();
+  }
+  /// Per node, as of the last `measure` or `regrow`; empty where no measure is watched. Meaningless for nodes that are
+  /// not in use.
+  std::span<const WideWear> wear() const { return wear_.all(); }
+
+  // Queries. `counters`, when given, is added to.
+
+  /// Considers all.
+  struct EveryTriangle {
+    bool operator()(std::uint32_t) const { return true; }
+  };
+
+  /// The nearest hit from t_min to t_max among the triangles for which `considers(triangle) -> bool` holds, which must
+  /// be the same for all triangles of one surface (TriangleView::surface_of_triangle). Of equally near ones the one
+  /// with the smallest number. t comes from the plane of the triangle, whatever decided that the ray meets it; so it is
+  /// the same for every tree over the same triangles.
+  template <typename Considers>
+  std::optional<WideHit> nearest(const Ray<double>& ray, Considers&& considers,
+                                 TraversalCounters* counters = nullptr) const;
+  std::optional<WideHit> nearest(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
+    return nearest(ray, EveryTriangle{}, counters);
+  }
+
+  /// Whether a triangle for which `considers(triangle) -> bool` holds is met from t_min to t_max. `first_try`: asked
+  /// before the tree, for instance what was in the way a moment ago.
+  template <typename Considers>
+  bool blocked(const Ray<double>& ray, Considers&& considers, TraversalCounters* counters = nullptr,
+               std::optional<std::uint32_t> first_try = {}) const;
+  bool blocked(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
+    return blocked(ray, EveryTriangle{}, counters);
+  }
+
+  /// As Bvh::closest: calls `leaf(triangle, t_max)`, near ones first, for all triangles that the ray may meet.
+  template <typename Leaf>
+  void closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
+
+  /// As Bvh::any: calls `leaf(triangle) -> bool` for triangles that the ray may meet until one returns true.
+  template <typename Leaf>
+  bool any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
+
+  /// Calls `leaf(triangle)` once for every triangle that the ray may meet: all that it meets, and a few beside.
+  template <typename Leaf>
+  void all(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
+    any(
+        ray, [&](std::uint32_t triangle) { return leaf(triangle), false; }, counters);
+  }
+
+  /// Calls `leaf(triangle)` once for every triangle whose box has a point in common with `box`.
+  template <typename Leaf>
+  void overlapping(const Aabb<double>& box, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
+
+  /// As Bvh::visit: calls `leaf(triangle)` once for every triangle with a box for which `keep_box(box) -> bool` holds.
+  /// It must hold for every box that contains a box for which it holds: half spaces, frusta, beams.
+  template <typename Keep, typename Leaf>
+  void visit(Keep&& keep_box, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
+
+  // Looking inside.
+
+  std::size_t primitive_count() const { return arrays_.triangles.size(); }
+  std::size_t group_count() const { return group_first_.size(); }
+  Aabb<double> bounds() const { return in_world(root_box()); }
+  const WideArrays& arrays() const { return arrays_; }
+  const WideSettings& settings() const { return settings_; }
+
+  /// Expected cost of a long random ray by the surface-area heuristic, no unit; from a sum that every edit keeps.
+  double sah_cost() const {
+    const double root_m2 = static_cast<double>(root_box().half_area());
+    return sah_from_area(arrays_.weighted_area_m2 + arrays_.costs.node * root_m2, root_m2);
+  }
+  BvhQuality quality() const { return {sah_cost(), sah_at_build_}; }
+
+  /// A sentence about the first broken promise, empty when all are kept. `boxes`: the triangles' boxes as they are now.
+  std::string validate(Boxes boxes) const;
+
+ private:
+  using Hits = WideRay::PatchHits;
+  static bool has(std::uint32_t lanes, std::uint32_t lane) { return (lanes >> lane & 1U) != 0; }
+
+  detail::WideView view() const { return {arrays_.nodes, arrays_.blocks, settings_.fetch_ahead}; }
+  Aabb<float> root_box() const { return arrays_.nodes.empty() ? Aabb<float>{} : arrays_.nodes[0].box(); }
+  Aabb<double> in_world(const Aabb<float>& box) const;
+
+  static bool has_direction(const Ray<double>& ray);
+  using Known = PatchKnowledge;
+  static const PatchPlane* plane_met(const PatchPlanes& planes, const Ray<double>& ray, Known known);
+  std::optional<WideHit> hit_on(std::uint32_t patch, const Ray<double>& ray) const;
+  std::span<const PatchPlane> halves_to_ask(std::uint32_t patch, Known known) const;
+  template <typename Visit>
+  bool for_each_present_patch(Visit&& visit) const;
+  template <typename Considers>
+  bool is_considered(std::uint32_t patch, Considers& considers) const;
+  void offer(std::uint32_t patch, const Ray<double>& ray, Known known, std::optional<WideHit>& best) const;
+
+  template <typename Considers>
+  std::optional<WideHit> nearest_among(const Ray<double>& ray, const WideRay& wide, Considers& considers,
+                                       TraversalCounters& counters) const;
+  template <typename Considers>
+  std::optional<WideHit> nearest_of_all(const Ray<double>& ray, Considers& considers,
+                                        TraversalCounters& counters) const;
+
+  template <typename KeepEntry, typename Keep, typename Leaf>
+  void visit_where(KeepEntry&& keep_entry, Keep&& keep_box, Leaf& leaf, TraversalCounters* counters) const;
+
+  static void require_input(const TriangleView& mesh, Boxes boxes);
+  static void require_corners(const TriangleView& mesh, std::uint32_t triangle);
+  void plant(const TriangleView& mesh, Boxes boxes);
+  void look_at_boxes(std::span<const std::uint32_t> moved, Boxes boxes);
+  void mark_dirty(std::span<const std::uint32_t> moved);
+  void note_moved_unit(std::uint32_t group);
+  bool take_out_and_hang(std::uint32_t group);
+  void take_out(WidePlace place);
+  /// A node where something might hang, and what the nodes down to it would grow by.
+  struct Branch {
+    double cost_m2;
+    std::uint32_t node;
+    std::uint32_t level;                                                           ///< of the node, 1 for the root
+    bool operator<(const Branch& other) const { return cost_m2 > other.cost_m2; }  // the cheapest on top
+  };
+  struct Spot {
+    double cost_m2 = std::numeric_limits<double>::infinity();
+    std::uint32_t node = 0;
+    std::uint32_t lane = simd_lanes;  ///< of a free lane; or of the entry to join, with `joins`
+    bool joins = false;
+  };
+  Spot cheapest_spot(const Aabb<float>& box);
+  void offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best);
+  void hang_at(WideChild child, const Aabb<float>& box, const Spot& spot);
+  void fell(std::uint32_t node);
+  std::size_t plant_planned(std::uint32_t node, const detail::WidePlan& plan, std::uint32_t slot);
+  std::size_t hang_planned(WidePlace place, const detail::WidePlan& plan, std::uint32_t slot);
+  void remember_hung(std::uint32_t node);
+  void sum_anew();
+  std::size_t rotate_below(std::uint32_t node, std::uint32_t level, std::uint32_t most_per_node);
+  void carry_out(const detail::WideRotation& rotation, std::uint32_t node);
+  void remember_hung(WideChild child);
+
+  WideArrays arrays_;
+  WideSettings settings_;
+  std::vector<std::uint32_t> group_first_;
+  std::vector<WidePatch> patches_;          ///< by group
+  std::vector<std::uint32_t> first_patch_;  ///< one more entry than groups
+  double sah_at_build_ = 0.0;
+
+  std::vector<std::uint32_t> dirty_blocks_;
+  std::vector<char> block_is_dirty_, is_there_now_;
+  std::vector<std::uint32_t> moved_units_;
+  std::vector<char> unit_is_moved_;
+  std::vector<float> area_when_hung_m2_;  ///< per group: half surface of the node around, when the unit came there
+  std::vector<Branch> branches_;
+  std::size_t next_turn_ = 0;
+  detail::WideWearLog wear_;
+  detail::WidePlan plan_;  ///< kept for its memory
+};
+
+}  // namespace dcem
+
+#include "dcem/accel/wide/trace/hits.hpp"
+#include "dcem/accel/wide/trace/queries.hpp"
+#include "dcem/accel/wide/update/edits.hpp"
+#include "dcem/accel/wide/update/rebuild_subtree.hpp"
+#include "dcem/accel/wide/update/rotation.hpp"

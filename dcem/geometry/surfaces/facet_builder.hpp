@@ -1,0 +1,170 @@
+#pragma once
+/// From a triangle soup to facets.
+///
+/// 1. Weld vertices. 2. Drop triangles without area, then repeated ones. 3. Find triangles that share an edge. 4. Join
+/// those of one material that are coplanar. 5. Fit each set's plane; a set that bends too far falls back to its
+/// triangles.
+/// 6. Lay everything out facet by facet. 7. Collect the diffracting edges (`wedge_builder.hpp`). Cost: O(n log n) in
+/// the number of triangles.
+///
+/// Source of the rules: `CONVENTIONS.md`, section "Facets".
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "dcem/core/units.hpp"
+#include "dcem/geometry/surfaces/convex_hull.hpp"
+#include "dcem/geometry/surfaces/disjoint_sets.hpp"
+#include "dcem/geometry/surfaces/mesh_cleaning.hpp"
+#include "dcem/geometry/surfaces/mesh_edges.hpp"
+#include "dcem/geometry/surfaces/surface_mesh.hpp"
+#include "dcem/geometry/surfaces/wedge_builder.hpp"
+
+namespace dcem {
+
+/// Builds the surfaces of a mesh. Throws std::invalid_argument on a vertex that is not finite, or an index out of
+/// range.
+SurfaceMesh build_surface_mesh(const TriangleMesh& mesh, const SurfaceSettings& settings = {});
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace detail {
+
+/// Normals of one facet differ by less than this from triangle to triangle.
+inline const double coplanar_cosine = std::cos(degrees_to_radians(0.1));
+
+/// A coplanar set may stray this many planarity tolerances from its mean plane before it falls back to its triangles.
+inline constexpr double stray_tolerances = 5.0;
+
+/// Steps 3 to 6, on a clean mesh.
+class FacetBuilder {
+ public:
+  FacetBuilder(CleanMesh mesh, const SurfaceSettings& settings)
+      : mesh_(std::move(mesh)), settings_(settings), coplanar_(mesh_.triangles.size()) {
+    const MeshEdges edges(mesh_);
+    join_coplanar(edges);
+    shells_ = enclosing_shells(mesh_, edges, settings_.weld_tolerance_m);
+    surface_.shell_foot_m = shells_.foot_m;
+    surface_.shell_stands = shells_.stands;
+    surface_.report = mesh_.report;
+    surface_.report.open_edges = open_edges_;
+    surface_.report.crowded_edges = crowded_edges_;
+    surface_.report.closed_shells = shells_.closed;
+    surface_.report.standing_shells = shells_.standing;
+  }
+
+  SurfaceMesh build() {
+    std::vector<std::vector<std::uint32_t>> sets(mesh_.triangles.size());
+    for (std::uint32_t triangle = 0; triangle < mesh_.triangles.size(); ++triangle) {
+      sets[coplanar_.smallest(triangle)].push_back(triangle);
+    }
+    for (const std::vector<std::uint32_t>& set : sets) {
+      if (!set.empty()) add_set(set);
+    }
+    surface_.material_names = std::move(mesh_.material_names);
+    surface_.vertices_m = std::move(mesh_.vertices_m);
+    return std::move(surface_);
+  }
+
+ private:
+  void join_coplanar(const MeshEdges& edges) {
+    edges.for_each_place([&](auto first, auto last) {
+      open_edges_ += last - first == 1;
+      crowded_edges_ += last - first > 2;
+      for (auto one = first; one != last; ++one) {
+        for (auto other = one + 1; other != last; ++other) {
+          if (coplanar(one->triangle, other->triangle)) coplanar_.join(one->triangle, other->triangle);
+        }
+      }
+    });
+  }
+
+  bool coplanar(std::uint32_t one, std::uint32_t other) const {
+    return mesh_.triangles[one].material == mesh_.triangles[other].material &&
+           std::abs(glm::dot(mesh_.normals[one], mesh_.normals[other])) > coplanar_cosine &&
+           largest_stray_m({mesh_.corner_m(one, 0), mesh_.normals[one]}, {other}) <= settings_.planarity_tolerance_m &&
+           largest_stray_m({mesh_.corner_m(other, 0), mesh_.normals[other]}, {one}) <= settings_.planarity_tolerance_m;
+  }
+
+  void add_set(const std::vector<std::uint32_t>& set) {
+    const Plane plane = mean_plane(set);
+    const double limit_m = stray_tolerances * settings_.planarity_tolerance_m;
+    if (set.size() == 1 || largest_stray_m(plane, set) <= limit_m) {
+      add_facet(plane, set);
+      return;
+    }
+    ++surface_.report.uneven_sets;
+    for (const std::uint32_t triangle : set) add_facet(mean_plane({triangle}), {triangle});
+  }
+
+  Plane mean_plane(const std::vector<std::uint32_t>& set) const {
+    if (set.size() == 1) return {centroid_m(set.front()), mesh_.normals[set.front()]};
+    const std::uint32_t largest = *std::max_element(set.begin(), set.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return mesh_.areas_m2[a] < mesh_.areas_m2[b];
+    });
+    Vec3 normal(0.0), centre(0.0);
+    double area_m2 = 0.0;
+    for (const std::uint32_t triangle : set) {
+      const double side = glm::dot(mesh_.normals[triangle], mesh_.normals[largest]) < 0.0 ? -1.0 : 1.0;
+      normal += side * mesh_.areas_m2[triangle] * mesh_.normals[triangle];
+      centre += mesh_.areas_m2[triangle] * (centroid_m(triangle) - centroid_m(largest));
+      area_m2 += mesh_.areas_m2[triangle];
+    }
+    return {centroid_m(largest) + centre / area_m2, glm::normalize(normal)};
+  }
+
+  Vec3 centroid_m(std::uint32_t triangle) const {
+    const Vec3 &a = mesh_.corner_m(triangle, 0), &b = mesh_.corner_m(triangle, 1), &c = mesh_.corner_m(triangle, 2);
+    return a + ((b - a) + (c - a)) / 3.0;
+  }
+
+  double largest_stray_m(const Plane& plane, const std::vector<std::uint32_t>& set) const {
+    double largest_m = 0.0;
+    for (const std::uint32_t triangle : set) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        largest_m = std::max(largest_m, std::abs(signed_distance_m(plane, mesh_.corner_m(triangle, corner))));
+      }
+    }
+    return largest_m;
+  }
+
+  void add_facet(const Plane& plane, const std::vector<std::uint32_t>& set) {
+    Facet facet{plane, mesh_.triangles[set.front()].material};
+    facet.first_triangle = static_cast<std::uint32_t>(surface_.triangles.size());
+    facet.triangle_count = static_cast<std::uint32_t>(set.size());
+    std::vector<Vec3> corners_m;
+    for (const std::uint32_t triangle : set) {
+      surface_.triangles.push_back(mesh_.triangles[triangle].vertices);
+      surface_.facet_of_triangle.push_back(static_cast<std::uint32_t>(surface_.facets.size()));
+      surface_.shell_of_triangle.push_back(shells_.shell_of_triangle[triangle]);
+      for (std::size_t corner = 0; corner < 3; ++corner) corners_m.push_back(mesh_.corner_m(triangle, corner));
+    }
+    const std::vector<Vec3> hull_m = convex_hull_on_plane(plane, corners_m);
+    facet.first_hull_point = static_cast<std::uint32_t>(surface_.hull_points_m.size());
+    facet.hull_point_count = static_cast<std::uint32_t>(hull_m.size());
+    surface_.hull_points_m.insert(surface_.hull_points_m.end(), hull_m.begin(), hull_m.end());
+    surface_.facets.push_back(facet);
+  }
+
+  CleanMesh mesh_;
+  SurfaceSettings settings_;
+  SurfaceMesh surface_;
+  DisjointSets coplanar_;
+  EnclosingShells shells_;
+  std::size_t open_edges_ = 0, crowded_edges_ = 0;
+};
+
+}  // namespace detail
+
+inline SurfaceMesh build_surface_mesh(const TriangleMesh& mesh, const SurfaceSettings& settings) {
+  SurfaceMesh surface = detail::FacetBuilder(clean_mesh(mesh, settings), settings).build();
+  surface.wedges = build_wedges(surface, settings);
+  const auto free = std::count_if(surface.wedges.begin(), surface.wedges.end(), is_free);
+  surface.report.free_edges = static_cast<std::size_t>(free);
+  surface.report.wedges = surface.wedges.size() - surface.report.free_edges;
+  return surface;
+}
+
+}  // namespace dcem

@@ -1,0 +1,235 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dcem/io/antenna_files.hpp"
+#include "dcem/io/atomic_file.hpp"
+#include "dcem/io/input_error.hpp"
+#include "dcem/io/src/text/number_text.hpp"
+#include "dcem/io/src/text/text_input.hpp"
+
+namespace dcem::io {
+
+namespace {
+
+enum Column { azimuth_deg, zenith_deg, gain_dbi };
+const std::vector<std::string> column_names{"azimuth_deg", "zenith_deg", "gain_dbi"};
+const std::string header = "azimuth_deg,zenith_deg,gain_dbi";
+
+/// Angles are compared in millionths of a degree: files round them.
+using MicroDegrees = std::int64_t;
+constexpr MicroDegrees whole_turn = 360'000'000, half_turn = 180'000'000;
+
+std::string degrees_text(MicroDegrees angle) {
+  return number_text(static_cast<double>(angle) / 1e6);
+}
+
+/// One line of the file.
+struct Node {
+  MicroDegrees azimuth = 0;  ///< in [0, 360) degrees
+  MicroDegrees zenith = 0;
+  MicroDegrees written_azimuth = 0;
+  double gain_dbi = 0.0;
+  std::size_t line = 0;
+};
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t comma = std::min(line.find(','), line.size());
+    fields.push_back(trimmed(line.substr(0, comma)));
+    if (comma == line.size()) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+class NodeReader {
+ public:
+  NodeReader(std::string name, std::string_view text) : name_(std::move(name)), lines_(text) { read_header(); }
+
+  std::vector<Node> read() {
+    std::vector<Node> nodes;
+    while (lines_.next()) {
+      if (trimmed(lines_.line()).empty()) continue;
+      fields_ = split(lines_.line());
+      if (fields_.size() != columns_) {
+        fail(std::to_string(fields_.size()) + " fields; expected " + std::to_string(columns_) + " as in the header");
+      }
+      nodes.push_back(node());
+    }
+    if (nodes.empty()) throw InputError(name_, "holds no gain; expected lines of " + header);
+    return nodes;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(name_, lines_.number(), what); }
+
+  void read_header() {
+    if (!lines_.next() || trimmed(lines_.line()).empty()) {
+      throw InputError(name_, "is empty; expected a header " + header);
+    }
+    const std::vector<std::string_view> found = split(lines_.line());
+    columns_ = found.size();
+    for (std::size_t field = 0; field < found.size(); ++field) {
+      const auto column = std::find(column_names.begin(), column_names.end(), found[field]);
+      if (column == column_names.end()) {
+        fail("unknown column " + in_quotes(found[field]) + "; the nearest known one is '" +
+             nearest_name(found[field], column_names) + "'");
+      }
+      std::optional<std::size_t>& place = field_of_[static_cast<std::size_t>(column - column_names.begin())];
+      if (place) fail("column '" + *column + "' is there twice; expected it once");
+      place = field;
+    }
+    for (std::size_t column = 0; column < column_names.size(); ++column) {
+      if (!field_of_[column]) fail("the column '" + column_names[column] + "' is missing; expected " + header);
+    }
+  }
+
+  double number(Column column, const NumberRange& range) const {
+    const std::string_view text = fields_[*field_of_[column]];
+    const std::optional<double> value = parse_number(text);
+    if (!value || !range.holds(*value)) {
+      fail(column_names[column] + ": found " + in_quotes(text) + "; expected " + range.text());
+    }
+    return *value;
+  }
+
+  MicroDegrees angle(Column column, const NumberRange& range) const {
+    return std::llround(number(column, range) * 1e6);
+  }
+
+  Node node() const {
+    const MicroDegrees azimuth = angle(azimuth_deg, {-360.0, 360.0});
+    const double highest_dbi = PatternTable::highest_gain_dbi;
+    return {(azimuth + whole_turn) % whole_turn, angle(zenith_deg, {0.0, 180.0}), azimuth,
+            number(gain_dbi, {-highest_dbi, highest_dbi}), lines_.number()};
+  }
+
+  std::string name_;
+  LineReader lines_;
+  std::size_t columns_ = 0;
+  std::array<std::optional<std::size_t>, 3> field_of_;
+  std::vector<std::string_view> fields_;
+};
+
+/// The distinct values, ascending.
+template <typename Angle>
+std::vector<MicroDegrees> distinct(const std::vector<Node>& nodes, Angle&& angle) {
+  std::vector<MicroDegrees> angles;
+  for (const Node& node : nodes) angles.push_back(angle(node));
+  std::sort(angles.begin(), angles.end());
+  angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
+  return angles;
+}
+
+/// The angles must be even steps from 0; the next one after the last would be `end`. An angle may be off its place by a
+/// hundredth of a step.
+void check_even(const std::string& name, const std::string& column, const std::vector<MicroDegrees>& angles,
+                MicroDegrees end, const std::string& expectation) {
+  MicroDegrees smallest = end;
+  for (std::size_t index = 0; index < angles.size(); ++index) {
+    const MicroDegrees next = index + 1 < angles.size() ? angles[index + 1] : end;
+    smallest = std::min(smallest, next - angles[index]);
+  }
+  const auto steps = static_cast<MicroDegrees>(std::llround(static_cast<double>(end) / static_cast<double>(smallest)));
+  const double step = static_cast<double>(end) / static_cast<double>(steps);
+  for (std::size_t index = 0; index < static_cast<std::size_t>(steps); ++index) {
+    const double place = static_cast<double>(index) * step;
+    if (index < angles.size() && std::abs(static_cast<double>(angles[index]) - place) <= 0.01 * step) continue;
+    throw InputError(name, column + ": " + degrees_text(std::llround(place)) + " is missing; expected " + expectation +
+                               " in even steps, here of " + degrees_text(std::llround(step)) + " degrees");
+  }
+}
+
+class TableBuilder {
+ public:
+  TableBuilder(std::string name, std::vector<Node> nodes)
+      : name_(std::move(name)),
+        nodes_(std::move(nodes)),
+        azimuths_(distinct(nodes_, [](const Node& node) { return node.azimuth; })),
+        zeniths_(distinct(nodes_, [](const Node& node) { return node.zenith; })) {}
+
+  PatternTable build() {
+    if (azimuths_.size() < 2) throw InputError(name_, "azimuth_deg: one azimuth is a cut; expected a whole turn");
+    check_even(name_, column_names[azimuth_deg], azimuths_, whole_turn, "a whole turn from 0");
+    if (zeniths_.back() != half_turn) throw InputError(name_, "zenith_deg: 180 is missing; expected 0 to 180");
+    check_even(name_, column_names[zenith_deg], {zeniths_.begin(), zeniths_.end() - 1}, half_turn, "0 to 180");
+    sort_out_doubles();
+    check_complete();
+    std::vector<double> gains;
+    for (const Node& node : nodes_) gains.push_back(node.gain_dbi);
+    return {azimuths_.size(), zeniths_.size(), std::move(gains)};
+  }
+
+ private:
+  static std::string direction_text(MicroDegrees azimuth, MicroDegrees zenith) {
+    return "azimuth " + degrees_text(azimuth) + ", zenith " + degrees_text(zenith);
+  }
+
+  /// Brings the nodes into the order of the table, without the repeated first azimuth.
+  void sort_out_doubles() {
+    std::stable_sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) {
+      return std::pair(a.zenith, a.azimuth) < std::pair(b.zenith, b.azimuth);
+    });
+    const auto same = [&](const Node& first, const Node& second) {
+      if (first.zenith != second.zenith || first.azimuth != second.azimuth) return false;
+      if (first.written_azimuth != second.written_azimuth && first.gain_dbi == second.gain_dbi) return true;
+      throw InputError(name_, second.line,
+                       direction_text(second.written_azimuth, second.zenith) + ": there already in line " +
+                           std::to_string(first.line) + "; expected each direction once");
+    };
+    nodes_.erase(std::unique(nodes_.begin(), nodes_.end(), same), nodes_.end());
+  }
+
+  void check_complete() const {
+    std::size_t node = 0;
+    for (const MicroDegrees zenith : zeniths_) {
+      for (const MicroDegrees azimuth : azimuths_) {
+        const bool there = node < nodes_.size() && nodes_[node].azimuth == azimuth && nodes_[node].zenith == zenith;
+        if (!there) {
+          throw InputError(name_, direction_text(azimuth, zenith) +
+                                      ": missing; expected a gain for each pair of the azimuths and zeniths");
+        }
+        ++node;
+      }
+    }
+  }
+
+  std::string name_;
+  std::vector<Node> nodes_;
+  std::vector<MicroDegrees> azimuths_, zeniths_;
+};
+
+}  // namespace
+
+PatternTable read_pattern_csv(const std::filesystem::path& file) {
+  const std::string text = read_text_file(file, "expected a table of gains");
+  return TableBuilder(file.string(), NodeReader(file.string(), text).read()).build();
+}
+
+void write_pattern_csv(const PatternTable& table, const std::filesystem::path& file) {
+  std::string text = header + '\n';
+  for (std::size_t zenith = 0; zenith < table.zenith_count(); ++zenith) {
+    for (std::size_t azimuth = 0; azimuth < table.azimuth_count(); ++azimuth) {
+      const auto share = [](std::size_t index, std::size_t count, double whole_deg) {
+        return whole_deg * static_cast<double>(index) / static_cast<double>(count);
+      };
+      CsvLine line(text);
+      line.number(share(azimuth, table.azimuth_count(), 360.0));
+      line.number(share(zenith, table.zenith_count() - 1, 180.0));
+      line.number(table.node_dbi(azimuth, zenith)).end();
+    }
+  }
+  AtomicFile out(file);
+  out.write(text);
+  out.commit();
+}
+
+}  // namespace dcem::io

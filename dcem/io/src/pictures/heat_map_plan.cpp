@@ -1,0 +1,253 @@
+#include "dcem/io/src/pictures/heat_map_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace dcem::io {
+namespace detail {
+namespace {
+
+constexpr int bar_width_px = 24;
+constexpr int bar_gap_px = 34;
+constexpr int min_plot_px = 72;
+constexpr int min_bar_px = 160;
+constexpr int min_picture_px = 480;
+constexpr double target_plot_px = 800.0;
+constexpr double target_upright_px = 400.0;  // of an axis that is not to the scale of the other
+constexpr double max_cell_px = 240.0;
+constexpr double max_unsampled_px = 1500.0;
+const int label_height_px = text_height_px(label_scale);
+
+// Differences of larger values could overflow.
+constexpr double largest_value = 1e100;
+
+void require(bool condition, const char* problem) {
+  if (!condition) throw std::invalid_argument(std::string("HeatMap: ") + problem);
+}
+
+void check_axis(double origin_m, double spacing_m) {
+  require(spacing_m >= 1e-6 && spacing_m <= 1e9, "a spacing lies outside 1e-6 to 1e9 m");
+  require(std::abs(origin_m) * 1e-12 < spacing_m, "an origin is not finite or so large that the spacing is lost");
+}
+
+void check_categories(const HeatMap& map) {
+  const double count = static_cast<double>(map.categories.size());
+  for (std::size_t cell = 0; count > 0.0 && cell < map.values.size(); ++cell) {
+    const double value = map.values[cell];
+    require(!is_valued(map, cell) || (value >= 0.0 && value < count && value == std::floor(value)),
+            "a value is no number of a category");
+  }
+}
+
+void check(const HeatMap& map) {
+  require(map.columns > 0 && map.rows > 0, "the grid has no point; expected at least one column and one row");
+  require(map.values.size() / map.columns == map.rows && map.values.size() % map.columns == 0,
+          "the number of values is not columns x rows");
+  require(map.hatched.empty() || map.hatched.size() == map.values.size(), "hatched has not the size of values");
+  check_categories(map);
+  check_axis(map.origin_x_m, map.spacing_x_m);
+  check_axis(map.origin_y_m, map.spacing_y_m);
+  require(!map.range || (map.range->low >= -largest_value && map.range->high <= largest_value &&
+                         map.range->low < map.range->high),
+          "the range is empty or not finite");
+  for (const auto& wall : map.walls_m) {
+    require(std::isfinite(wall[0] + wall[1] + wall[2] + wall[3]), "a wall has a coordinate that is not finite");
+  }
+  for (const auto& marker : map.transmitters) {
+    require(std::isfinite(marker.x_m + marker.y_m), "a transmitter has a coordinate that is not finite");
+  }
+}
+
+// Pixels along the smaller spacing of a cell: whole numbers, or one of k cells where the grid is too fine.
+double choose_cell_px(double longest_in_cells, double target_px) {
+  const double wanted = target_px / longest_in_cells;
+  if (wanted < 1.0) {
+    return longest_in_cells <= max_unsampled_px ? 1.0 : 1.0 / std::ceil(longest_in_cells / max_unsampled_px);
+  }
+  const double below = std::floor(wanted);
+  return std::min(max_cell_px, wanted / below < (below + 1.0) / wanted ? below : below + 1.0);
+}
+
+int legend_item_width(const LegendItem& item) {
+  return (item.symbol == Symbol::none ? 0 : swatch_px + gap_px) + label_length_px(item.text);
+}
+
+std::vector<LegendItem> legend_items(const HeatMap& map, const HeatMapLayout& layout) {
+  bool any_grey = false;
+  bool any_hatched = false;
+  for (std::size_t cell = 0; cell < map.values.size(); ++cell) {
+    any_hatched = any_hatched || is_hatched(map, cell);
+    any_grey = any_grey || !(is_hatched(map, cell) || is_valued(map, cell));
+  }
+  const auto inside = std::count_if(map.transmitters.begin(), map.transmitters.end(), [&](const auto& marker) {
+    return is_inside(layout, layout.point(marker.x_m, marker.y_m));
+  });
+  const auto outside = static_cast<std::ptrdiff_t>(map.transmitters.size()) - inside;
+  std::vector<LegendItem> items;
+  for (std::size_t index = 0; index < map.categories.size(); ++index) {
+    items.push_back({Symbol::category, map.categories[index], 0, 0, index});
+  }
+  if (inside > 0) items.push_back({Symbol::transmitter, "transmitter"});
+  if (!map.walls_m.empty()) items.push_back({Symbol::wall, "wall"});
+  if (any_grey) items.push_back({Symbol::no_value, map.no_value_label});
+  if (any_hatched) items.push_back({Symbol::hatched, "inside an object or on a wall"});
+  if (outside > 0) items.push_back({Symbol::none, "transmitters outside the map: " + std::to_string(outside)});
+  if (layout.sampling > 1) {
+    items.push_back({Symbol::none, "shown: one point in " + std::to_string(layout.sampling) + " along each axis"});
+  }
+  if (!layout.to_scale && map.axes.to_scale) items.push_back({Symbol::none, "axes not to the same scale"});
+  return items;
+}
+
+// Sets the items into lines no longer than `width_px`; returns the height.
+int flow_legend(std::vector<LegendItem>& items, int width_px) {
+  constexpr int line_px = 30;
+  constexpr int between_px = 28;
+  int x = 0;
+  int y = 0;
+  for (LegendItem& item : items) {
+    if (x > 0 && x + legend_item_width(item) > width_px) {
+      x = 0;
+      y += line_px;
+    }
+    item.x = x;
+    item.y = y;
+    x += legend_item_width(item) + between_px;
+  }
+  return items.empty() ? 0 : y + line_px;
+}
+
+// Pixels per unit along x and y.
+std::array<double, 2> choose_scales(const HeatMap& map) {
+  const double columns = static_cast<double>(map.columns), rows = static_cast<double>(map.rows);
+  if (!map.axes.to_scale) {
+    return {choose_cell_px(columns, target_plot_px) / map.spacing_x_m,
+            choose_cell_px(rows, target_upright_px) / map.spacing_y_m};
+  }
+  const double cell_m = std::min(map.spacing_x_m, map.spacing_y_m);
+  const double longest_m = std::max(map.spacing_x_m * columns, map.spacing_y_m * rows);
+  const double px_per_m = choose_cell_px(longest_m / cell_m, target_plot_px) / cell_m;
+  return {px_per_m, px_per_m};
+}
+
+void size_plot(const HeatMap& map, HeatMapLayout& layout) {
+  const double width_m = map.spacing_x_m * static_cast<double>(map.columns);
+  const double height_m = map.spacing_y_m * static_cast<double>(map.rows);
+  const auto [horizontal, vertical] = choose_scales(map);
+  const int true_width = static_cast<int>(std::lround(width_m * horizontal));
+  const int true_height = static_cast<int>(std::lround(height_m * vertical));
+  layout.plot.width = std::max(min_plot_px, true_width);
+  layout.plot.height = std::max(min_plot_px, true_height);
+  const double points_per_px = std::max(static_cast<double>(map.columns) / layout.plot.width,
+                                        static_cast<double>(map.rows) / layout.plot.height);
+  layout.sampling = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(points_per_px)));
+  layout.to_scale = map.axes.to_scale && true_width >= min_plot_px && true_height >= min_plot_px;
+  layout.left_m = map.origin_x_m - 0.5 * map.spacing_x_m;
+  layout.bottom_m = map.origin_y_m - 0.5 * map.spacing_y_m;
+  layout.horizontal_px_per_m = layout.plot.width / width_m;
+  layout.vertical_px_per_m = layout.plot.height / height_m;
+  if (map.categories.empty()) layout.range = map.range ? map.range : default_value_range(map);
+}
+
+// The name stands along the bar; one without end is cut.
+std::string name_of_bar(const HeatMap& map) {
+  const std::string name = axis_name(map.label, map.unit);
+  return name.size() <= 60 ? name : name.substr(0, 57) + "...";
+}
+
+void choose_ticks(const HeatMap& map, HeatMapPlan& plan) {
+  const HeatMapLayout& layout = plan.layout;
+  const double right_m = layout.left_m + layout.plot.width / layout.horizontal_px_per_m;
+  const double top_m = layout.bottom_m + layout.plot.height / layout.vertical_px_per_m;
+  plan.x = {horizontal_axis_ticks(layout.left_m, right_m, layout.plot.width),
+            axis_name(map.axes.x_label, map.axes.x_unit), layout.left_m, layout.horizontal_px_per_m};
+  plan.y = {axis_ticks(layout.bottom_m, top_m, layout.plot.height, 50), axis_name(map.axes.y_label, map.axes.y_unit),
+            layout.bottom_m, layout.vertical_px_per_m};
+  if (layout.range) plan.bar_ticks = axis_ticks(layout.range->low, layout.range->high, layout.bar.height, 34);
+}
+
+// The columns of the picture from left to right; returns the gap between plot and bar.
+int set_columns(HeatMapPlan& plan, const std::string& title) {
+  HeatMapLayout& layout = plan.layout;
+  const int half_x_label = longest_label_px(plan.x.ticks) / 2;
+  plan.left_px = plot_left_px(plan.x.ticks, plan.y.ticks);
+  const int bar_gap = std::max(bar_gap_px, half_x_label + gap_px);
+  const int bar_px = bar_width_px + tick_px + gap_px + longest_label_px(plan.bar_ticks) + 2 * gap_px + label_height_px;
+  const int right = margin_px + (layout.range ? bar_gap + bar_px : half_x_label);
+  const int content_px = plan.left_px + layout.plot.width + right;
+  const int title_px = plan.left_px + label_length_px(title) + margin_px;
+  int legend_px = 0;
+  for (const LegendItem& item : plan.legend) {
+    legend_px = std::max(legend_px, plan.left_px + legend_item_width(item) + margin_px);
+  }
+  // A tiny map still has room for its title and its legend.
+  layout.width_px = std::max({content_px, legend_px, min_picture_px, std::min(title_px, 900)});
+  return bar_gap;
+}
+
+}  // namespace
+
+HeatMapPlan plan_heat_map(const HeatMap& map) {
+  check(map);
+  HeatMapPlan plan;
+  HeatMapLayout& layout = plan.layout;
+  size_plot(map, layout);
+  plan.bar_name = name_of_bar(map);
+  layout.bar.height = layout.range ? std::max({layout.plot.height, min_bar_px, label_length_px(plan.bar_name)}) : 0;
+  choose_ticks(map, plan);
+  plan.legend = legend_items(map, layout);
+  const int bar_gap = set_columns(plan, map.title);
+  const int text_width_px = layout.width_px - plan.left_px - margin_px;
+  plan.title = fit_title(map.title, text_width_px);
+
+  layout.plot.x = plan.left_px;
+  layout.plot.y = margin_px + text_height_px(title_scale) + gap_px + bar_tip_px;
+  layout.bar = {layout.plot.right() + bar_gap, layout.plot.y, layout.range ? bar_width_px : 0, layout.bar.height};
+  const int axis_bottom = layout.plot.bottom() + x_axis_height_px();
+  plan.legend_y = std::max(axis_bottom, layout.bar.bottom() + bar_tip_px) + gap_px;
+  const int legend_height = flow_legend(plan.legend, text_width_px);
+  layout.height_px = plan.legend_y + legend_height + (legend_height > 0 ? gap_px : 0);
+  return plan;
+}
+
+bool is_hatched(const HeatMap& map, std::size_t cell) {
+  return !map.hatched.empty() && map.hatched[cell] != 0;
+}
+
+bool is_valued(const HeatMap& map, std::size_t cell) {
+  return std::abs(map.values[cell]) <= largest_value && !is_hatched(map, cell);
+}
+
+bool is_inside(const HeatMapLayout& layout, PixelPoint place) {
+  return place.x >= layout.plot.x && place.x < layout.plot.right() && place.y >= layout.plot.y &&
+         place.y < layout.plot.bottom();
+}
+
+}  // namespace detail
+
+std::optional<ValueRange> default_value_range(const HeatMap& map) {
+  detail::check(map);
+  std::vector<double> values;
+  for (std::size_t cell = 0; cell < map.values.size(); ++cell) {
+    if (detail::is_valued(map, cell)) values.push_back(map.values[cell]);
+  }
+  if (values.empty()) return std::nullopt;
+  // The rank counts from below, so that a map of fewer than 50 values keeps its lowest one.
+  const auto rank = static_cast<std::ptrdiff_t>(0.02 * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  const double low = values[static_cast<std::size_t>(rank)];
+  const double high = *std::max_element(values.begin(), values.end());
+  const bool decibels = map.unit.rfind("dB", 0) == 0;
+  // Values that differ by rounding alone count as equal; equal values get a bar of their own size around them.
+  const bool equal = high - low <= 1e-9 * std::max(std::abs(low), std::abs(high));
+  const double own_size = high == 0.0 ? 1.0 : std::abs(high);
+  const double span = equal ? (decibels ? std::max(1.0, 1e-6 * own_size) : own_size) : high - low;
+  const double step = decibels && span < 1000.0 ? 5.0 : detail::round_step_at_least(0.1 * span);
+  ValueRange range{std::floor(low / step) * step, std::ceil(high / step) * step};
+  if (range.high <= range.low) range = {range.low - step, range.high + step};
+  return range;
+}
+
+}  // namespace dcem::io

@@ -1,0 +1,157 @@
+#include "dcem/io/src/results/path_collector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "dcem/io/src/results/link_entries.hpp"
+
+namespace dcem::io {
+namespace {
+
+constexpr double most_bytes = 16e9;
+// Of one place for a path: valid, a, transfer, tau, four angles, doppler; and of one for an interaction of it.
+constexpr double bytes_per_path = 1 + 16 + 64 + 6 * 8, bytes_per_interaction = 4 + 24;
+
+std::vector<std::string> ids_of(std::span<const Device> devices) {
+  std::vector<std::string> ids;
+  for (const Device& device : devices) ids.push_back(device.id);
+  return ids;
+}
+
+std::uint32_t code_of(InteractionKind kind) {
+  switch (kind) {
+    case InteractionKind::reflection:
+      return 1;
+    case InteractionKind::scattering:
+      return 2;
+    case InteractionKind::transmission:
+      return 4;
+    case InteractionKind::diffraction:
+      return 8;
+  }
+  return 0;
+}
+
+std::complex<double> amplitude_of(const PathContribution& path) {
+  constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+  return path.has_amplitude ? path.amplitude : std::complex<double>(undefined, undefined);
+}
+
+}  // namespace
+
+PathCollector::PathCollector(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers,
+                             const ResultFacts& facts)
+    : file_(folder.open("paths.npz")),
+      facts_(facts),
+      transmitters_(ids_of(scene.transmitters())),
+      receivers_(ids_of(receivers)) {
+  check_memory();
+}
+
+void PathCollector::check_memory() const {
+  const double links = static_cast<double>(std::max(facts_.frames, times_s_.size())) *
+                       static_cast<double>(receivers_.size()) * static_cast<double>(transmitters_.size());
+  const double bytes = links * static_cast<double>(longest_list_) *
+                       (bytes_per_path + bytes_per_interaction * static_cast<double>(most_interactions_));
+  if (bytes <= most_bytes) return;
+  throw std::invalid_argument("output.npz: the paths of this run need " + std::to_string(std::llround(bytes / 1e9)) +
+                              " GB as arrays; expected at most 16 GB (fewer frames, receivers or paths)");
+}
+
+void PathCollector::add(const FrameResult& frame) {
+  times_s_.push_back(frame.time_s);
+  for (const LinkResult& link : frame.links) add_link(link);
+}
+
+void PathCollector::add_link(const LinkResult& link) {
+  const std::vector<LinkEntry> entries = link_entries(link, facts_.diffuse_paths);
+  longest_list_ = std::max(longest_list_, entries.size());
+  for (const LinkEntry& entry : entries) {
+    most_interactions_ = std::max(most_interactions_, entry.geometry().interactions.size());
+  }
+  check_memory();  // before anything is kept of the link
+  const std::size_t first_link = links() - receivers_.size() * transmitters_.size();
+  const std::size_t place = first_link + link.receiver * transmitters_.size() + link.transmitter;
+  for (std::size_t slot = 0; slot < entries.size(); ++slot) {
+    const PathContribution* path = entries[slot].path;
+    const std::vector<Interaction>& interactions = entries[slot].geometry().interactions;
+    // A tile has power and no field.
+    const PowerSample sample = path != nullptr ? power_sample(*path) : entries[slot].tile->sample;
+    rows_.push_back({place, slot, touches_.size(), interactions.size(), path != nullptr ? amplitude_of(*path) : 0.0,
+                     path != nullptr ? path->transfer : ComplexMatrix2{}, sample.delay_s, sample.doppler_hz,
+                     sample.departure, sample.arrival});
+    for (const Interaction& at : interactions) touches_.push_back({code_of(at.kind), at.point_m});
+  }
+}
+
+template <typename Value, typename Pick>
+std::vector<Value> PathCollector::dense(Value filler, Pick&& value) const {
+  std::vector<Value> values(links() * longest_list_, filler);
+  for (const Row& row : rows_) values[row.link * longest_list_ + row.slot] = value(row);
+  return values;
+}
+
+NpzWriter::Shape PathCollector::shape(bool by_interaction, std::initializer_list<std::size_t> more) const {
+  NpzWriter::Shape shape{times_s_.size(), receivers_.size(), transmitters_.size(), longest_list_};
+  if (by_interaction) shape.insert(shape.begin(), most_interactions_);
+  shape.insert(shape.end(), more);
+  return shape;
+}
+
+void PathCollector::add_fields(NpzWriter& npz) const {
+  using Complex64 = std::complex<double>;
+  npz.add("valid", shape(false), dense<bool>(false, [](const Row&) { return true; }));
+  const auto amplitudes = dense<Complex64>(0.0, [](const Row& row) { return row.amplitude; });
+  npz.add("a", shape(false), std::span<const Complex64>(amplitudes));
+  std::vector<Complex64> transfers(links() * longest_list_ * 4);
+  for (const Row& row : rows_) {
+    const std::size_t first = (row.link * longest_list_ + row.slot) * 4;
+    for (std::size_t entry = 0; entry < 4; ++entry) transfers[first + entry] = row.transfer(entry / 2, entry % 2);
+  }
+  npz.add("transfer", shape(false, {2, 2}), std::span<const Complex64>(transfers));
+}
+
+void PathCollector::add_angles(NpzWriter& npz) const {
+  const auto add = [&](const char* name, double filler, auto&& value) {
+    const std::vector<double> values = dense<double>(filler, value);
+    npz.add(name, shape(false), std::span<const double>(values));
+  };
+  add("tau", -1.0, [](const Row& row) { return row.delay_s; });
+  add("theta_t", 0.0, [](const Row& row) { return row.departure.zenith_rad; });
+  add("phi_t", 0.0, [](const Row& row) { return row.departure.azimuth_rad; });
+  add("theta_r", 0.0, [](const Row& row) { return row.arrival.zenith_rad; });
+  add("phi_r", 0.0, [](const Row& row) { return row.arrival.azimuth_rad; });
+  add("doppler", 0.0, [](const Row& row) { return row.doppler_hz; });
+}
+
+void PathCollector::add_interactions(NpzWriter& npz) const {
+  const std::size_t places = links() * longest_list_;
+  std::vector<std::uint32_t> codes(most_interactions_ * places, 0);
+  std::vector<double> vertices(codes.size() * 3, 0.0);
+  for (const Row& row : rows_) {
+    for (std::size_t depth = 0; depth < row.touches; ++depth) {
+      const Touch& touch = touches_[row.first_touch + depth];
+      const std::size_t place = depth * places + row.link * longest_list_ + row.slot;
+      codes[place] = touch.code;
+      for (int axis = 0; axis < 3; ++axis) vertices[place * 3 + static_cast<std::size_t>(axis)] = touch.point_m[axis];
+    }
+  }
+  npz.add("interactions", shape(true), std::span<const std::uint32_t>(codes));
+  npz.add("vertices", shape(true, {3}), std::span<const double>(vertices));
+}
+
+void PathCollector::write() {
+  NpzWriter npz;
+  add_fields(npz);
+  add_angles(npz);
+  add_interactions(npz);
+  npz.add("time_s", {times_s_.size()}, std::span<const double>(times_s_));
+  npz.add("tx_id", {transmitters_.size()}, std::span<const std::string>(transmitters_));
+  npz.add("rx_id", {receivers_.size()}, std::span<const std::string>(receivers_));
+  npz.add("frequency_hz", {}, std::span<const double>(&facts_.frequency_hz, 1));
+  npz.write(file_);
+}
+
+}  // namespace dcem::io

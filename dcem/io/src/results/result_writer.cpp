@@ -1,0 +1,119 @@
+#include "dcem/io/result_writer.hpp"
+
+#include "dcem/channel/coherence.hpp"
+#include "dcem/channel/doppler_spectrum.hpp"
+#include "dcem/core/units.hpp"
+#include "dcem/io/src/pictures/plot_collector.hpp"
+#include "dcem/io/src/results/path_collector.hpp"
+#include "dcem/io/src/results/path_lines.hpp"
+#include "dcem/io/src/results/response_collector.hpp"
+#include "dcem/io/src/text/number_text.hpp"
+
+namespace dcem::io {
+namespace {
+
+constexpr std::size_t sheet_bytes = std::size_t{1} << 20;
+
+AtomicFile* open_sheet(OutputFolder& folder, bool wanted, const char* name) {
+  return wanted ? &folder.open(name) : nullptr;
+}
+
+}  // namespace
+
+void ResultWriter::Sheet::flush(std::size_t limit) {
+  if (file == nullptr || text.size() < limit) return;
+  file->write(text);
+  text.clear();
+}
+
+ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers,
+                           const ResultFacts& facts, const OutputSettings& output)
+    : output_(output), facts_(facts), lines_(std::make_unique<PathLines>(scene, receivers, facts)) {
+  paths_.file = open_sheet(folder, output.paths, "paths.jsonl");
+  links_.file = open_sheet(folder, output.links, "links.csv");
+  profile_.file = open_sheet(folder, output.pdp, "pdp.csv");
+  doppler_.file = open_sheet(folder, output.doppler, "doppler.csv");
+  links_.text = std::string(links_csv_header) + '\n';
+  profile_.text = std::string(facts.diffuse ? diffuse_pdp_csv_header : pdp_csv_header) + '\n';
+  doppler_.text = std::string(doppler_csv_header) + '\n';
+  if (output.cfr) responses_ = std::make_unique<ResponseCollector>(folder, scene, receivers, facts, output);
+  if (output.npz) arrays_ = std::make_unique<PathCollector>(folder, scene, receivers, facts);
+  if (output.plots) plots_ = std::make_unique<PlotCollector>(folder, scene, receivers, facts, output);
+  for (const Device& device : scene.transmitters()) {
+    csv_transmitters_.push_back(csv_field(device.id));
+    power_dbm_.push_back(device.power_dbm);
+  }
+  for (const Device& device : receivers) csv_receivers_.push_back(csv_field(device.id));
+}
+
+ResultWriter::~ResultWriter() = default;
+
+void ResultWriter::write(const FrameResult& frame) {
+  const auto flush_all = [this](std::size_t limit) {
+    for (Sheet* sheet : {&paths_, &links_, &profile_, &doppler_}) sheet->flush(limit);
+  };
+  for (const LinkResult& link : frame.links) {
+    if (output_.paths) lines_->append(paths_.text, frame, link);
+    if (output_.links) append_link(frame, link);
+    if (output_.pdp) detail::naming("output.pdp.bin_s", [&] { append_profile(frame, link); });
+    if (output_.doppler) detail::naming("output.doppler.bin_hz", [&] { append_doppler(frame, link); });
+    flush_all(sheet_bytes);
+  }
+  flush_all(1);
+  if (responses_) responses_->add(frame);
+  if (arrays_) arrays_->add(frame);
+  if (plots_) plots_->add(frame);
+}
+
+void ResultWriter::finish() {
+  if (responses_) responses_->write();
+  if (arrays_) arrays_->write();
+  if (plots_) plots_->write();
+}
+
+CsvLine ResultWriter::begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const {
+  CsvLine line(sheet.text);
+  line.count(frame.index).prepared(csv_transmitters_[link.transmitter]).prepared(csv_receivers_[link.receiver]);
+  return line;
+}
+
+void ResultWriter::append_link(const FrameResult& frame, const LinkResult& link) {
+  const LinkStatistics& values = link.statistics;
+  const std::vector<PowerSample> samples = power_samples(link.paths, link.diffuse);
+  CsvLine line(links_.text);
+  line.count(frame.index).number(frame.time_s);
+  line.prepared(csv_transmitters_[link.transmitter]).prepared(csv_receivers_[link.receiver]);
+  line.flag(values.line_of_sight).count(values.path_count).flag(link.complete);
+  line.empty();  // valid_until_m: nothing is proved about other frames
+  line.number(values.power_dbm).number(values.power_incoherent_dbm).number(values.power_los_dbm);
+  line.number(values.power_reflected_dbm).number(values.power_transmitted_dbm);
+  line.number(values.power_diffracted_dbm).number(values.power_diffuse_dbm);
+  line.number(values.path_gain_db).number(values.first_delay_s).number(values.mean_delay_s);
+  line.number(values.rms_delay_spread_s).number(values.k_factor_db);
+  line.number(values.azimuth_spread_arrival_rad).number(values.azimuth_spread_departure_rad);
+  line.number(values.mean_doppler_hz).number(values.rms_doppler_spread_hz);
+  line.number(values.zenith_spread_arrival_rad).number(values.zenith_spread_departure_rad);
+  line.number(coherence_bandwidth_hz(samples)).number(coherence_time_s(samples)).end();
+}
+
+void ResultWriter::append_profile(const FrameResult& frame, const LinkResult& link) {
+  const std::vector<PowerSample> diffuse = power_samples(link.diffuse);
+  const double power_dbm = power_dbm_[link.transmitter];
+  for (const PdpTap& tap : power_delay_profile(link.paths, diffuse, output_.pdp_bin_s, output_.pdp_mode)) {
+    if (!(tap.power_ratio > 0.0)) continue;
+    CsvLine line = begin_line(profile_, frame, link);
+    line.number(tap.delay_s).number(power_dbm + power_ratio_to_db(tap.power_ratio));
+    if (facts_.diffuse) line.number(detail::ratio_to_dbm(tap.diffuse_power_ratio, power_dbm));
+    line.end();
+  }
+}
+
+void ResultWriter::append_doppler(const FrameResult& frame, const LinkResult& link) {
+  const std::vector<PowerSample> samples = power_samples(link.paths, link.diffuse);
+  for (const DopplerBin& bin : doppler_spectrum(samples, output_.doppler_bin_hz)) {
+    CsvLine line = begin_line(doppler_, frame, link);
+    line.number(bin.doppler_hz).number(power_dbm_[link.transmitter] + power_ratio_to_db(bin.power_ratio)).end();
+  }
+}
+
+}  // namespace dcem::io

@@ -1,0 +1,265 @@
+#include "dcem/io/summary.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "dcem/core/parallel_for.hpp"
+#include "dcem/core/statistics.hpp"
+#include "dcem/io/src/results/fact_json.hpp"
+#include "dcem/io/src/scenario/settings_json.hpp"
+#include "dcem/io/text_table.hpp"
+#include "dcem/sim/discovery.hpp"
+
+namespace dcem::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename Value>
+Json optional_json(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json point_json(const Vec3& point_m) {
+  return {point_m.x, point_m.y, point_m.z};
+}
+
+Json box_json(const Scene& scene) {
+  Aabb<double> box;
+  for (const Aabb<double>& triangle : scene.triangle_boxes()) box.extend(triangle);
+  for (const FoliageShell& crown : scene.foliage()) box.extend(crown.box);
+  if (box.empty()) return nullptr;
+  return {{"min_m", point_json(box.min)}, {"max_m", point_json(box.max)}};
+}
+
+SurfaceReport joint_report(const Scene& scene) {
+  SurfaceReport sum;
+  for (const Body& body : scene.bodies()) {
+    if (body.is_place) continue;  // made by the program, with nothing to mend
+    const SurfaceReport& part = body.mesh.report;
+    sum.vertices_read += part.vertices_read;
+    sum.vertices_welded += part.vertices_welded;
+    sum.triangles_read += part.triangles_read;
+    sum.triangles_without_area += part.triangles_without_area;
+    sum.triangles_repeated += part.triangles_repeated;
+    sum.open_edges += part.open_edges;
+    sum.crowded_edges += part.crowded_edges;
+    sum.uneven_sets += part.uneven_sets;
+    sum.closed_shells += part.closed_shells;
+    sum.standing_shells += part.standing_shells;
+    sum.wedges += part.wedges;
+    sum.free_edges += part.free_edges;
+  }
+  return sum;
+}
+
+Json scene_json(const Scene& scene, std::size_t receivers) {
+  Json materials = Json::object();
+  for (const Material& material : scene.materials()) materials[material.name] = material_json(material);
+  return {{"triangles", scene.triangles().size()},
+          {"facets", scene.facets().size()},
+          {"objects", scene.bodies().size() - 1 - scene.place_count()},
+          {"vehicle_places", scene.place_count()},
+          {"transmitters", scene.transmitters().size()},
+          {"receivers", receivers},
+          {"bounding_box", box_json(scene)},
+          {"surfaces", surface_report_json(joint_report(scene))},
+          {"materials", materials}};
+}
+
+Json work_json(const WorkCounters& work) {
+  return {{"rays", work.rays},
+          {"legs", work.legs},
+          {"sequences_proposed", work.sequences_proposed},
+          {"sequences_solved", work.sequences_solved},
+          {"diffuse_tiles", work.diffuse_tiles},
+          {"diffuse_links_unfinished", work.diffuse_links_unfinished},
+          {"diffuse_residual_db", work.diffuse_residual_db},
+          {"nodes_visited", work.nodes_visited},
+          {"primitives_tested", work.primitives_tested}};
+}
+
+Json tree_json(const UpkeepReport& tree) {
+  return {{"nodes_kept", tree.nodes_kept},
+          {"nodes_refit", tree.nodes_refit},
+          {"nodes_rebuilt", tree.nodes_rebuilt},
+          {"subtrees_rebuilt", tree.subtrees_rebuilt},
+          {"root_rebuilt", tree.root_rebuilt},
+          {"sah_cost", tree.sah_cost},
+          {"sah_cost_at_build", tree.sah_cost_at_build}};
+}
+
+Json cache_json(const CacheCounters& cache) {
+  return {{"revalidated", cache.revalidated},
+          {"reused", cache.reused},
+          {"expired", cache.expired},
+          {"born", cache.born},
+          {"died", cache.died}};
+}
+
+double total_time_s(const FrameFigures& frame) {
+  return frame.update_time_s + frame.solve_time_s;
+}
+
+// How many times faster than the world the program is: the time that the frames cover over the time they took.
+std::optional<double> real_time_factor(double covered_s, double spent_s) {
+  return spent_s > 0.0 ? std::optional(covered_s / spent_s) : std::nullopt;
+}
+
+Json frame_json(const FrameFigures& frame, double step_s) {
+  return {{"frame", frame.index},
+          {"time_s", frame.time_s},
+          {"links", frame.links},
+          {"links_with_line_of_sight", frame.links_with_line_of_sight},
+          {"paths", frame.paths},
+          {"update_time_s", frame.update_time_s},
+          {"solve_time_s", frame.solve_time_s},
+          {"real_time_factor", optional_json(real_time_factor(step_s, total_time_s(frame)))},
+          {"tree", tree_json(frame.tree)},
+          {"cache", cache_json(frame.cache)},
+          {"work", work_json(frame.work)}};
+}
+
+FrameFigures sum_of(const std::vector<FrameFigures>& frames) {
+  FrameFigures sum;
+  for (const FrameFigures& frame : frames) {
+    sum.links += frame.links;
+    sum.links_with_line_of_sight += frame.links_with_line_of_sight;
+    sum.paths += frame.paths;
+    sum.update_time_s += frame.update_time_s;
+    sum.solve_time_s += frame.solve_time_s;
+    sum.work += frame.work;
+    sum.cache += frame.cache;
+    sum.tree.nodes_kept += frame.tree.nodes_kept;
+    sum.tree.nodes_refit += frame.tree.nodes_refit;
+    sum.tree.nodes_rebuilt += frame.tree.nodes_rebuilt;
+    sum.tree.subtrees_rebuilt += frame.tree.subtrees_rebuilt;
+  }
+  return sum;
+}
+
+std::string mean_text(std::size_t sum, std::size_t count) {
+  return count == 0 ? "-" : format_fixed(static_cast<double>(sum) / static_cast<double>(count), 1);
+}
+
+std::string milliseconds(double duration_s) {
+  return format_fixed(1e3 * duration_s, duration_s < 0.1 ? 2 : 0) + " ms";
+}
+
+}  // namespace
+
+FrameFigures figures_of(const FrameResult& frame) {
+  FrameFigures figures{frame.index,         frame.time_s,       frame.links.size(), 0,           0,
+                       frame.update_time_s, frame.solve_time_s, frame.tree,         frame.cache, frame.work};
+  for (const LinkResult& link : frame.links) {
+    figures.paths += link.paths.size();
+    figures.links_with_line_of_sight += link.statistics.line_of_sight ? 1U : 0U;
+  }
+  return figures;
+}
+
+RunSummary::RunSummary(RunFacts facts, const Scene& scene) : facts_(std::move(facts)), scene_(scene) {}
+
+std::vector<double> RunSummary::frame_times_s() const {
+  std::vector<double> times_s;
+  for (const FrameFigures& frame : frames_) times_s.push_back(total_time_s(frame));
+  return times_s;
+}
+
+std::string RunSummary::cache_text(const CacheCounters& cache) const {
+  if (facts_.cache == CacheMode::off) return "off";
+  return std::string(name_of(facts_.cache)) + ": " + std::to_string(cache.reused) + " paths reused, " +
+         std::to_string(cache.born) + " born, " + std::to_string(cache.died) + " died";
+}
+
+std::vector<std::string> RunSummary::warnings() const {
+  std::vector<std::string> all = facts_.warnings;
+  const std::vector<std::string> late = late_warnings();
+  all.insert(all.end(), late.begin(), late.end());
+  return all;
+}
+
+std::vector<std::string> RunSummary::late_warnings() const {
+  const FrameFigures sum = sum_of(frames_);
+  if (sum.work.diffuse_links_unfinished == 0) return {};
+  return {"diffuse power: " + diffuse_text(sum)};
+}
+
+/// How many tiles the sums took, and what they may lack.
+std::string RunSummary::diffuse_text(const FrameFigures& sum) const {
+  const DiffuseSettings& settings = facts_.settings.propagation.diffuse;
+  const std::string tiles = mean_text(sum.work.diffuse_tiles, sum.links) + " tiles per link";
+  const std::string tolerance = format_fixed(settings.tolerance_db, settings.tolerance_db < 0.1 ? 4 : 2) + " dB";
+  if (sum.work.diffuse_links_unfinished == 0) return tiles + ", all sums within " + tolerance;
+  return tiles + "; " + std::to_string(sum.work.diffuse_links_unfinished) + " links not within " + tolerance +
+         " after " + std::to_string(settings.tile_budget) + " tiles (residual up to " +
+         format_fixed(sum.work.diffuse_residual_db, 2) + " dB)";
+}
+
+std::string RunSummary::json() const {
+  const FrameFigures sum = sum_of(frames_);
+  const std::vector<double> times_s = frame_times_s();
+  const double covered_s = facts_.time.step_s * static_cast<double>(frames_.size());
+  std::string text = json_text({{"version", facts_.version},
+                                {"scenario", facts_.scenario},
+                                {"scene", scene_json(scene_, facts_.receivers)},
+                                {"settings", settings_json(facts_)},
+                                {"warnings", warnings()},
+                                {"totals",
+                                 {{"frames", frames_.size()},
+                                  {"links", sum.links},
+                                  {"links_with_line_of_sight", sum.links_with_line_of_sight},
+                                  {"paths", sum.paths},
+                                  {"update_time_s", sum.update_time_s},
+                                  {"solve_time_s", sum.solve_time_s},
+                                  {"frame_time_median_s", median(times_s)},
+                                  {"frame_time_p95_s", quantile(times_s, 0.95)},
+                                  {"frame_time_max_s", quantile(times_s, 1.0)},
+                                  {"real_time_factor", optional_json(real_time_factor(covered_s, total_time_s(sum)))},
+                                  {"tree",
+                                   {{"nodes_kept", sum.tree.nodes_kept},
+                                    {"nodes_refit", sum.tree.nodes_refit},
+                                    {"nodes_rebuilt", sum.tree.nodes_rebuilt},
+                                    {"subtrees_rebuilt", sum.tree.subtrees_rebuilt}}},
+                                  {"cache", cache_json(sum.cache)},
+                                  {"work", work_json(sum.work)}}}});
+  text.resize(text.rfind('}'));
+  while (text.back() == '\n') text.pop_back();
+  text += ",\n  \"frames\": [";
+  // One by one: a day of frames as one document would need gigabytes.
+  for (const FrameFigures& frame : frames_) {
+    text += &frame == frames_.data() ? "\n    " : ",\n    ";
+    text += frame_json(frame, facts_.time.step_s).dump();
+  }
+  return text + "\n  ]\n}\n";
+}
+
+std::string RunSummary::table(const std::filesystem::path& folder) const {
+  const FrameFigures sum = sum_of(frames_);
+  const std::vector<double> times_s = frame_times_s();
+  const double covered_s = facts_.time.step_s * static_cast<double>(frames_.size());
+  const auto factor = real_time_factor(covered_s, total_time_s(sum));
+  TextTable table({{"", TextTable::Align::left}, {"", TextTable::Align::left}});
+  table.add_row({"frames", std::to_string(frames_.size())});
+  table.add_row({"links", std::to_string(sum.links) + " (" + std::to_string(sum.links_with_line_of_sight) +
+                              " with line of sight)"});
+  table.add_row({"paths", std::to_string(sum.paths) + " (" + mean_text(sum.paths, frames_.size()) + " per frame, " +
+                              mean_text(sum.paths, sum.links) + " per link)"});
+  table.add_row({"time per frame", milliseconds(median(times_s)) + " median, " + milliseconds(quantile(times_s, 0.95)) +
+                                       " 95 %, " + milliseconds(quantile(times_s, 1.0)) + " max"});
+  table.add_row({"real-time factor", factor ? format_fixed(*factor, *factor < 10.0 ? 3 : 1) : "-"});
+  table.add_row({"discovery", name_of(facts_.discovery)});
+  table.add_row({"cache", cache_text(sum.cache)});
+  if (facts_.settings.propagation.diffuse.enabled) table.add_row({"diffuse", diffuse_text(sum)});
+  table.add_row({"tree", std::to_string(sum.tree.nodes_refit) + " nodes refit, " +
+                             std::to_string(sum.tree.nodes_rebuilt) + " rebuilt in " +
+                             std::to_string(sum.tree.subtrees_rebuilt) + " subtrees"});
+  table.add_row({"rays", std::to_string(sum.work.rays)});
+  table.add_row({"threads", std::to_string(resolve_thread_count(facts_.settings.threads))});
+  table.add_row({"results", folder.string()});
+  return table.str();
+}
+
+}  // namespace dcem::io

@@ -1,0 +1,97 @@
+#include "dcem/io/scenario.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "dcem/field/medium_loss.hpp"
+#include "dcem/io/src/scenario/scenario_parts.hpp"
+#include "dcem/io/src/text/text_input.hpp"
+
+namespace dcem::io {
+
+namespace {
+
+/// `--output KEY[,KEY…]` as the `output` block that it stands for. A key that has settings in the file keeps them.
+nlohmann::json output_block(std::string_view list, const nlohmann::json& file_output) {
+  nlohmann::json block = nlohmann::json::object();
+  while (true) {
+    const std::size_t comma = std::min(list.find(','), list.size());
+    const std::string key(trimmed(list.substr(0, comma)));
+    const bool has_settings = file_output.is_object() && file_output.contains(key) && file_output[key].is_structured();
+    block[key] = has_settings ? file_output[key] : nlohmann::json(true);
+    if (comma == list.size()) return block;
+    list.remove_prefix(comma + 1);
+  }
+}
+
+nlohmann::json command_line_values(const ScenarioOverrides& overrides, const nlohmann::json& file) {
+  nlohmann::json values = nlohmann::json::object();
+  if (overrides.discovery) values["--discovery"] = *overrides.discovery;
+  if (overrides.cache) values["--cache"] = *overrides.cache;
+  if (overrides.rays) values["--rays"] = *overrides.rays;
+  if (overrides.seed) values["--seed"] = *overrides.seed;
+  if (overrides.output) {
+    const bool has_output = file.is_object() && file.contains("output");
+    values["--output"] = output_block(*overrides.output, has_output ? file["output"] : nlohmann::json());
+  }
+  return values;
+}
+
+/// What is asked for by name and cannot be done is refused, never weakened.
+void check_exact_discovery(const Scenario& scenario, const JsonObject& file, const JsonObject& command_line) {
+  const std::size_t facets = scenario.scene.surface_count();
+  if (scenario.settings.propagation.discovery != Discovery::exact || facets <= exact_discovery_facet_limit) return;
+  const auto option = command_line.find("--discovery");
+  const JsonValue place = option ? *option : file.at("propagation").member("discovery");
+  place.fail("'exact' for " + std::to_string(facets) + " facets is not in this version; expected at most " +
+             std::to_string(exact_discovery_facet_limit) + " facets, or 'sampled'");
+}
+
+/// Air, foliage and the band of a frequency response must fit the frequency.
+void check_frequency(const Scenario& scenario, const JsonValue& place) {
+  const SimulationSettings& settings = scenario.settings;
+  reported_at(place,
+              [&] { MediumLoss(settings.propagation.atmosphere, scenario.scene.materials(), settings.frequency_hz); });
+  const OutputSettings& output = scenario.output;
+  if (output.cfr && output.cfr_bandwidth_hz > 2.0 * settings.frequency_hz) {
+    place.fail("output.cfr asks for frequencies below 0; expected a bandwidth_hz of at most twice the frequency");
+  }
+}
+
+Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root, const JsonObject& command_line) {
+  if (root.at("format").text() != "dcem-scenario/1") root.at("format").fail("unknown format; expected dcem-scenario/1");
+  refuse_later_blocks(root);
+  Scenario result;
+  result.name = file.stem().string();
+  result.settings.frequency_hz = root.at("frequency_hz").number({0.0, 1e15, true});
+  result.settings.itu = read_itu(root);
+  result.settings.propagation = read_propagation(root, command_line);
+  result.time = read_time(root);
+  result.output = read_output(root, command_line);
+  result.noise = read_noise(root);
+  read_mobility(root, file.parent_path(), result);
+  MotionReader motions(file.parent_path(), result.time.start_s);
+  BodyLoader(root, file.parent_path(), motions, result).load();
+  AntennaReader antennas(file.parent_path());
+  read_devices(root, motions, antennas, result);
+  motions.check_all_taken();
+  reported_at(root.value(), [&] { validate(result.settings); });
+  check_exact_discovery(result, root, command_line);
+  check_frequency(result, root.at("frequency_hz"));
+  return result;
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::filesystem::path& file, const ScenarioOverrides& overrides) {
+  const JsonDocument document(file);
+  const JsonDocument command_line("command line", command_line_values(overrides, document.root().raw()));
+  const JsonObject root =
+      document.root().object({"format", "scene", "materials", "itu", "frequency_hz", "time", "objects", "transmitters",
+                              "receivers", "propagation", "output", "mobility", "links", "noise", "geo"});
+  return read_scenario(file, root,
+                       command_line.root().object({"--discovery", "--cache", "--rays", "--seed", "--output"}));
+}
+
+}  // namespace dcem::io

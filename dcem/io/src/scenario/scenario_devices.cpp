@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "dcem/channel/radio_map.hpp"
+#include "dcem/core/units.hpp"
+#include "dcem/io/src/scenario/scenario_parts.hpp"
+#include "dcem/io/src/text/text_input.hpp"
+
+namespace dcem::io {
+
+namespace {
+
+/// Points of one grid; a map keeps what is written for each of them until it is done.
+constexpr double most_grid_points = 1e8;
+/// What tables and pictures tell apart.
+constexpr double least_grid_spacing_m = 1e-6;
+/// Numbers in the channel matrix of one path: 16 MB.
+constexpr std::size_t most_channel_entries = std::size_t{1} << 20;
+
+double read_power_dbm(const JsonObject& device) {
+  if (device.exactly_one_of({"power_dbm", "power_w"}) == "power_dbm") {
+    return device.at("power_dbm").number({-300.0, 200.0});
+  }
+  return watt_to_dbm(device.at("power_w").number({1e-33, 1e17}));
+}
+
+std::size_t read_count(const JsonValue& value) {
+  return static_cast<std::size_t>(value.integer(1, 1'000'000'000));
+}
+
+ReceiverGrid read_grid(const JsonValue& value) {
+  const JsonObject object = value.object({"origin_m", "spacing_m", "count"});
+  ReceiverGrid grid;
+  grid.origin_m = object.at("origin_m").vector3(farthest_coordinate_m);
+  const auto spacing = object.at("spacing_m").elements(2, "two numbers [along x, along y]");
+  const auto count = object.at("count").elements(2, "two numbers [columns, rows]");
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    grid.spacing_m[axis] = spacing[axis].number({least_grid_spacing_m, 1e6});
+    grid.count[axis] = read_count(count[axis]);
+  }
+  const double points = static_cast<double>(grid.count[0]) * static_cast<double>(grid.count[1]);
+  if (points > most_grid_points) {
+    const double gigabytes = points * static_cast<double>(sizeof(RadioMapPoint)) / 1e9;
+    object.at("count").fail(std::to_string(std::llround(points)) + " points need " +
+                            std::to_string(std::llround(gigabytes)) + " GB for each transmitter; expected at most " +
+                            std::to_string(std::llround(most_grid_points)) + " points");
+  }
+  const Vec3 last_m = grid_point_m(grid, grid.rows() - 1, grid.columns() - 1);
+  if (!(glm::length(last_m) <= 2.0 * farthest_coordinate_m))
+    value.fail("reaches too far; expected points within 1e9 m");
+  return grid;
+}
+
+/// Reads one entry of `transmitters` or `receivers`.
+class DeviceReader {
+ public:
+  DeviceReader(const JsonValue& value, bool transmits, MotionReader& motions, AntennaReader& antennas, Scenario& result)
+      : object_(value.object({"id", "position_m", "positions_m", "grid", "attach_to", "offset_m", "sees_own_body",
+                              "velocity_mps", "motion", "power_dbm", "power_w", "antenna"})),
+        transmits_(transmits),
+        motions_(motions),
+        antennas_(antennas),
+        result_(result) {}
+
+  void read() {
+    device_.id = object_.at("id").identifier();
+    device_.antenna = antennas_.read(object_);
+    read_power();
+    const std::string form = object_.exactly_one_of({"position_m", "positions_m", "grid", "attach_to", "motion"});
+    if (form != "attach_to") refuse({"offset_m", "sees_own_body"}, "attach_to");
+    if (form != "position_m" && form != "positions_m") refuse({"velocity_mps"}, "position_m or positions_m");
+    if (form == "position_m") add_at(device_.id, object_.at("position_m"));
+    if (form == "positions_m") add_list();
+    if (form == "grid") add_grid();
+    if (form == "attach_to") add_attached();
+    if (form == "motion") add_moving(device_.id, motions_.read(object_.at("motion"), device_.id));
+  }
+
+ private:
+  void read_power() {
+    if (transmits_) {
+      device_.power_dbm = read_power_dbm(object_);
+      return;
+    }
+    for (const char* key : {"power_dbm", "power_w"}) {
+      if (object_.has(key)) object_.at(key).fail("does not go with a receiver; expected it in transmitters only");
+    }
+  }
+
+  void refuse(const std::vector<std::string>& keys, const std::string& owner) const {
+    for (const std::string& key : keys) {
+      if (object_.has(key)) object_.at(key).fail("goes with " + owner + " only; expected no such key");
+    }
+  }
+
+  void add_moving(const std::string& id, const Motion& motion) {
+    Device device = device_;
+    device.id = id;
+    device.motion = motion;
+    add(std::move(device));
+  }
+
+  void add_at(const std::string& id, const JsonValue& position) {
+    const Pose pose{position.vector3(farthest_coordinate_m)};
+    add_moving(id, LinearMotion{pose, read_velocity_mps(object_), result_.time.start_s});
+  }
+
+  void add_list() {
+    const auto positions = object_.at("positions_m").elements();
+    if (positions.empty()) object_.at("positions_m").fail("no position; expected at least one");
+    for (std::size_t index = 0; index < positions.size(); ++index) {
+      add_at(device_.id + "[" + std::to_string(index) + "]", positions[index]);
+    }
+  }
+
+  void add_attached() {
+    const JsonValue target = object_.at("attach_to");
+    Device device = device_;
+    device.attachment = Attachment{target.text(), object_.at("offset_m").vector3(farthest_coordinate_m),
+                                   object_.boolean("sees_own_body", false)};
+    if (!result_.scene.find_body(target.text())) check_vehicle(target);
+    add(std::move(device));
+  }
+
+  /// The object that a device rides on must be a vehicle of the trace.
+  void check_vehicle(const JsonValue& target) {
+    if (!result_.traffic || !result_.traffic->presence.contains(target.text())) fail_unknown_object(target);
+    result_.traffic->riders.push_back({target.text(), target.place(), target.path()});
+  }
+
+  void fail_unknown_object(const JsonValue& target) const {
+    std::vector<std::string> ids;
+    for (const Body& body : result_.scene.bodies().subspan(1)) {
+      if (!body.is_place) ids.push_back(body.id);
+    }
+    const bool traffic = result_.traffic.has_value();
+    const std::string none = traffic ? "a vehicle of the trace" : "an entry in objects";
+    const std::string nearest =
+        ids.empty() ? none : "the nearest known one, " + in_quotes(nearest_name(target.text(), ids));
+    target.fail("no object " + std::string(traffic ? "or vehicle " : "") + in_quotes(target.text()) + "; expected " +
+                nearest);
+  }
+
+  void add_grid() {
+    if (transmits_) object_.at("grid").fail("goes with receivers only; expected position_m, attach_to or motion");
+    ReceiverGrid grid = read_grid(object_.at("grid"));
+    grid.id = device_.id;
+    grid.antenna = device_.antenna;
+    result_.grids.push_back(std::move(grid));
+  }
+
+  void add(Device device) {
+    reported_at(object_.value(), [&] {
+      transmits_ ? result_.scene.add_transmitter(std::move(device)) : result_.scene.add_receiver(std::move(device));
+    });
+  }
+
+  JsonObject object_;
+  bool transmits_;
+  MotionReader& motions_;
+  AntennaReader& antennas_;
+  Scenario& result_;
+  Device device_;
+};
+
+/// One id per entry; those of a list or a grid get their numbers only after that.
+void read_list(const JsonValue& list, bool transmits, MotionReader& motions, AntennaReader& antennas,
+               Scenario& result) {
+  std::set<std::string> ids;
+  for (const JsonValue& element : list.elements()) {
+    DeviceReader(element, transmits, motions, antennas, result).read();
+    const JsonValue id = element.member("id");
+    if (!ids.insert(id.text()).second) id.fail(in_quotes(id.text()) + " is there twice; expected a new id");
+  }
+  if (ids.empty()) list.fail("empty; expected at least one device");
+}
+
+/// The largest number of ports, elements times polarizations, among devices and grids.
+template <typename Devices>
+std::size_t most_ports(const Devices& devices) {
+  std::size_t most = 0;
+  for (const auto& device : devices) {
+    most = std::max(most, device.antenna.array.size() * device.antenna.port_count());
+  }
+  return most;
+}
+
+/// A path keeps a number for each pair of ports.
+void check_channel_size(const JsonValue& receivers, const Scenario& result) {
+  const std::size_t sent = most_ports(result.scene.transmitters());
+  const std::size_t heard = std::max(most_ports(result.scene.receivers()), most_ports(result.grids));
+  if (sent * heard <= most_channel_entries) return;
+  receivers.fail("arrays with " + std::to_string(heard) + " ports hear arrays with " + std::to_string(sent) +
+                 "; expected at most " + std::to_string(most_channel_entries) + " pairs of ports");
+}
+
+}  // namespace
+
+void read_devices(const JsonObject& scenario, MotionReader& motions, AntennaReader& antennas, Scenario& result) {
+  read_list(scenario.at("transmitters"), true, motions, antennas, result);
+  read_list(scenario.at("receivers"), false, motions, antennas, result);
+  check_channel_size(scenario.at("receivers"), result);
+}
+
+}  // namespace dcem::io

@@ -1,0 +1,138 @@
+#include "dcem/io/src/scenario/settings_json.hpp"
+
+#include <optional>
+#include <string>
+
+#include "dcem/core/parallel_for.hpp"
+#include "dcem/sim/discovery.hpp"
+
+namespace dcem::io {
+
+const char* name_of(Discovery discovery) {
+  switch (discovery) {
+    case Discovery::exact:
+      return "exact";
+    case Discovery::sampled:
+      return "sampled";
+    case Discovery::automatic:
+      break;
+  }
+  return "automatic";
+}
+
+const char* name_of(CacheMode cache) {
+  switch (cache) {
+    case CacheMode::off:
+      return "off";
+    case CacheMode::seed:
+      return "seed";
+    case CacheMode::automatic:
+      break;
+  }
+  return "automatic";
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* policy_name(TreePolicy policy) {
+  switch (policy) {
+    case TreePolicy::rebuild_always:
+      return "rebuild_always";
+    case TreePolicy::refit_only:
+      return "refit_only";
+    case TreePolicy::adaptive:
+      break;
+  }
+  return "adaptive";
+}
+
+template <typename Value>
+Json optional_json(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json path_loss_json(const AnyPathLoss& path_loss) {
+  const auto* close_in = std::get_if<CloseIn>(&path_loss.model);
+  if (close_in == nullptr) return {{"model", "free_space"}};
+  return {{"model", "close_in"},
+          {"exponent", close_in->exponent},
+          {"attenuation_db_per_m", close_in->attenuation_db_per_m}};
+}
+
+const char* variant_name(LossyWedge variant) {
+  switch (variant) {
+    case LossyWedge::reciprocal:
+      return "reciprocal";
+    case LossyWedge::luebbers84:
+      return "luebbers84";
+    case LossyWedge::holm_reciprocal:
+      break;
+  }
+  return "holm_reciprocal";
+}
+
+Json diffraction_json(const DiffractionSettings& settings) {
+  return {{"lossy_wedge", variant_name(settings.lossy_wedge)},
+          {"region", settings.region == DiffractionRegion::shadow ? "shadow" : "everywhere"},
+          {"free_edges", settings.free_edges},
+          {"min_exterior_angle_deg", settings.min_exterior_angle_deg}};
+}
+
+Json diffuse_json(const DiffuseSettings& settings) {
+  const bool seeded = settings.phases == DiffusePhases::seeded;
+  return {{"enabled", settings.enabled},           {"tile_max_m", optional_json(settings.tile_max_m)},
+          {"tolerance_db", settings.tolerance_db}, {"phases", seeded ? "seeded" : "incoherent"},
+          {"list_paths", settings.list_paths},     {"tile_budget", settings.tile_budget}};
+}
+
+Json atmosphere_json(const std::optional<Atmosphere>& atmosphere) {
+  if (!atmosphere) return nullptr;
+  return {{"gas", atmosphere->gas},
+          {"temperature_k", atmosphere->temperature_k},
+          {"dry_pressure_hpa", atmosphere->dry_pressure_hpa},
+          {"water_vapour_g_per_m3", atmosphere->water_vapour_g_per_m3},
+          {"rain_mm_per_h", atmosphere->rain_mm_per_h}};
+}
+
+Json propagation_json(const RunFacts& facts) {
+  const PropagationSettings& settings = facts.settings.propagation;
+  const bool sampled = facts.discovery == Discovery::sampled;
+  const bool cached = facts.cache == CacheMode::seed;
+  return {{"line_of_sight", settings.line_of_sight},
+          {"max_reflections", settings.max_reflections},
+          {"max_transmissions", settings.max_transmissions},
+          {"max_diffractions", settings.max_diffractions},
+          {"max_interactions", interaction_order(settings)},
+          {"diffraction", diffraction_json(settings.diffraction)},
+          {"discovery", name_of(facts.discovery)},
+          {"discovery_asked_for", name_of(settings.discovery)},
+          {"rays", sampled ? Json(settings.rays) : Json(nullptr)},
+          {"rays_steady", cached ? Json(steady_rays(settings)) : Json(nullptr)},
+          {"seed", sampled ? Json(settings.seed) : Json(nullptr)},
+          {"cache", name_of(facts.cache)},
+          {"antenna_array", settings.antenna_array == ArrayChannel::exact ? "exact" : "plane_wave"},
+          {"diffuse", diffuse_json(settings.diffuse)},
+          {"path_loss", path_loss_json(settings.path_loss)},
+          {"atmosphere", atmosphere_json(settings.atmosphere)},
+          {"min_path_gain_db", optional_json(settings.min_path_gain_db)}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json settings_json(const RunFacts& facts) {
+  const SimulationSettings& settings = facts.settings;
+  const std::size_t exact_limit = automatic_exact_facet_limit(settings.propagation);
+  return {{"frequency_hz", settings.frequency_hz},
+          {"itu", {{"revision", settings.itu.revision}, {"allow_extrapolation", settings.itu.allow_extrapolation}}},
+          {"threads", resolve_thread_count(settings.threads)},
+          {"tree_policy", policy_name(settings.upkeep.policy)},
+          {"time", {{"start_s", facts.time.start_s}, {"step_s", facts.time.step_s}, {"frames", facts.time.frames}}},
+          {"propagation", propagation_json(facts)},
+          {"defaults_of_this_version",
+           {{"cache", "seed with sampled discovery, else off"},
+            {"discovery", "exact up to " + std::to_string(exact_limit) + " facets, else sampled"}}}};
+}
+
+}  // namespace dcem::io

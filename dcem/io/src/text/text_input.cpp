@@ -1,0 +1,140 @@
+#include "dcem/io/src/text/text_input.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <system_error>
+#include <utility>
+
+#include "dcem/core/error.hpp"
+#include "dcem/io/input_error.hpp"
+
+namespace dcem::io {
+
+namespace {
+
+constexpr std::string_view blanks = " \t";
+constexpr std::size_t longest_quotation = 80;
+
+bool is_control(char character) {
+  const auto code = static_cast<unsigned char>(character);
+  return code < 0x20 || code == 0x7F;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& file, const std::string& expectation) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) throw InputError(file.string(), "is not there; " + expectation);
+  if (std::filesystem::is_directory(file, ignored)) throw InputError(file.string(), "is a folder; " + expectation);
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream) {
+    const std::string reason = errno != 0 ? std::generic_category().message(errno) : "input error";
+    throw InputError(file.string(), "cannot be read (" + reason + "); " + expectation);
+  }
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+  return text;
+}
+
+bool is_printable(std::string_view text) {
+  return std::none_of(text.begin(), text.end(), is_control);
+}
+
+std::string printable(std::string_view text) {
+  std::string result(text.substr(0, longest_quotation));
+  std::replace_if(result.begin(), result.end(), is_control, '?');
+  if (text.size() <= longest_quotation) return result;
+  // A character of several bytes must not be cut in two.
+  while (!result.empty() && (static_cast<unsigned char>(result.back()) & 0x80U) != 0) result.pop_back();
+  return result + "...";
+}
+
+std::string in_quotes(std::string_view text) {
+  return "'" + printable(text) + "'";
+}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
+  DCEM_ASSERT(!candidates.empty());
+  const std::string_view start = name.substr(0, 4 * longest_quotation);  // bounds the work for absurd names
+  return *std::min_element(candidates.begin(), candidates.end(), [&](const std::string& a, const std::string& b) {
+    return edit_distance(start, a) < edit_distance(start, b);
+  });
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+std::string NumberRange::text() const {
+  const std::string low = number_text(minimum), high = number_text(maximum);
+  return above_minimum ? "a number above " + low + ", at most " + high : "a number from " + low + " to " + high;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size() && !text.empty();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::optional<long long> parse_integer(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  long long value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size() && !text.empty();
+  return whole ? std::optional(value) : std::nullopt;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string_view take_word(std::string_view& rest) {
+  rest.remove_prefix(std::min(rest.find_first_not_of(blanks), rest.size()));
+  const std::size_t length = std::min(rest.find_first_of(blanks), rest.size());
+  const std::string_view word = rest.substr(0, length);
+  rest.remove_prefix(length);
+  return word;
+}
+
+bool LineReader::next() {
+  if (rest_.empty()) return false;
+  const std::size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
+  line_ = rest_.substr(0, length);
+  rest_.remove_prefix(length);
+  if (rest_.starts_with("\r\n")) {
+    rest_.remove_prefix(2);
+  } else if (!rest_.empty()) {
+    rest_.remove_prefix(1);
+  }
+  ++number_;
+  return true;
+}
+
+}  // namespace dcem::io

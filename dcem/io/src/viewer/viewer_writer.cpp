@@ -1,0 +1,40 @@
+#include "dcem/io/viewer_writer.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "dcem/io/src/viewer/viewer_frames.hpp"
+#include "dcem/io/src/viewer/viewer_page.hpp"
+
+namespace dcem::io {
+
+bool viewer_is_built_in() {
+  return !viewer_three().empty();
+}
+
+ViewerWriter::ViewerWriter(OutputFolder& folder, const Scene& scene, ViewerFacts facts, const ViewerSettings& settings)
+    : file_(folder.open("viewer.html")),
+      scene_(scene),
+      facts_(std::move(facts)),
+      frames_(std::make_unique<ViewerFrames>(facts_.frames, facts_.map_points_per_frame, settings)) {
+  if (!viewer_is_built_in())
+    throw std::invalid_argument("viewer: this build has none; expected three.js at build time");
+}
+
+ViewerWriter::~ViewerWriter() = default;
+
+void ViewerWriter::add(const Frame& frame, const FrameResult& result) {
+  frames_->add(scene_, frame, result);
+}
+
+void ViewerWriter::add(const RadioMap& map) {
+  frames_->add(map);
+}
+
+std::vector<std::string> ViewerWriter::finish() {
+  write_viewer_page(file_, scene_, facts_, *frames_);
+  file_.close();
+  return frames_->notices();
+}
+
+}  // namespace dcem::io

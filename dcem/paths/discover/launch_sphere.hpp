@@ -1,0 +1,65 @@
+#pragma once
+/// The directions in which a receiver shoots its rays.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dcem/accel/wide/trace/ray_order.hpp"
+#include "dcem/core/constants.hpp"
+#include "dcem/core/random.hpp"
+#include "dcem/geometry/ray.hpp"
+#include "dcem/geometry/vector.hpp"
+
+namespace dcem {
+
+/// Directions of a Fibonacci sphere: point i of n has height 1 − (2i + 1)/n and azimuth i·π(3 − √5).
+/// Source: Swinbank and Purser, Q. J. R. Meteorol. Soc. 132, 2006.
+inline Vec3 fibonacci_direction(std::uint32_t index, std::uint32_t count) {
+  const double z = 1.0 - (2.0 * index + 1.0) / count;
+  const double radius = std::sqrt(std::max(0.0, 1.0 - z * z));
+  const double azimuth_rad = index * (pi * (3.0 - std::sqrt(5.0)));
+  return {radius * std::cos(azimuth_rad), radius * std::sin(azimuth_rad), z};
+}
+
+/// A rotation drawn uniformly from all rotations (Shoemake, Graphics Gems III, 1992).
+inline Mat3 random_rotation(RandomStream& random) {
+  const double u1 = random.uniform(), u2 = 2.0 * pi * random.uniform(), u3 = 2.0 * pi * random.uniform();
+  const double x = std::sqrt(1.0 - u1) * std::sin(u2), y = std::sqrt(1.0 - u1) * std::cos(u2);
+  const double z = std::sqrt(u1) * std::sin(u3), w = std::sqrt(u1) * std::cos(u3);
+  return Mat3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y),  //
+              2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x),  //
+              2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y));
+}
+
+/// The rotation of the launch sphere of one receiver in one frame.
+inline Mat3 launch_rotation(std::uint64_t seed, std::string_view receiver_id, std::size_t frame) {
+  RandomStream random(hash_values(seed, hash_text(receiver_id), frame));
+  return random_rotation(random);
+}
+
+/// All directions of a sphere of `count` rays, in an order in which neighbours follow each other: a Fibonacci sphere
+/// goes round with every point, and each ray would look at another part of the scene than the one before. Computed once
+/// and kept; any thread may ask.
+inline std::span<const Vec3> launch_directions(std::uint32_t count) {
+  static std::mutex mutex;
+  static std::map<std::uint32_t, std::vector<Vec3>> spheres;
+  const std::scoped_lock lock(mutex);
+  const auto known = spheres.find(count);
+  if (known != spheres.end()) return known->second;
+  std::vector<Ray<double>> rays;
+  for (std::uint32_t index = 0; index < count; ++index) {
+    rays.push_back({Vec3(0.0), fibonacci_direction(index, count)});
+  }
+  std::vector<Vec3> sphere;
+  RayOrder order;
+  for (const std::uint32_t index : order.sort(rays)) sphere.push_back(rays[index].direction);
+  return spheres.emplace(count, std::move(sphere)).first->second;
+}
+
+}  // namespace dcem

@@ -1,0 +1,105 @@
+#pragma once
+/// What one receiver remembers from frame to frame: which sequences of mirrors carried a path, and which ones rays have
+/// proposed lately. Never a point, a length or a gain: those are solved anew in every frame, so nothing that is
+/// reported can be stale.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dcem/paths/discover/edge_reach.hpp"
+#include "dcem/paths/discover/proposal_memory.hpp"
+#include "dcem/paths/path.hpp"
+#include "dcem/paths/sequence.hpp"
+
+namespace dcem {
+
+/// What became of the remembered sequences in a frame; sums over links.
+struct CacheCounters {
+  std::uint64_t revalidated = 0;  ///< remembered sequences that were solved again
+  std::uint64_t reused = 0;       ///< of these, sequences that carry a path again
+  std::uint64_t expired = 0;      ///< remembered sequences that do not, or that led over an object that is gone
+  std::uint64_t born = 0;         ///< paths whose sequence was not among the link's paths in the frame before
+  std::uint64_t died = 0;         ///< sequences of the frame before without a path now
+
+  CacheCounters& operator+=(const CacheCounters& other) {
+    revalidated += other.revalidated;
+    reused += other.reused;
+    expired += other.expired;
+    born += other.born;
+    died += other.died;
+    return *this;
+  }
+  friend bool operator==(const CacheCounters&, const CacheCounters&) = default;
+};
+
+/// The mirrors and edges of a path, counted from the receiver.
+inline Sequence sequence_of(const Path& path) {
+  Sequence sequence;
+  for (auto interaction = path.interactions.rbegin(); interaction != path.interactions.rend(); ++interaction) {
+    if (interaction->kind == InteractionKind::reflection) sequence.emplace_back(interaction->facet);
+    if (interaction->kind == InteractionKind::diffraction) sequence.emplace_back(interaction->wedge);
+  }
+  return sequence;
+}
+
+/// The memory of one receiver, one list per transmitter. A list is written anew in each frame from the paths of that
+/// frame, so what is not found again is forgotten without further ado.
+class PathCache {
+ public:
+  /// The sequences of one link; nothing where there was no link.
+  using Link = std::optional<std::vector<Sequence>>;
+
+  /// The sequences that carried a path between the receiver and a transmitter in the frame before; nothing where there
+  /// was no such link.
+  const Link& sequences(std::size_t transmitter) const {
+    static const Link none;
+    return transmitter < links_.size() ? links_[transmitter] : none;
+  }
+
+  /// Forgets everything, as when the receiver was away; returns how many sequences that were.
+  std::size_t clear() {
+    std::size_t forgotten = 0;
+    for (const Link& link : links_) forgotten += link ? link->size() : 0;
+    links_.clear();
+    proposals_.clear();
+    reach_.clear();
+    return forgotten;
+  }
+
+  ProposalMemory& proposals() { return proposals_; }
+  EdgeReach& reach() { return reach_; }
+
+  /// Forgets the sequences for which `gone(element)` holds at any element; returns how many.
+  template <typename Gone>
+  std::size_t forget(Gone&& gone) {
+    std::size_t forgotten = 0;
+    for (Link& link : links_) {
+      if (!link) continue;
+      forgotten += std::erase_if(
+          *link, [&](const Sequence& sequence) { return std::any_of(sequence.begin(), sequence.end(), gone); });
+    }
+    return forgotten;
+  }
+
+  /// Starts the lists of a new frame with this many transmitters, none of which has a link yet; returns the old ones.
+  std::vector<Link> begin_frame(std::size_t transmitters) {
+    return std::exchange(links_, std::vector<Link>(transmitters));
+  }
+
+  /// The paths of a link in the new frame.
+  void remember(std::size_t transmitter, std::span<const Path> paths) {
+    std::vector<Sequence>& sequences = links_.at(transmitter).emplace();
+    for (const Path& path : paths) sequences.push_back(sequence_of(path));
+  }
+
+ private:
+  std::vector<Link> links_;
+  ProposalMemory proposals_;
+  EdgeReach reach_;
+};
+
+}  // namespace dcem

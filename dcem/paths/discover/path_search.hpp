@@ -1,0 +1,191 @@
+#pragma once
+/// One receiver's search in one frame: what was remembered, what a discovery proposes, what edges join.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dcem/paths/discover/edge_reach.hpp"
+#include "dcem/paths/discover/exact_search.hpp"
+#include "dcem/paths/discover/path_cache.hpp"
+#include "dcem/paths/discover/ray_launcher.hpp"
+#include "dcem/paths/solve/path_solver.hpp"
+
+namespace dcem {
+
+struct PathSearchSettings {
+  bool exhaustive = true;  ///< all sequences; otherwise those that rays propose
+  int max_reflections = 2;
+  int max_transmissions = 2;
+  std::uint32_t rays = 2000;        ///< launched per receiver and frame where the search is not exhaustive
+  std::uint32_t rays_steady = 200;  ///< the same in a frame in which every link is remembered from the frame before
+  std::uint64_t seed = 1;
+  int max_diffractions = 0;
+  int max_interactions = 10;  ///< reflections and diffractions together
+  EdgeRules edges{};          ///< which edges diffract
+};
+
+inline ChainLimits chain_limits(const PathSearchSettings& settings) {
+  return {static_cast<std::size_t>(settings.max_reflections), static_cast<std::size_t>(settings.max_diffractions),
+          static_cast<std::size_t>(settings.max_interactions), settings.exhaustive};
+}
+
+/// The paths between one transmitter and one receiver, in the order of `reported_before`.
+struct LinkPaths {
+  std::vector<Path> paths;
+  bool line_of_sight = false;  ///< the direct segment crosses nothing: the direct path is among the paths
+};
+
+struct SearchCounters {
+  std::uint64_t rays = 0;
+  std::uint64_t sequences_proposed = 0;
+  SolverCounters solver;
+  CacheCounters cache;
+};
+
+/// What turns a sphere of rays: the name of the device that shoots it, and the frame.
+struct SphereKey {
+  std::string_view id;
+  std::size_t frame = 0;
+};
+
+namespace detail {
+
+inline void sort_and_drop_repeated(std::vector<Path>& paths) {
+  std::sort(paths.begin(), paths.end(), reported_before);
+  // The same sequence gives the same bits, so repeated paths stand side by side.
+  paths.erase(std::unique(paths.begin(), paths.end(), same_sequence), paths.end());
+}
+
+/// How long proposals are tried again: three times the frames in which the few rays of a steady frame add up to a full
+/// search. Longer brings nothing (office, six seeds), and each proposal costs a solution per link and frame.
+inline std::uint32_t proposal_lifetime_frames(const PathSearchSettings& settings) {
+  const std::uint32_t steady = std::max<std::uint32_t>(1, settings.rays_steady);
+  return 3 * ((settings.rays + steady - 1) / steady);
+}
+
+/// Beside its mirrors a chain has one edge at least.
+inline std::size_t most_mirrors_of_a_half(const PathSearchSettings& settings) {
+  return static_cast<std::size_t>(std::max(0, std::min(settings.max_reflections, settings.max_interactions - 1)));
+}
+
+template <typename Tree>
+class PathSearch {
+ public:
+  PathSearch(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings, const LinkEnd& receiver,
+             std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters)
+      : tracer_(tracer),
+        settings_(settings),
+        receiver_(receiver),
+        transmitters_(transmitters),
+        counters_(counters),
+        solver_(tracer, settings.max_transmissions, settings.edges),
+        links_(transmitters.size()),
+        tried_(transmitters.size()) {}
+
+  /// Solves what was remembered of each link.
+  void revalidate(const PathCache& cache) {
+    for (std::size_t index = 0; index < transmitters_.size(); ++index) {
+      if (!transmitters_[index] || !cache.sequences(index)) continue;
+      for (const Sequence& sequence : *cache.sequences(index)) {
+        tried_[index].insert(sequence);
+        const bool valid = keep(index, solver_.solve(*transmitters_[index], receiver_, sequence));
+        ++counters_.cache.revalidated;
+        ++(valid ? counters_.cache.reused : counters_.cache.expired);
+      }
+    }
+  }
+
+  /// Solves every sequence of mirrors there is. Edges within reach are noted where `reach` is given.
+  void search_all(EdgeReach* reach) {
+    ExactSearch search(tracer_.scene(), settings_.max_reflections);
+    if (reach != nullptr) search.note_edges(*reach, settings_.edges, most_mirrors_of_a_half(settings_));
+    search.for_each_sequence(
+        receiver_, [&](const Sequence& sequence, const std::vector<Vec3>& images_m) { try_all(sequence, images_m); });
+  }
+
+  /// Solves what rays propose in this frame and, with a memory, what they proposed in the frames before.
+  void shoot(const SphereKey& key, std::uint32_t rays, ProposalMemory* memory, EdgeReach* reach) {
+    if (memory != nullptr) try_again(*memory);
+    RayLauncher<Tree> launcher(tracer_, {rays, settings_.max_reflections, settings_.max_transmissions});
+    if (reach != nullptr) launcher.note_edges(*reach, settings_.edges, most_mirrors_of_a_half(settings_));
+    launcher.for_each_sequence(receiver_, launch_rotation(settings_.seed, key.id, key.frame),
+                               [&](const Sequence& sequence, const std::vector<Vec3>& images_m) {
+                                 if (memory == nullptr || !memory->note(sequence)) try_all(sequence, images_m);
+                               });
+    if (memory != nullptr) memory->next_frame(proposal_lifetime_frames(settings_));
+    counters_.rays += launcher.rays();
+    counters_.solver.traversal += launcher.traversal();
+  }
+
+  /// Solves every chain that joins what the receiver reaches with what each transmitter reaches.
+  void join(const ReachedEdges& own, std::span<const ReachedEdges> transmitters) {
+    ChainJoiner joiner(tracer_.scene(), chain_limits(settings_));
+    for (std::size_t index = 0; index < transmitters_.size(); ++index) {
+      if (!transmitters_[index]) continue;
+      joiner.for_each_chain(own, transmitters[index], [&](const Sequence& sequence) {
+        ++counters_.sequences_proposed;
+        if (!is_remembered(index, sequence)) {
+          keep(index, solver_.solve(*transmitters_[index], receiver_, sequence));
+        }
+      });
+    }
+  }
+
+  std::vector<LinkPaths> take() {
+    counters_.solver += solver_.counters();
+    for (LinkPaths& link : links_) {
+      sort_and_drop_repeated(link.paths);
+      link.line_of_sight =
+          std::any_of(link.paths.begin(), link.paths.end(), [](const Path& path) { return path.interactions.empty(); });
+    }
+    return std::move(links_);
+  }
+
+ private:
+  void try_again(const ProposalMemory& memory) {
+    std::vector<Vec3> images_m;
+    memory.for_each([&](const Sequence& sequence) {
+      images_m.assign(1, receiver_.position_m);
+      for (const SequenceElement element : sequence) {
+        append_image(images_m, tracer_.scene().facet(element.mirror()).plane);
+      }
+      try_all(sequence, images_m);
+    });
+  }
+
+  /// Solves mirrors for every transmitter for which they were not remembered.
+  void try_all(const Sequence& mirrors, const std::vector<Vec3>& images_m) {
+    ++counters_.sequences_proposed;
+    for (std::size_t index = 0; index < transmitters_.size(); ++index) {
+      if (!transmitters_[index] || is_remembered(index, mirrors)) continue;
+      keep(index, solver_.solve(*transmitters_[index], receiver_, mirrors, images_m));
+    }
+  }
+
+  bool is_remembered(std::size_t transmitter, const Sequence& sequence) const {
+    return tried_[transmitter].size() > 0 && tried_[transmitter].contains(sequence);
+  }
+
+  bool keep(std::size_t transmitter, std::optional<Path>&& path) {
+    if (path) links_[transmitter].paths.push_back(std::move(*path));
+    return path.has_value();
+  }
+
+  const SceneTracer<Tree>& tracer_;
+  const PathSearchSettings& settings_;
+  const LinkEnd& receiver_;
+  std::span<const std::optional<LinkEnd>> transmitters_;
+  SearchCounters& counters_;
+  PathSolver<Tree> solver_;
+  std::vector<LinkPaths> links_;
+  std::vector<SequenceTable> tried_;  ///< per transmitter: the sequences that were remembered
+};
+
+}  // namespace detail
+
+}  // namespace dcem

@@ -1,0 +1,28 @@
+#pragma once
+/// Which edges diffract, and where around them.
+#include <span>
+
+#include "dcem/core/units.hpp"
+#include "dcem/world/world_geometry.hpp"
+
+namespace dcem {
+
+struct EdgeRules {
+  double min_exterior_angle_rad = degrees_to_radians(190.0);  ///< flatter edges do not diffract
+  bool free_edges = false;                                    ///< the rims of open sheets diffract as half planes
+  bool shadow_only = false;  ///< only where the wedge itself hides one neighbour from the other
+  /// By edge: not 0 where it is known that no path can use it. Empty: nothing is known. Changes no result.
+  std::span<const char> covered{};
+};
+
+/// Whether it is known that no path can use an edge.
+inline bool is_covered(WedgeId edge, const EdgeRules& rules) {
+  return !rules.covered.empty() && rules.covered[edge.value] != 0;
+}
+
+inline bool diffracts(const WorldWedge& wedge, const EdgeRules& rules) {
+  return wedge.present &&
+         (is_free(wedge.edge) ? rules.free_edges : wedge.edge.exterior_angle_rad >= rules.min_exterior_angle_rad);
+}
+
+}  // namespace dcem

@@ -1,0 +1,280 @@
+#pragma once
+/// From a sequence of mirrors and edges and two ends to a valid path, or none. All discoveries use this one class, so a
+/// path has the same bits whoever proposed its sequence.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "dcem/core/error.hpp"
+#include "dcem/paths/path.hpp"
+#include "dcem/paths/query/foliage_length.hpp"
+#include "dcem/paths/query/link_end.hpp"
+#include "dcem/paths/sequence.hpp"
+#include "dcem/paths/solve/chain_points.hpp"
+#include "dcem/paths/solve/edge_rules.hpp"
+#include "dcem/paths/solve/image_method.hpp"
+
+namespace dcem {
+
+struct SolverCounters {
+  std::uint64_t sequences_solved = 0;
+  std::uint64_t legs = 0;
+  TraversalCounters traversal;
+
+  SolverCounters& operator+=(const SolverCounters& other) {
+    sequences_solved += other.sequences_solved;
+    legs += other.legs;
+    traversal += other.traversal;
+    return *this;
+  }
+};
+
+/// Holds scratch memory: one per thread.
+template <typename Tree>
+class PathSolver {
+ public:
+  PathSolver(const SceneTracer<Tree>& tracer, int max_transmissions, const EdgeRules& rules = {})
+      : tracer_(tracer), max_transmissions_(static_cast<std::size_t>(max_transmissions)), rules_(rules) {}
+
+  /// The path over `sequence` (from the receiver outwards). Where facets overlap in one plane, the path that comes back
+  /// is the one over the facets that stand for the others.
+  std::optional<Path> solve(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence) {
+    return solve(transmitter, receiver, sequence, nullptr);
+  }
+  /// The same for mirrors alone, whose images of the receiver are known: images_m[i] is the image after mirror i.
+  std::optional<Path> solve(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& mirrors,
+                            const std::vector<Vec3>& images_m) {
+    return solve(transmitter, receiver, mirrors, &images_m);
+  }
+
+  const SolverCounters& counters() const { return counters_; }
+  SolverCounters& counters() { return counters_; }
+
+ private:
+  const Scene& scene() const { return tracer_.scene(); }
+  const WorldFacet& facet(FacetId id) const { return scene().facet(id); }
+
+  std::optional<Path> solve(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
+                            const std::vector<Vec3>* images_m) {
+    ++counters_.sequences_solved;
+    std::optional<Path> path = solve_as_given(transmitter, receiver, sequence, images_m);
+    if (!path || sequence.empty()) return path;
+    Sequence chosen = sequence;
+    while (std::optional<std::pair<Sequence, Path>> better = preferred_twin(transmitter, receiver, chosen, *path)) {
+      std::tie(chosen, *path) = std::move(*better);
+    }
+    return path;
+  }
+
+  std::optional<Path> solve_as_given(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
+                                     const std::vector<Vec3>* images_m) {
+    if (!points_.find(scene(), transmitter.position_m, receiver.position_m, sequence, images_m)) return std::nullopt;
+    const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
+    if (sees_what_it_is_mounted_on(transmitter, receiver, sequence)) return std::nullopt;
+    in_shadow_.assign(sequence.size(), false);
+    for (std::size_t index = 0; index < sequence.size(); ++index) {
+      const SequenceElement element = sequence[sequence.size() - 1 - index];  // points run from the transmitter
+      const bool holds = element.is_edge() ? touches_edge(element.edge(), index, transmitter, receiver, ignored)
+                                           : touches_mirror(element.mirror(), index, sequence, ignored);
+      if (!holds) return std::nullopt;
+    }
+    return follow(transmitter, receiver, sequence, ignored);
+  }
+
+  /// Whether an end is mounted on the first surface that it would see: such a mirror does not reflect for it, and along
+  /// such a face it is at grazing, where the wedge's field is that of the face.
+  bool sees_what_it_is_mounted_on(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence) const {
+    const auto mounted = [&](const LinkEnd& end, SequenceElement element) {
+      const auto on = [&](FacetId id) { return std::binary_search(end.mounted_on.begin(), end.mounted_on.end(), id); };
+      if (!element.is_edge()) return on(element.mirror());
+      const WorldWedge& wedge = scene().wedge(element.edge());
+      return on(wedge.facets[0]) || on(wedge.facets[1]);
+    };
+    return !sequence.empty() && (mounted(receiver, sequence.front()) || mounted(transmitter, sequence.back()));
+  }
+
+  /// Whether the path's point `index`, counted from the transmitter, lies where the mirror reflects.
+  bool touches_mirror(FacetId id, std::size_t index, const Sequence& sequence, const IgnoredBodies& ignored) {
+    if (!facet(id).present || tracer_.is_ignored(facet(id).body, ignored)) return false;
+    const Vec3& point_m = points_.points_m()[index];
+    if (!tracer_.reflects_at(id, point_m, ignored, counters_.traversal)) return false;
+    const std::size_t from_receiver = sequence.size() - 1 - index;
+    for (const std::size_t next : {from_receiver + 1, from_receiver - 1}) {  // the smaller one wraps around at 0
+      if (next >= sequence.size()) continue;
+      if (sequence[next].is_edge()) {
+        if (holds_edge(facet(id).plane, sequence[next].edge())) return false;  // that is in the wedge's own terms
+      } else if (next > from_receiver && tracer_.lies_along(facet(id), facet(sequence[next].mirror()).plane, point_m)) {
+        return false;  // nothing bounces between two coplanar patches that are a hair apart
+      }
+    }
+    return true;
+  }
+
+  bool holds_edge(const Plane& plane, WedgeId id) const {
+    const Wedge& edge = scene().wedge(id).edge;
+    const double tolerance_m = scene().settings().weld_tolerance_m + edge.stray_m;
+    return std::abs(signed_distance_m(plane, edge.start_m)) <= tolerance_m &&
+           std::abs(signed_distance_m(plane, edge.end_m)) <= tolerance_m;
+  }
+
+  /// Whether the wedge diffracts at the path's point `index`: both neighbours in its exterior, no third facet there.
+  bool touches_edge(WedgeId id, std::size_t index, const LinkEnd& transmitter, const LinkEnd& receiver,
+                    const IgnoredBodies& ignored) {
+    const WorldWedge& wedge = scene().wedge(id);
+    if (!diffracts(wedge, rules_) || tracer_.is_ignored(wedge.body, ignored)) return false;
+    const std::vector<Vec3>& points_m = points_.points_m();
+    const Vec3& here_m = points_m[index];
+    const Vec3& before_m = index == 0 ? transmitter.position_m : points_m[index - 1];
+    const Vec3& after_m = index + 1 == points_m.size() ? receiver.position_m : points_m[index + 1];
+    if (!clear_of_faces(wedge.edge, before_m - here_m) || !clear_of_faces(wedge.edge, after_m - here_m)) return false;
+    in_shadow_[index] = hides(wedge, before_m, here_m, after_m);
+    if (rules_.shadow_only && !in_shadow_[index]) return false;
+    const double tolerance_m = scene().settings().weld_tolerance_m + wedge.edge.stray_m;
+    for (const FacetId near : tracer_.facets_near(here_m, tolerance_m, ignored, counters_.traversal)) {
+      if (near != wedge.facets[0] && near != wedge.facets[1]) return false;
+    }
+    return true;
+  }
+
+  /// Whether the wedge stands between two points that diffract at `here_m`. Within rounding of the shadow boundary the
+  /// azimuths cannot say; there the test decides that decides of the straight leg between the two, so that exactly one
+  /// of the direct and the shadowed field is taken.
+  bool hides(const WorldWedge& wedge, const Vec3& before_m, const Vec3& here_m, const Vec3& after_m) const {
+    const double turn_rad =
+        std::abs(azimuth_rad(wedge.edge, before_m - here_m) - azimuth_rad(wedge.edge, after_m - here_m));
+    if (std::abs(turn_rad - pi) > shadow_boundary_rad) return turn_rad > pi;
+    return tracer_.meets(wedge.facets[0], before_m, after_m) || tracer_.meets(wedge.facets[1], before_m, after_m);
+  }
+
+  /// In the exterior, and off both faces by more than rounding.
+  static bool clear_of_faces(const Wedge& wedge, const Vec3& away_m) {
+    if (!in_exterior(wedge, away_m)) return false;
+    const double across_m = std::hypot(glm::dot(away_m, wedge.tangent), glm::dot(away_m, wedge.normal));
+    const double azimuth = azimuth_rad(wedge, away_m);
+    return across_m * std::min(azimuth, wedge.exterior_angle_rad - azimuth) > in_plane_guard_m;
+  }
+
+  /// A place where legs begin and end: what they ignore there.
+  struct Stop {
+    std::array<FacetId, 2> facets;
+    std::array<const Plane*, 2> planes;
+    LegEnd end() const { return {facets, planes}; }
+  };
+
+  Stop stop_at(SequenceElement element) const {
+    const std::array<FacetId, 2> facets =
+        element.is_edge() ? scene().wedge(element.edge()).facets : std::array{element.mirror(), element.mirror()};
+    return {facets, {&facet(facets[0]).plane, &facet(facets[1]).plane}};
+  }
+
+  /// Walks the legs between the points, collecting the sheets they cross.
+  std::optional<Path> follow(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
+                             const IgnoredBodies& ignored) {
+    const std::vector<Vec3>& points_m = points_.points_m();
+    Path path;
+    std::size_t left = max_transmissions_;
+    Vec3 from_m = transmitter.position_m;
+    Stop before{}, here{};
+    for (std::size_t leg = 0; leg <= sequence.size(); ++leg) {
+      const bool last = leg == sequence.size();
+      if (!last) here = stop_at(sequence[sequence.size() - 1 - leg]);
+      const LegEnd start = leg == 0 ? LegEnd{transmitter.mounted_on, {}} : before.end();
+      const LegEnd end = last ? LegEnd{receiver.mounted_on, {}} : here.end();
+      const Vec3 to_m = last ? receiver.position_m : points_m[leg];
+      if (!walk(from_m, to_m, start, end, ignored, left, path)) return std::nullopt;
+      if (!last) path.interactions.push_back(interaction_at(sequence[sequence.size() - 1 - leg], leg));
+      from_m = to_m;
+      before = here;
+    }
+    return path;
+  }
+
+  /// One leg: false where it is blocked, crosses too many sheets, or has no direction.
+  bool walk(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end, const IgnoredBodies& ignored,
+            std::size_t& left, Path& path) {
+    const double leg_length_m = glm::distance(from_m, to_m);
+    if (!(leg_length_m > in_plane_guard_m)) return false;
+    ++counters_.legs;
+    if (!tracer_.follow_leg(from_m, to_m, start, end, ignored, left, crossings_, counters_.traversal)) return false;
+    for (const Crossing& crossing : crossings_) {
+      path.interactions.push_back(
+          {InteractionKind::transmission, crossing.facet, from_m + crossing.t * (to_m - from_m)});
+    }
+    left -= crossings_.size();
+    path.length_m += leg_length_m;
+    add_foliage_along(scene(), from_m, to_m, ignored, path.foliage);
+    return true;
+  }
+
+  Interaction interaction_at(SequenceElement element, std::size_t index) const {
+    const Vec3& point_m = points_.points_m()[index];
+    if (!element.is_edge()) return {InteractionKind::reflection, element.mirror(), point_m};
+    return {InteractionKind::diffraction, scene().wedge(element.edge()).facets[0], point_m, element.edge(),
+            in_shadow_[index]};
+  }
+
+  /// The first valid sequence, before this one in order of precedence, over facets that lie on top of the path's own
+  /// ones at its reflection points.
+  std::optional<std::pair<Sequence, Path>> preferred_twin(const LinkEnd& transmitter, const LinkEnd& receiver,
+                                                          const Sequence& sequence, const Path& path) {
+    const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
+    std::vector<std::vector<SequenceElement>> choices(sequence.size());
+    bool any = false;
+    std::size_t index = sequence.size();
+    for (const Interaction& interaction : path.interactions) {
+      if (interaction.kind == InteractionKind::transmission) continue;
+      --index;
+      choices[index] = interaction.kind == InteractionKind::reflection
+                           ? preferred_mirrors(sequence[index].mirror(), interaction.point_m, ignored)
+                           : std::vector{sequence[index]};
+      any = any || choices[index].size() > 1;
+    }
+    if (!any) return std::nullopt;
+    Sequence candidate = sequence;
+    return first_valid(transmitter, receiver, sequence, choices, 0, candidate);
+  }
+
+  /// Coplanar facets at a point that stand before `own`, in order, and `own` last.
+  std::vector<SequenceElement> preferred_mirrors(FacetId own, const Vec3& point_m, const IgnoredBodies& ignored) {
+    std::vector<FacetId> facets =
+        tracer_.facets_near(point_m, scene().settings().weld_tolerance_m, ignored, counters_.traversal);
+    std::erase_if(facets, [&](FacetId other) {
+      return other == own || !tracer_.precedes(other, own) || !tracer_.parallel(other, own);
+    });
+    std::sort(facets.begin(), facets.end(), [&](FacetId a, FacetId b) { return tracer_.precedes(a, b); });
+    facets.push_back(own);
+    return {facets.begin(), facets.end()};
+  }
+
+  std::optional<std::pair<Sequence, Path>> first_valid(const LinkEnd& transmitter, const LinkEnd& receiver,
+                                                       const Sequence& sequence,
+                                                       const std::vector<std::vector<SequenceElement>>& choices,
+                                                       std::size_t index, Sequence& candidate) {
+    if (index == sequence.size()) {
+      if (candidate == sequence) return std::nullopt;  // nothing stands before the path itself
+      std::optional<Path> path = solve_as_given(transmitter, receiver, candidate, nullptr);
+      if (!path) return std::nullopt;
+      return std::pair(candidate, std::move(*path));
+    }
+    for (const SequenceElement choice : choices[index]) {
+      candidate[index] = choice;
+      if (auto found = first_valid(transmitter, receiver, sequence, choices, index + 1, candidate)) return found;
+    }
+    return std::nullopt;
+  }
+
+  const SceneTracer<Tree>& tracer_;
+  std::size_t max_transmissions_;
+  EdgeRules rules_;
+  SolverCounters counters_;
+  ChainPoints points_;
+  std::vector<bool> in_shadow_;
+  std::vector<Crossing> crossings_;
+};
+
+}  // namespace dcem

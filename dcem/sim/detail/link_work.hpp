@@ -1,0 +1,39 @@
+#pragma once
+/// What solving links took, and a device as fields see it: shared by the parts of `Simulator`.
+#include <algorithm>
+
+#include "dcem/core/units.hpp"
+#include "dcem/field/diffuse/diffuse_contribution.hpp"
+#include "dcem/field/radio_end.hpp"
+#include "dcem/paths/discover/path_search.hpp"
+#include "dcem/scene/scene.hpp"
+#include "dcem/sim/frame_result.hpp"
+
+namespace dcem::detail {
+
+inline void add_search_work(const SearchCounters& counters, WorkCounters& work) {
+  work.rays += counters.rays;
+  work.legs += counters.solver.legs;
+  work.sequences_proposed += counters.sequences_proposed;
+  work.sequences_solved += counters.solver.sequences_solved;
+  work.nodes_visited += counters.solver.traversal.nodes_visited;
+  work.primitives_tested += counters.solver.traversal.primitives_tested;
+}
+
+/// A device in a frame as fields see it.
+inline RadioEnd radio_end(const Device& device, const DeviceState& state) {
+  return {state.position_m, state.velocity_mps, device.antenna, state.rotation};
+}
+
+inline void add_diffuse_work(const DiffusePower& diffuse, WorkCounters& work) {
+  work.legs += diffuse.legs;
+  work.nodes_visited += diffuse.traversal.nodes_visited;
+  work.primitives_tested += diffuse.traversal.primitives_tested;
+  work.diffuse_tiles += diffuse.tiles_evaluated;
+  work.diffuse_links_unfinished += diffuse.converged ? 0 : 1;
+  if (!(diffuse.power_ratio > 0.0)) return;  // of nothing there is no share
+  const double residual_db = power_ratio_to_db(1.0 + diffuse.residual_ratio / diffuse.power_ratio);
+  work.diffuse_residual_db = std::max(work.diffuse_residual_db, residual_db);
+}
+
+}  // namespace dcem::detail

@@ -1,0 +1,129 @@
+#pragma once
+/// How a `Simulator` moves to a frame, and what transmitters reach in it; included by simulator.hpp.
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "dcem/sim/detail/link_work.hpp"
+#include "dcem/sim/simulator.hpp"
+
+namespace dcem {
+
+namespace detail {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace detail
+
+template <SurfaceModel Surface, typename Tree>
+FrameResult Simulator<Surface, Tree>::advance(const Frame& frame) {
+  FrameResult result{frame.index, frame.time_s, {}, {}, {}, {}, 0.0, 0.0};
+  const detail::Stopwatch update_watch;
+  const ChangeSet changes = scene_.apply(frame);
+  result.tree = update_tree(changes);
+  forget_replaced(changes, result.cache);
+  frame_ = frame;
+  result.update_time_s = update_watch.seconds();
+  const detail::Stopwatch solve_watch;
+  Solved solved = solve_all(scene_.receivers(), transmitter_ends(reach_), caches_);
+  result.links = std::move(solved.links);
+  result.work = solved.work;
+  result.cache += solved.cache;
+  result.solve_time_s = solve_watch.seconds();
+  return result;
+}
+
+template <SurfaceModel Surface, typename Tree>
+UpkeepReport Simulator<Surface, Tree>::move_to(const Frame& frame) {
+  const ChangeSet changes = scene_.apply(frame);
+  CacheCounters not_reported;
+  forget_replaced(changes, not_reported);
+  frame_ = frame;
+  return update_tree(changes);
+}
+
+template <SurfaceModel Surface, typename Tree>
+UpkeepReport Simulator<Surface, Tree>::update_tree(const ChangeSet& changes) {
+  for (const BodyId body : changes.moved) {
+    const auto [first, last] = scene_.triangle_range(body);
+    for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
+  }
+  // Kept where this throws (a box too far away): the tree must hear of them in a later frame.
+  const UpkeepReport report = dcem::update_tree(maintainer_, tree_, moved_, scene_);
+  moved_.clear();
+  return report;
+}
+
+/// A path over an object that has left its place is not the same path as one over the object that came.
+template <SurfaceModel Surface, typename Tree>
+void Simulator<Surface, Tree>::forget_replaced(const ChangeSet& changes, CacheCounters& counters) {
+  if (changes.replaced.empty()) return;
+  const auto gone = [&](SequenceElement element) {
+    const BodyId body = element.is_edge() ? scene_.wedge(element.edge()).body : scene_.facet(element.mirror()).body;
+    return std::binary_search(changes.replaced.begin(), changes.replaced.end(), body);
+  };
+  for (PathCache& cache : caches_) {
+    const std::size_t forgotten = cache.forget(gone);
+    counters.expired += forgotten;
+    counters.died += forgotten;
+  }
+}
+
+template <SurfaceModel Surface, typename Tree>
+typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::transmitter_ends(
+    std::span<EdgeReach> reach, std::vector<char> covered) const {
+  TransmitterEnds ends;
+  ends.covered = std::move(covered);
+  for (const Device& device : scene_.transmitters()) {
+    const DeviceState state = scene_.device_state(device, frame_);
+    TraversalCounters counters;
+    ends.link.push_back(state.present ? std::optional(link_end(state, counters)) : std::nullopt);
+    ends.radio.push_back(detail::radio_end(device, state));
+  }
+  ends.reached.resize(ends.link.size());
+  if (diffraction_order(settings_.propagation) > 0) find_transmitter_reach(ends, reach);
+  return ends;
+}
+
+template <SurfaceModel Surface, typename Tree>
+void Simulator<Surface, Tree>::find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const {
+  const Tracer tracer(scene_, tree_);
+  const PathSearchSettings search = search_settings(ends.covered);
+  if (reach.empty()) {
+    ends.own_reach.resize(ends.link.size());
+    reach = ends.own_reach;
+  }
+  std::vector<SearchCounters> spent(ends.link.size());
+  parallel_for(ends.link.size(), settings_.threads, [&](std::size_t index, unsigned) {
+    if (!ends.link[index]) return reach[index].clear();
+    const bool known = reach[index].size() > 0;
+    reach[index].next_frame(detail::proposal_lifetime_frames(search));
+    find_reach(tracer, search, *ends.link[index], {scene_.transmitters()[index].id, frame_.index},
+               known ? search.rays_steady : search.rays, reach[index], spent[index]);
+    ends.reached[index] = reach[index].edges();
+  });
+  for (const SearchCounters& one : spent) detail::add_search_work(one, ends.work);
+}
+
+template <SurfaceModel Surface, typename Tree>
+PathSearchSettings Simulator<Surface, Tree>::search_settings(std::span<const char> covered_edges) const {
+  const PropagationSettings& propagation = settings_.propagation;
+  return {discovery_ == Discovery::exact,
+          reflection_order(propagation),
+          propagation.max_transmissions,
+          propagation.rays,
+          steady_rays(propagation),
+          propagation.seed,
+          diffraction_order(propagation),
+          interaction_order(propagation),
+          {degrees_to_radians(propagation.diffraction.min_exterior_angle_deg), propagation.diffraction.free_edges,
+           propagation.diffraction.region == DiffractionRegion::shadow, covered_edges}};
+}
+
+}  // namespace dcem

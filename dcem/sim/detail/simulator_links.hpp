@@ -1,0 +1,171 @@
+#pragma once
+/// How a `Simulator` solves the links of a frame; included by simulator.hpp.
+#include <algorithm>
+#include <utility>
+
+#include "dcem/sim/detail/link_work.hpp"
+#include "dcem/sim/simulator.hpp"
+
+namespace dcem {
+
+template <SurfaceModel Surface, typename Tree>
+std::vector<LinkResult> Simulator<Surface, Tree>::solve(std::span<const Device> receivers, WorkCounters* work) const {
+  Solved solved = solve_all(receivers, transmitter_ends({}), {});
+  if (work != nullptr) *work += solved.work;
+  return std::move(solved.links);
+}
+
+template <SurfaceModel Surface, typename Tree>
+typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_all(std::span<const Device> receivers,
+                                                                              const TransmitterEnds& transmitters,
+                                                                              std::span<PathCache> caches) const {
+  std::vector<Solved> by_receiver(receivers.size());
+  parallel_for(receivers.size(), settings_.threads, [&](std::size_t index, unsigned) {
+    PathCache* cache = caches.empty() ? nullptr : &caches[index];
+    by_receiver[index] = solve_receiver(receivers[index], index, transmitters, cache);
+  });
+  Solved sum;
+  sum.work = transmitters.work;
+  for (Solved& one : by_receiver) {
+    for (LinkResult& link : one.links) sum.links.push_back(std::move(link));
+    sum.work += one.work;
+    sum.cache += one.cache;
+  }
+  std::stable_sort(sum.links.begin(), sum.links.end(),
+                   [](const LinkResult& a, const LinkResult& b) { return a.transmitter < b.transmitter; });
+  return sum;
+}
+
+/// The transmitters without the device that the receiver itself is: a device has no link to itself.
+template <SurfaceModel Surface, typename Tree>
+std::span<const std::optional<LinkEnd>> Simulator<Surface, Tree>::ends_beside(
+    const Device& receiver, const TransmitterEnds& transmitters, std::vector<std::optional<LinkEnd>>& others) const {
+  const std::span<const Device> devices = scene_.transmitters();
+  const auto is_receiver = [&](const Device& device) { return device.id == receiver.id; };
+  const auto same = std::find_if(devices.begin(), devices.end(), is_receiver);
+  if (same == devices.end()) return transmitters.link;
+  others = transmitters.link;
+  others[static_cast<std::size_t>(same - devices.begin())].reset();
+  return others;
+}
+
+template <SurfaceModel Surface, typename Tree>
+typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiver(const Device& receiver,
+                                                                                   std::size_t index,
+                                                                                   const TransmitterEnds& transmitters,
+                                                                                   PathCache* cache) const {
+  const Tracer tracer(scene_, tree_);
+  const DeviceState state = scene_.device_state(receiver, frame_);
+  Solved solved;
+  if (!state.present) {
+    if (cache != nullptr) solved.cache.died = cache->clear();
+    return solved;
+  }
+  SearchCounters counters;
+  const LinkEnd end = link_end(state, counters.solver.traversal);
+  const PathSearchSettings search = search_settings(transmitters.covered);
+  std::vector<std::optional<LinkEnd>> others;
+  const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
+  std::vector<LinkPaths> found =
+      find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached);
+  const Evaluator field = evaluator();
+  const RadioEnd to = detail::radio_end(receiver, state);
+  std::vector<DiffusePower> diffuse = diffuse_powers(receiver.id, end, to, transmitters, ends, solved.work);
+  for (std::size_t transmitter = 0; transmitter < found.size(); ++transmitter) {
+    if (!ends[transmitter]) continue;
+    LinkResult& link =
+        solved.links.emplace_back(make_link(std::move(found[transmitter]), std::move(diffuse[transmitter]), transmitter,
+                                            {*ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field));
+    link.receiver = index;
+    link.complete = search.exhaustive || (search.max_reflections == 0 && search.max_diffractions == 0);
+    solved.work.paths += link.paths.size();
+  }
+  detail::add_search_work(counters, solved.work);
+  solved.cache = counters.cache;
+  return solved;
+}
+
+template <SurfaceModel Surface, typename Tree>
+std::vector<DiffusePower> Simulator<Surface, Tree>::diffuse_powers(const std::string& receiver, const LinkEnd& end,
+                                                                   const RadioEnd& to,
+                                                                   const TransmitterEnds& transmitters,
+                                                                   std::span<const std::optional<LinkEnd>> ends,
+                                                                   WorkCounters& work) const {
+  std::vector<DiffusePower> powers(ends.size());
+  const PropagationSettings& propagation = settings_.propagation;
+  if (!propagation.diffuse.enabled) return powers;
+  const Tracer tracer(scene_, tree_);
+  const ScatteredPower<Surface, AnyPathLoss> scattered(scene_, surface_, propagation.path_loss, medium_,
+                                                       settings_.frequency_hz);
+  DiffuseIntegral<Tree, Surface, AnyPathLoss> integral(tracer, scattered, propagation.diffuse,
+                                                       propagation.max_transmissions);
+  for (std::size_t index = 0; index < ends.size(); ++index) {
+    if (!ends[index]) continue;
+    const DiffuseKey key{propagation.seed, scene_.transmitters()[index].id, receiver};
+    powers[index] = integral.evaluate(*ends[index], transmitters.radio[index], end, to, key);
+    detail::add_diffuse_work(powers[index], work);
+  }
+  return powers;
+}
+
+template <SurfaceModel Surface, typename Tree>
+LinkResult Simulator<Surface, Tree>::make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter,
+                                               const DeviceEnd& from, const DeviceEnd& to,
+                                               const Evaluator& evaluator) const {
+  const PropagationSettings& propagation = settings_.propagation;
+  LinkResult link;
+  link.transmitter = transmitter;
+  link.diffuse = std::move(diffuse);
+  bool line_of_sight = found.line_of_sight;
+  for (Path& path : found.paths) {
+    const bool is_direct = path.interactions.empty();
+    if (is_direct && !path.foliage.empty()) line_of_sight = false;  // the segment is not free, though nothing stops it
+    if (is_direct && !propagation.line_of_sight) continue;
+    PathContribution contribution = evaluator.evaluate(std::move(path), from.radio, to.radio);
+    const bool too_weak =
+        propagation.min_path_gain_db && !(power_ratio_to_db(contribution.power_ratio) >= *propagation.min_path_gain_db);
+    if (!too_weak) link.paths.push_back(std::move(contribution));
+  }
+  trace_elements(link.paths, from, to, evaluator);
+  const double power_dbm = scene_.transmitters()[transmitter].power_dbm;
+  link.statistics = link_statistics(link.paths, power_dbm, line_of_sight, link.diffuse);
+  return link;
+}
+
+template <SurfaceModel Surface, typename Tree>
+void Simulator<Surface, Tree>::trace_elements(std::span<PathContribution> paths, const DeviceEnd& from,
+                                              const DeviceEnd& to, const Evaluator& evaluator) const {
+  if (settings_.propagation.antenna_array != ArrayChannel::exact || !has_array(from.radio, to.radio)) return;
+  const Tracer tracer(scene_, tree_);
+  const PathSearchSettings search = search_settings();
+  PathSolver<Tree> solver(tracer, search.max_transmissions, search.edges);
+  TraversalCounters counters;
+  const double length_m = wavelength_m(settings_.frequency_hz);
+  const ElementEnds from_elements = element_ends(tracer, from.link, from.radio, length_m, counters);
+  const ElementEnds to_elements = element_ends(tracer, to.link, to.radio, length_m, counters);
+  ElementPaths<Tree, Surface, AnyPathLoss> elements(solver, evaluator, from_elements, to_elements);
+  for (PathContribution& path : paths) path.channel = elements.channel(path.path);
+}
+
+template <SurfaceModel Surface, typename Tree>
+std::optional<PathContribution> Simulator<Surface, Tree>::solve_path(std::size_t transmitter, std::size_t receiver,
+                                                                     const Sequence& sequence) const {
+  const Device& from = scene_.transmitters()[transmitter];
+  const Device& to = scene_.receivers()[receiver];
+  const DeviceState from_state = scene_.device_state(from, frame_), to_state = scene_.device_state(to, frame_);
+  if (!from_state.present || !to_state.present) return std::nullopt;
+  const Tracer tracer(scene_, tree_);
+  const PathSearchSettings search = search_settings();
+  PathSolver<Tree> solver(tracer, search.max_transmissions, search.edges);
+  TraversalCounters counters;
+  const LinkEnd from_link = link_end(from_state, counters), to_link = link_end(to_state, counters);
+  const RadioEnd from_radio = detail::radio_end(from, from_state), to_radio = detail::radio_end(to, to_state);
+  std::optional<Path> path = solver.solve(from_link, to_link, sequence);
+  if (!path) return std::nullopt;
+  const Evaluator field = evaluator();
+  PathContribution contribution = field.evaluate(std::move(*path), from_radio, to_radio);
+  trace_elements({&contribution, 1}, {from_link, from_radio}, {to_link, to_radio}, field);
+  return contribution;
+}
+
+}  // namespace dcem

@@ -1,0 +1,54 @@
+/// `dcem compare`: how far two maps of the same places are apart.
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "dcem/core/statistics.hpp"
+#include "dcem/io/atomic_file.hpp"
+#include "dcem/io/input_error.hpp"
+#include "dcem/io/line_chart.hpp"
+#include "dcem/io/map_comparison.hpp"
+#include "dcem/io/text_table.hpp"
+#include "options.hpp"
+
+namespace dcem::program {
+namespace {
+
+void add_row(io::TextTable& table, const std::string& name, const std::vector<double>& values) {
+  table.add_row({name, io::format_fixed(mean(values), 4), io::format_fixed(median(values), 4),
+                 io::format_fixed(quantile(values, 0.95), 4), io::format_fixed(quantile(values, 1.0), 4)});
+}
+
+void print(const io::MapComparison& comparison) {
+  std::cout << comparison.points << " places with two values; " << comparison.only_first << " in the first file alone, "
+            << comparison.only_second << " in the second alone, " << comparison.without_value << " without any\n";
+  using Align = io::TextTable::Align;
+  io::TextTable table({{"", Align::left}, {"mean"}, {"median"}, {"95 %"}, {"highest"}});
+  std::vector<double> size_db = comparison.difference_db;
+  for (double& value_db : size_db) value_db = std::abs(value_db);
+  add_row(table, "|a - b|/|b|, linear power", comparison.relative);
+  add_row(table, "a - b / dB", comparison.difference_db);
+  add_row(table, "|a - b| / dB", size_db);
+  std::cout << table.str();
+}
+
+}  // namespace
+
+void compare_maps(const CompareOptions& options) {
+  const std::string second_column = options.second_column.empty() ? options.column : options.second_column;
+  const io::MapColumn first = io::read_map_column(options.first, options.column);
+  const io::MapColumn second = io::read_map_column(options.second, second_column);
+  const io::MapComparison comparison = io::compare_maps(first, second);
+  if (comparison.points == 0) {
+    throw io::InputError(options.second,
+                         "no place has a value here and in " + options.first + "; expected maps of the same places");
+  }
+  io::OutputFolder folder(options.folder.empty() ? "out/compare" : options.folder);
+  const std::string title = std::filesystem::path(options.first).filename().string() + " against " +
+                            std::filesystem::path(options.second).filename().string();
+  folder.open("comparison.svg").write(io::line_chart_svg(io::comparison_charts(comparison, title)));
+  folder.commit();
+  print(comparison);
+}
+
+}  // namespace dcem::program

@@ -1,0 +1,120 @@
+#include "job.hpp"
+
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <iostream>
+#include <string_view>
+
+#include "dcem/io/frame_source.hpp"
+#include "dcem/io/input_error.hpp"
+
+#ifndef DCEM_VERSION
+#define DCEM_VERSION "unknown"
+#endif
+
+namespace dcem::program {
+namespace {
+
+std::optional<std::size_t> parse_count(std::string_view text) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+FrameRange parse_frames(const std::string& text, std::size_t available) {
+  if (text.empty()) return {0, available};
+  const std::string expectation = "A:B with 0 <= A < B <= " + std::to_string(available);
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) throw UsageError("--frames " + text + ": no range of frames", expectation);
+  const auto first = parse_count(std::string_view(text).substr(0, colon));
+  const auto last = parse_count(std::string_view(text).substr(colon + 1));
+  if (!first || !last) throw UsageError("--frames " + text + ": no range of frames", expectation);
+  if (*first >= *last || *last > available) throw UsageError("--frames " + text + ": frame out of range", expectation);
+  return {*first, *last};
+}
+
+double memory_of_machine_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+std::string gigabytes(double bytes) {
+  return std::to_string(std::llround(bytes / 1e9)) + " GB";
+}
+
+}  // namespace
+
+Job prepare_job(const ScenarioOptions& options) {
+  Job job{io::load_scenario(options.scenario, options.overrides), {}, options.folder};
+  job.frames = parse_frames(options.frames, job.scenario.time.frames);
+  io::require_attached_devices(job.scenario, job.frames.first, job.frames.last);
+  if (options.threads) job.scenario.settings.threads = *options.threads;
+  if (job.folder.empty()) job.folder = std::filesystem::path("out") / job.scenario.name;
+  return job;
+}
+
+Simulator<> make_simulator(Job& job, const ScenarioOptions& options) {
+  try {
+    return {std::move(job.scenario.scene), job.scenario.settings};
+  } catch (const std::invalid_argument& error) {
+    throw io::InputError(options.scenario, error.what());
+  }
+}
+
+void require_grid_memory(const io::Scenario& scenario, const std::string& file, double point_bytes) {
+  const double available_bytes = memory_of_machine_bytes();
+  for (const ReceiverGrid& grid : scenario.grids) {
+    const double needed_bytes = point_bytes * static_cast<double>(grid.size());
+    if (needed_bytes <= available_bytes) continue;
+    throw io::InputError(file, "grid '" + grid.id + "': " + std::to_string(grid.size()) + " points need " +
+                                   gigabytes(needed_bytes) + "; expected less than the " + gigabytes(available_bytes) +
+                                   " of this machine's memory");
+  }
+}
+
+void expand_grids(io::Scenario& scenario, const std::string& file) {
+  const auto transmitters = static_cast<double>(scenario.scene.transmitters().size());
+  require_grid_memory(scenario, file, sizeof(Device) + transmitters * sizeof(LinkResult));
+  for (const ReceiverGrid& grid : scenario.grids) {
+    for (std::size_t row = 0; row < grid.rows(); ++row) {
+      for (std::size_t column = 0; column < grid.columns(); ++column) {
+        try {
+          scenario.scene.add_receiver(grid_receiver(grid, row, column));
+        } catch (const std::invalid_argument& error) {
+          throw io::InputError(file, error.what());
+        }
+      }
+    }
+  }
+}
+
+io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t receivers) {
+  return {DCEM_VERSION,      job.scenario.name, simulator.settings(), simulator.discovery(), simulator.cache(),
+          job.scenario.time, receivers,         job.scenario.warnings};
+}
+
+void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options) {
+  if (options.quiet) return;
+  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
+}
+
+std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator,
+                                              std::size_t map_points_per_frame) {
+  if (!job.scenario.output.html) return nullptr;
+  const io::ViewerFacts facts{job.scenario.name, simulator.settings().frequency_hz, job.frames.first,
+                              job.frames.count(), map_points_per_frame};
+  return std::make_unique<io::ViewerWriter>(folder, simulator.scene(), facts, job.scenario.output.viewer);
+}
+
+void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary) {
+  if (viewer == nullptr) return;
+  for (const std::string& notice : viewer->finish()) summary.add_warning("viewer.html: " + notice);
+}
+
+io::ProgressMode progress_mode(const ScenarioOptions& options) {
+  return options.quiet ? io::ProgressMode::never : options.progress;
+}
+
+}  // namespace dcem::program

@@ -1,0 +1,75 @@
+/// `dcem verify`: runs a scenario and checks every frame against solutions of its own.
+#include <iostream>
+
+#include "dcem/io/frame_source.hpp"
+#include "dcem/io/text_table.hpp"
+#include "job.hpp"
+
+namespace dcem::program {
+namespace {
+
+constexpr std::size_t settled_frame = 20;  // a cache that starts empty has filled by then
+
+std::string percent(double share) {
+  return io::format_fixed(100.0 * share, 3) + " %";
+}
+
+std::string share_text(const Recall& recall) {
+  return percent(recall.by_count()) + " of " + std::to_string(recall.paths_there) + " paths, " +
+         percent(recall.by_power()) + " of the power";
+}
+
+void add_recall(io::TextTable& table, const VerificationReport& report) {
+  table.add_row({"recall of rays", share_text(report.recall)});
+  if (report.recall_by_frame.size() <= settled_frame) return;
+  Recall settled;
+  for (std::size_t index = settled_frame; index < report.recall_by_frame.size(); ++index) {
+    settled += report.recall_by_frame[index];
+  }
+  table.add_row({"from the 21st frame on", share_text(settled)});
+}
+
+std::string table_of(const VerificationReport& report, const Simulator<>& simulator) {
+  const bool sampled = simulator.discovery() == Discovery::sampled;
+  io::TextTable table({{"", io::TextTable::Align::left}, {"", io::TextTable::Align::left}});
+  table.add_row({"frames", std::to_string(report.frames)});
+  table.add_row({"links", std::to_string(report.links)});
+  table.add_row({"discovery", sampled ? "sampled" : "exact"});
+  table.add_row({"cache", simulator.cache() == CacheMode::seed ? "seed" : "off"});
+  table.add_row({"frames with other links", std::to_string(report.frames_with_other_links)});
+  table.add_row({"paths solved on their own", std::to_string(report.paths)});
+  table.add_row({"paths that differ", std::to_string(report.paths_different)});
+  if (!report.compared) {
+    table.add_row({"exhaustive search", "not possible: too many facets"});
+    return table.str();
+  }
+  table.add_row({"paths denied by exhaustive search", std::to_string(report.paths_extra)});
+  add_recall(table, report);
+  return table.str();
+}
+
+}  // namespace
+
+void verify_scenario(const ScenarioOptions& options) {
+  Job job = prepare_job(options);
+  expand_grids(job.scenario, options.scenario);
+  io::FrameSource frames(job.scenario);
+  Simulator<> simulator = make_simulator(job, options);
+  Verifier<> verifier(simulator.scene(), simulator.settings(), simulator.surface());
+  print_warnings(job.scenario.warnings, options);
+  io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
+  for (std::size_t index = job.frames.first; index < job.frames.last; ++index) {
+    const Frame frame = frames.frame(simulator.scene(), index);
+    verifier.check(frame, simulator.advance(frame));
+    bar.advance();
+  }
+  const VerificationReport& report = verifier.report();
+  if (!options.quiet) std::cout << table_of(report, simulator);
+  if (report.passed()) return;
+  std::string problem = std::to_string(report.paths_different + report.paths_extra) + " paths and " +
+                        std::to_string(report.frames_with_other_links) + " lists of links are not as reported";
+  for (const std::string& difference : report.differences) problem += "; " + difference;
+  throw CheckFailed(problem);
+}
+
+}  // namespace dcem::program

@@ -1,0 +1,173 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "dcem/accel/wide/build/quads.hpp"
+#include "tests/accel/wide/wide_scenes.hpp"
+
+using namespace dcem;
+using dcem_test::WideMesh;
+
+namespace {
+
+std::vector<WidePatch> patches_of(const WideMesh& mesh, double flatness = 1e-3) {
+  std::vector<WidePatch> patches;
+  const TriangleView view = mesh.view();
+  detail::PatchBuilder(view, flatness).append(0, static_cast<std::uint32_t>(mesh.triangles.size()), patches);
+  return patches;
+}
+
+std::size_t pair_count(const std::vector<WidePatch>& patches) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(patches, [](const WidePatch& patch) { return patch.is_pair(); }));
+}
+
+/// Everything a list of patches promises of the mesh it was made from.
+void check_promises(const WideMesh& mesh, const std::vector<WidePatch>& patches, double flatness) {
+  std::vector<int> times(mesh.triangles.size(), 0);
+  for (const WidePatch& patch : patches) {
+    REQUIRE(!patch.is_none());
+    for (const std::uint32_t triangle : patch.triangles()) ++times[triangle];
+    // a, b, c are the first triangle's corners in its own order, from some corner on.
+    const std::array<std::uint32_t, 3>& own = mesh.triangles[patch.triangle[0]];
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      REQUIRE(patch.corner[(patch.begin[0] + corner) % 3] == own[corner]);
+    REQUIRE(patch.first_vertex(0) == own[0]);
+    if (!patch.is_pair()) continue;
+    REQUIRE(patch.first_vertex(1) == mesh.triangles[patch.triangle[1]][0]);
+    REQUIRE(mesh.view().same_surface(patch.triangle[0], patch.triangle[1]));
+    // The second triangle is c, a, d in some order.
+    std::multiset<std::uint32_t> second(mesh.triangles[patch.triangle[1]].begin(),
+                                        mesh.triangles[patch.triangle[1]].end());
+    const auto& [a, b, c, d] = patch.corner;
+    REQUIRE(second == std::multiset<std::uint32_t>{a, c, d});
+    REQUIRE(a != c);
+    const std::array<Vec3, 4> at{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], mesh.vertices[d]};
+    // Flat: the height of d over the plane of the others, from the volume they span.
+    const Vec3 normal = glm::cross(at[1] - at[0], at[2] - at[0]);
+    REQUIRE(glm::length(normal) > 0.0);
+    const double height = std::abs(glm::dot(normal, at[3] - at[0])) / glm::length(normal);
+    REQUIRE(height <= flatness * glm::distance(at[0], at[2]) * (1 + 1e-12));
+    // Convex: seen along the normal, the two diagonals cross within both.
+    const Vec3 x = glm::normalize(at[2] - at[0]), y = glm::normalize(glm::cross(normal, x));
+    const double b_side = glm::dot(y, at[1] - at[0]), d_side = glm::dot(y, at[3] - at[0]);
+    REQUIRE(b_side * d_side < 0.0);
+    const double share = b_side / (b_side - d_side);
+    const double crossing = glm::dot(x, at[1] + share * (at[3] - at[1]) - at[0]) / glm::distance(at[0], at[2]);
+    REQUIRE(crossing > 0.0);
+    REQUIRE(crossing < 1.0);
+  }
+  REQUIRE(std::ranges::all_of(times, [](int count) { return count == 1; }));
+}
+
+}  // namespace
+
+TEST_CASE("pairs share an edge, are flat and convex; every triangle is in one patch") {
+  std::uint64_t seed = 0;
+  for (const double flatness : {1e-3, 1e-6, 0.1}) {
+    for (const WideMesh& mesh : {dcem_test::boxes_mesh(40, ++seed), dcem_test::ball(Vec3(1), 2.0, 9),
+                                 dcem_test::dirty_mesh(60, ++seed), dcem_test::bent_ground(12, 0.3 * flatness, ++seed),
+                                 dcem_test::bent_ground(12, 3 * flatness, ++seed), dcem_test::soup(50, ++seed)}) {
+      check_promises(mesh, patches_of(mesh, flatness), flatness);
+    }
+  }
+}
+
+TEST_CASE("a box is six quadrilaterals; a soup has no pairs; a negative limit makes none") {
+  const WideMesh box = dcem_test::box_mesh(Vec3(0), Vec3(1, 2, 3));
+  CHECK(patches_of(box).size() == 6);
+  CHECK(pair_count(patches_of(box)) == 6);
+  CHECK(pair_count(patches_of(dcem_test::soup(100, 1))) == 0);
+  CHECK(pair_count(patches_of(box, -1.0)) == 0);
+  check_promises(box, patches_of(box, -1.0), 0.0);
+}
+
+TEST_CASE("flat within the limit, and not beyond it") {
+  for (const double height : {0.9e-3, 1.1e-3}) {
+    WideMesh mesh;
+    for (const Vec3& vertex : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -0.9, 2 * height)}) {
+      mesh.add_vertex(vertex);
+    }
+    mesh.add(0, 1, 2);
+    mesh.add(2, 3, 0);
+    // The shared edge is 2 m long.
+    CHECK(pair_count(patches_of(mesh)) == (height < 1e-3 ? 1U : 0U));
+  }
+}
+
+TEST_CASE("concave and overlapping neighbours stay apart") {
+  const auto pairs_with = [](const Vec3& fourth) {
+    WideMesh mesh;
+    for (const Vec3& vertex : {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(1, 2, 0), fourth}) mesh.add_vertex(vertex);
+    mesh.add(0, 1, 2);
+    mesh.add(1, 0, 3);
+    return pair_count(patches_of(mesh));
+  };
+  CHECK(pairs_with(Vec3(2, -2, 0)) == 1);
+  CHECK(pairs_with(Vec3(-3, -2, 0)) == 0);  // reflex at the first vertex
+  CHECK(pairs_with(Vec3(8, -1, 0)) == 0);   // reflex at the second
+  CHECK(pairs_with(Vec3(1, 1, 0)) == 0);    // on the same side of the edge
+  CHECK(pairs_with(Vec3(1, 2, 0)) == 0);    // the same triangle again
+  CHECK(pairs_with(Vec3(3, 2, 0)) == 0);    // as high on the same side: the areas cancel to the bit
+  CHECK(pairs_with(Vec3(2, 0, 0)) == 0);    // no area
+}
+
+TEST_CASE("triangles of different surfaces stay apart") {
+  WideMesh mesh = dcem_test::box_mesh(Vec3(0), Vec3(1, 2, 3));
+  for (std::uint32_t triangle = 0; triangle < 12; ++triangle) mesh.surface.push_back(triangle);
+  CHECK(pair_count(patches_of(mesh)) == 0);
+  for (std::uint32_t triangle = 0; triangle < 12; ++triangle) mesh.surface[triangle] = triangle / 2;
+  CHECK(pair_count(patches_of(mesh)) == 6);
+}
+
+TEST_CASE("winding, vertex numbers and what stands elsewhere in the mesh do not change the pairs") {
+  const WideMesh mesh = dcem_test::bent_ground(9, 1e-4, 7);
+  const auto pairs_of = [](const WideMesh& given, std::uint32_t first, std::uint32_t last) {
+    std::vector<WidePatch> patches;
+    const TriangleView view = given.view();
+    detail::PatchBuilder(view, 1e-3).append(first, last, patches);
+    std::set<std::set<std::uint32_t>> pairs;
+    for (const WidePatch& patch : patches) {
+      if (patch.is_pair()) pairs.insert({patch.triangle[0] - first, patch.triangle[1] - first});
+    }
+    return pairs;
+  };
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  const auto expected = pairs_of(mesh, 0, count);
+  REQUIRE(expected.size() > 60);
+  RandomStream random(8);
+  WideMesh turned = mesh;
+  for (auto& [a, b, c] : turned.triangles) {
+    if (random.uniform() < 0.5) std::swap(a, b);
+    if (random.uniform() < 0.5) std::swap(b, c);
+  }
+  CHECK(pairs_of(turned, 0, count) == expected);
+  WideMesh renumbered = mesh;
+  std::ranges::reverse(renumbered.vertices);
+  const auto last = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  for (auto& corners : renumbered.triangles) {
+    for (std::uint32_t& corner : corners) corner = last - corner;
+  }
+  CHECK(pairs_of(renumbered, 0, count) == expected);
+  WideMesh later = dcem_test::soup(13, 9);
+  later.append(mesh);
+  CHECK(pairs_of(later, 13, 13 + count) == expected);
+}
+
+TEST_CASE("a group is paired within itself only") {
+  WideMesh mesh;
+  for (const Vec3& vertex : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) mesh.add_vertex(vertex);
+  mesh.add(0, 1, 2);
+  mesh.add(0, 2, 3);
+  std::vector<WidePatch> patches;
+  const TriangleView view = mesh.view();
+  detail::PatchBuilder pairing(view, 1e-3);
+  pairing.append(0, 1, patches);
+  pairing.append(1, 2, patches);
+  CHECK(patches.size() == 2);
+  check_promises(mesh, patches, 1e-3);
+}
