@@ -1,4 +1,4 @@
-/// Times the upkeep of a tree while cars drive: rebuild, refit, or decide for each subtree.
+/// Times the tree_update of a tree while cars drive: rebuild, refit, or decide for each subtree.
 ///
 ///   bench_bvh [TOWN.obj] [--cars V...] [--frames N] [--rays R] [--sweep]
 ///
@@ -27,8 +27,8 @@ using dcem::bench::Stopwatch;
 /// One policy with its tree, and what it took, frame by frame.
 struct Contender {
   std::string policy;
-  dcem::UpkeepSettings settings;
-  dcem::BvhMaintainer<double> maintainer{settings};
+  dcem::TreeUpdateSettings settings;
+  dcem::BvhUpdater<double> updater{settings};
   dcem::Bvh<double> tree{};
   std::vector<double> update_ms{}, closest_ms{}, any_ms{};  ///< of a frame
   std::vector<double> closest_steps{}, any_steps{};         ///< nodes visited, per ray
@@ -37,7 +37,7 @@ struct Contender {
 };
 
 Contender contender(const char* name, TreePolicy policy, std::optional<double> growth_limit = {}) {
-  dcem::UpkeepSettings settings;
+  dcem::TreeUpdateSettings settings;
   settings.policy = policy;
   settings.sah_growth_limit = growth_limit.value_or(settings.sah_growth_limit);
   return {name, settings};
@@ -57,7 +57,7 @@ std::vector<Contender> contenders(bool sweep) {
 
 void follow(Contender& contender, const dcem::Scene& scene, const std::vector<std::uint32_t>& moved) {
   const Stopwatch watch;
-  const dcem::UpkeepReport report = contender.maintainer.update(contender.tree, moved, scene.triangle_boxes());
+  const dcem::TreeUpdateReport report = contender.updater.update(contender.tree, moved, scene.triangle_boxes());
   contender.update_ms.push_back(watch.elapsed_ms());
   contender.nodes_refit += report.nodes_refit;
   contender.nodes_rebuilt += report.nodes_rebuilt;
@@ -65,17 +65,17 @@ void follow(Contender& contender, const dcem::Scene& scene, const std::vector<st
   contender.sah_cost.push_back(report.sah_cost);
 }
 
-/// Parameter of the nearest hit, infinity where there is none.
+/// Parameter of the closest_hit hit, infinity where there is none.
 double nearest_hit(const Contender& contender, const dcem::Scene& scene, const Ray<double>& ray,
                    dcem::TraversalCounters& counters) {
   const dcem::WatertightRay exact(ray);
-  double nearest = ray.t_max;
+  double closest_hit = ray.t_max;
   const auto leaf = [&](std::uint32_t triangle, double& t_max) {
     const auto t = exact.intersect(scene.corners_m(triangle));
-    if (t && *t >= ray.t_min && *t < nearest) nearest = t_max = *t;
+    if (t && *t >= ray.t_min && *t < closest_hit) closest_hit = t_max = *t;
   };
   contender.tree.closest(ray, leaf, &counters);
-  return nearest;
+  return closest_hit;
 }
 
 bool any_hit(const Contender& contender, const dcem::Scene& scene, const Ray<double>& ray,
@@ -98,11 +98,11 @@ void trace(Contender& contender, const dcem::Scene& scene, const RaySet& rays) {
     contender.hash = dcem::hash_values(contender.hash, std::bit_cast<std::uint64_t>(t));
   }
   contender.closest_ms.push_back(closest_watch.elapsed_ms());
-  const Stopwatch any_watch;
+  const Stopwatch any_tracked;
   for (const Ray<double>& ray : rays.short_legs) {
     contender.hash = dcem::hash_values(contender.hash, any_hit(contender, scene, ray, any) ? 1 : 0);
   }
-  contender.any_ms.push_back(any_watch.elapsed_ms());
+  contender.any_ms.push_back(any_tracked.elapsed_ms());
   contender.closest_steps.push_back(static_cast<double>(closest.nodes_visited) / count);
   contender.any_steps.push_back(static_cast<double>(any.nodes_visited) / count);
 }
@@ -118,7 +118,7 @@ std::vector<std::uint32_t> moved_triangles(const dcem::Scene& scene, const dcem:
 
 /// False in a frame in which policies hit different things.
 bool drive(dcem::Scene& scene, std::size_t frames, std::size_t ray_count, std::vector<Contender>& all) {
-  for (Contender& each : all) each.tree.build_grouped(scene.triangle_boxes(), scene.first_triangles());
+  for (Contender& each : all) each.tree.build_objects(scene.triangle_boxes(), scene.first_triangles());
   const RaySet rays = dcem::bench::random_rays(all.front().tree.bounds(), ray_count, 7);
   for (std::size_t frame = 1; frame <= frames; ++frame) {
     const dcem::ChangeSet changes =
@@ -193,7 +193,7 @@ bool bench(const Options& options) {
 
 int main(int count, char** arguments) {
   Options options;
-  CLI::App app("Times the upkeep of a tree while cars drive");
+  CLI::App app("Times the tree_update of a tree while cars drive");
   app.add_option("TOWN", options.file, "OBJ file; default: a generated town");
   app.add_option("--cars", options.cars, "numbers of cars")->check(CLI::Range(1, 100'000));
   app.add_option("--frames", options.frames, "frames of each drive")->check(CLI::Range(1, 1'000'000));

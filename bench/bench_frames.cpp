@@ -3,9 +3,10 @@
 ///   bench_frames ROUNDS SCENARIO.json... [--frames N] [--diffractions N]
 ///
 /// Each scenario is run with the cache off and, where discovery is sampled, with cache `seed`; with the default cache
-/// under the three policies of tree upkeep; each with one thread and with all cores. Configurations take turns within a
-/// round. One CSV row per configuration: medians over the rounds, work counters, and the hash of every number of every
-/// path. Rounds, thread counts or policies of one cache mode whose hashes differ are an error: exit 1 and no row.
+/// under the three policies of tree tree_update; each with one thread and with all cores. Configurations take turns
+/// within a round. One CSV row per configuration: medians over the rounds, work counters, and the hash of every number
+/// of every path. Rounds, thread counts or policies of one cache mode whose hashes differ are an error: exit 1 and no
+/// row.
 #include <algorithm>
 #include <cstdio>
 #include <optional>
@@ -76,7 +77,7 @@ void run_once(const dcem::io::Scenario& scenario, std::size_t frames, Configurat
   dcem::SimulationSettings settings = scenario.settings;
   settings.threads = configuration.threads;
   settings.propagation.cache = configuration.cache;
-  settings.upkeep.policy = configuration.policy;
+  settings.tree_update.policy = configuration.policy;
   dcem::Simulator simulator(scenario.scene, settings);
   dcem::io::FrameSource source(scenario);
   std::vector<double> frame_ms, update_ms, source_ms;

@@ -49,7 +49,7 @@ using Rays = std::vector<Ray<double>>;
 
 constexpr double none = std::numeric_limits<double>::infinity();
 
-/// What a tree says of a ray: where the nearest hit is, or 1 for blocked and 0 for free.
+/// What a tree says of a ray: where the closest_hit hit is, or 1 for occluded and 0 for free.
 struct Answer {
   double t = none;
   std::uint32_t triangle = 0;
@@ -68,10 +68,10 @@ struct Moved {
 
 /// What an update did; zero where a tree does not say.
 struct Work {
-  std::uint64_t blocks = 0, nodes = 0, restructured = 0;
+  std::uint64_t leaves = 0, nodes = 0, restructured = 0;
   // Of the last, what is what:
-  std::uint64_t reinserted = 0, rotated = 0, regrown = 0;
-  std::string rebuilt{};  ///< all `nodes` above blocks and units, the whole `tree`, or nothing
+  std::uint64_t reinserted = 0, rotated = 0, rebuilt_in_place = 0;
+  std::string rebuilt{};  ///< all `nodes` above leaves and objects, the whole `tree`, or nothing
 };
 
 /// One tree with its way of following motion.
@@ -82,7 +82,7 @@ struct Contender {
   std::function<void(const Moved&)> prepare = [](const Moved&) {};
   std::function<Work(const Moved&)> update{};
   /// Milliseconds for all rays.
-  std::function<double(const Rays&, Answers&, TraversalCounters&)> nearest_ms{}, blocked_ms{};
+  std::function<double(const Rays&, Answers&, TraversalCounters&)> trace_closest_ms{}, trace_occluded_ms{};
   std::function<double()> sah_cost = [] { return 0.0; };
   /// Told what the frame's rays of one kind have spent.
   std::function<void(const TraversalCounters&, std::size_t rays)> note_rays = [](const TraversalCounters&,
@@ -90,40 +90,41 @@ struct Contender {
 
   std::vector<double> update_ms{}, closest_ms{}, occluded_ms{};  ///< of a frame
   std::vector<double> closest_again_ms{}, occluded_again_ms{};   ///< the same rays once more
-  std::vector<double> closest_steps{}, occluded_steps{};         ///< nodes and blocks visited, per ray
+  std::vector<double> closest_steps{}, occluded_steps{};         ///< nodes and leaves visited, per ray
   Work work{}, last_work{};                                      ///< of all frames, of the last one
   std::uint64_t hash = 0, differences = 0;
 };
 
 /// Gives a contender the two loops over its tree.
-template <typename Nearest, typename Blocked>
-void set_queries(Contender& contender, unsigned threads, Nearest nearest, Blocked blocked) {
-  contender.nearest_ms = [=](const Rays& rays, Answers& answers, TraversalCounters& counters) {
-    return timed(rays, answers, counters, threads, nearest);
+template <typename ClosestHit, typename Occluded>
+void set_queries(Contender& contender, unsigned threads, ClosestHit closest_hit, Occluded occluded) {
+  contender.trace_closest_ms = [=](const Rays& rays, Answers& answers, TraversalCounters& counters) {
+    return timed(rays, answers, counters, threads, closest_hit);
   };
-  contender.blocked_ms = [=](const Rays& rays, Answers& answers, TraversalCounters& counters) {
-    return timed(rays, answers, counters, threads,
-                 [&](const Ray<double>& ray, TraversalCounters& sum) { return Answer{blocked(ray, sum) ? 1.0 : 0.0}; });
+  contender.trace_occluded_ms = [=](const Rays& rays, Answers& answers, TraversalCounters& counters) {
+    return timed(rays, answers, counters, threads, [&](const Ray<double>& ray, TraversalCounters& sum) {
+      return Answer{occluded(ray, sum) ? 1.0 : 0.0};
+    });
   };
 }
 
-std::shared_ptr<dcem::WideTree> wide_tree(const dcem::Scene& scene, unsigned threads) {
-  auto tree = std::make_shared<dcem::WideTree>();
+std::shared_ptr<dcem::WideBvh> wide_tree(const dcem::Scene& scene, unsigned threads) {
+  auto tree = std::make_shared<dcem::WideBvh>();
   dcem::WideSettings settings;
   settings.threads = threads;
-  tree->build_grouped({scene.vertices_m(), scene.triangles()}, scene.triangle_boxes(), scene.first_triangles(),
+  tree->build_objects({scene.vertices_m(), scene.triangles()}, scene.triangle_boxes(), scene.first_triangles(),
                       settings);
   return tree;
 }
 
-void set_wide_queries(Contender& contender, unsigned threads, const std::shared_ptr<dcem::WideTree>& tree) {
+void set_wide_queries(Contender& contender, unsigned threads, const std::shared_ptr<dcem::WideBvh>& tree) {
   set_queries(
       contender, threads,
       [tree](const Ray<double>& ray, TraversalCounters& sum) {
-        const auto hit = tree->nearest(ray, &sum);
+        const auto hit = tree->closest_hit(ray, &sum);
         return hit ? Answer{hit->t, hit->triangle} : Answer{};
       },
-      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->blocked(ray, &sum); });
+      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->occluded(ray, &sum); });
   contender.sah_cost = [tree] { return tree->sah_cost(); };
 }
 
@@ -138,27 +139,27 @@ Contender wide_contender(const dcem::Scene& scene, unsigned threads, WidePolicy 
   contender.update = [=, &scene](const Moved& moved) -> Work {
     if (policy == WidePolicy::rebuild) {
       tree->rebuild(mesh, scene.triangle_boxes());
-      return {tree->arrays().blocks.size(), tree->arrays().nodes.size(), 0, 0, 0, 0, "tree"};
+      return {tree->arrays().leaves.size(), tree->arrays().nodes.size(), 0, 0, 0, 0, "tree"};
     }
     const dcem::WideRefitReport report = tree->refit(moved.triangles, mesh, scene.triangle_boxes());
-    if (policy == WidePolicy::refit) return {report.blocks_written, report.nodes_visited};
-    const std::uint32_t turn = policy == WidePolicy::reinsert ? dcem::WideTree::default_turn_length : 0;
+    if (policy == WidePolicy::refit) return {report.leaves_written, report.nodes_visited};
+    const std::uint32_t turn = policy == WidePolicy::reinsert ? dcem::WideBvh::default_turn_length : 0;
     const std::size_t reinserted = tree->reinsert_moved(limit, turn);
-    return {report.blocks_written, report.nodes_visited, reinserted, reinserted};
+    return {report.leaves_written, report.nodes_visited, reinserted, reinserted};
   };
   set_wide_queries(contender, threads, tree);
   return contender;
 }
 
-/// The wide tree as its maintainer keeps it.
+/// The wide tree as its updater keeps it.
 Contender kept_contender(const dcem::Scene& scene, unsigned threads, const char* name,
-                         const dcem::UpkeepSettings& settings) {
+                         const dcem::TreeUpdateSettings& settings) {
   const auto tree = wide_tree(scene, threads);
-  const auto maintainer = std::make_shared<dcem::WideMaintainer>(settings);
+  const auto updater = std::make_shared<dcem::WideUpdater>(settings);
   const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
   Contender contender{"wide", name};
   contender.update = [=, &scene](const Moved& moved) -> Work {
-    const dcem::UpkeepReport report = maintainer->update(*tree, moved.triangles, mesh, scene.triangle_boxes());
+    const dcem::TreeUpdateReport report = updater->update(*tree, moved.triangles, mesh, scene.triangle_boxes());
     // A report does not say of which kind the rebuild was; but of a new tree no node is refit.
     const char* rebuilt = !report.root_rebuilt ? "" : report.nodes_refit == 0 ? "tree" : "nodes";
     return {0,
@@ -166,31 +167,31 @@ Contender kept_contender(const dcem::Scene& scene, unsigned threads, const char*
             report.subtrees_rebuilt + report.rotated,
             report.reinserted,
             report.rotated,
-            report.regrown,
+            report.rebuilt_in_place,
             rebuilt};
   };
-  contender.note_rays = [=](const TraversalCounters& spent, std::size_t rays) { maintainer->note_rays(spent, rays); };
+  contender.note_rays = [=](const TraversalCounters& spent, std::size_t rays) { updater->note_rays(spent, rays); };
   set_wide_queries(contender, threads, tree);
   return contender;
 }
 
 /// Refit, and nothing that mends.
-dcem::UpkeepSettings nothing_mends() {
-  dcem::UpkeepSettings settings;
+dcem::TreeUpdateSettings nothing_mends() {
+  dcem::TreeUpdateSettings settings;
   settings.sah_growth_limit = settings.deformation_limit = settings.reinsertion_growth = none;
-  settings.regrowth_price = settings.renewal_ratio = settings.rebuild_growth_limit = none;
+  settings.subtree_rebuild_price = settings.renewal_ratio = settings.rebuild_growth_limit = none;
   settings.reinsertion_turn = settings.rotations_per_node = 0;
   return settings;
 }
 
-/// The ways of the maintainer, each by itself, and what it does by default.
+/// The ways of the updater, each by itself, and what it does by default.
 void add_kept_contenders(const dcem::Scene& scene, unsigned threads, std::vector<Contender>& all) {
-  const dcem::UpkeepSettings usual, nothing = nothing_mends();
-  dcem::UpkeepSettings rotate = nothing, deform = nothing, sah = nothing, steps = nothing;
+  const dcem::TreeUpdateSettings usual, nothing = nothing_mends();
+  dcem::TreeUpdateSettings rotate = nothing, deform = nothing, sah = nothing, steps = nothing;
   rotate.rotations_per_node = 1;
   deform.deformation_limit = usual.deformation_limit;
   sah.sah_growth_limit = usual.sah_growth_limit;
-  steps.regrowth_price = usual.regrowth_price;
+  steps.subtree_rebuild_price = usual.subtree_rebuild_price;
   all.push_back(kept_contender(scene, threads, "rotate", rotate));
   all.push_back(kept_contender(scene, threads, "deform", deform));
   all.push_back(kept_contender(scene, threads, "sah", sah));
@@ -200,11 +201,11 @@ void add_kept_contenders(const dcem::Scene& scene, unsigned threads, std::vector
 
 Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
   const auto tree = std::make_shared<dcem::Bvh<double>>();
-  const auto maintainer = std::make_shared<dcem::BvhMaintainer<double>>();
-  tree->build_grouped(scene.triangle_boxes(), scene.first_triangles());
+  const auto updater = std::make_shared<dcem::BvhUpdater<double>>();
+  tree->build_objects(scene.triangle_boxes(), scene.first_triangles());
   Contender contender{"binary", "adaptive"};
   contender.update = [=, &scene](const Moved& moved) -> Work {
-    const dcem::UpkeepReport report = maintainer->update(*tree, moved.triangles, scene.triangle_boxes());
+    const dcem::TreeUpdateReport report = updater->update(*tree, moved.triangles, scene.triangle_boxes());
     const std::uint64_t nodes = report.nodes_refit + report.nodes_rebuilt, subtrees = report.subtrees_rebuilt;
     return {0, nodes, subtrees, 0, 0, subtrees, report.root_rebuilt ? "nodes" : ""};
   };
@@ -212,13 +213,13 @@ Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
       contender, threads,
       [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
         const dcem::WatertightRay exact(ray);
-        Answer nearest;
+        Answer closest_hit;
         const auto leaf = [&](std::uint32_t triangle, double& t_max) {
           const auto t = exact.intersect(scene.corners_m(triangle));
-          if (t && *t >= ray.t_min && *t <= t_max && *t < nearest.t) nearest = {t_max = *t, triangle};
+          if (t && *t >= ray.t_min && *t <= t_max && *t < closest_hit.t) closest_hit = {t_max = *t, triangle};
         };
         tree->closest(ray, leaf, &sum);
-        return nearest;
+        return closest_hit;
       },
       [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
         const dcem::WatertightRay exact(ray);
@@ -234,8 +235,8 @@ Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
 
 #if defined(DCEM_HAS_EMBREE)
 Contender embree_contender(const dcem::Scene& scene, unsigned threads, const char* name,
-                           dcem::bench::EmbreeUpkeep upkeep) {
-  const auto moving = std::make_shared<dcem::bench::MovingEmbree>(scene, upkeep, threads);
+                           dcem::bench::EmbreeUpkeep tree_update) {
+  const auto moving = std::make_shared<dcem::bench::MovingEmbree>(scene, tree_update, threads);
   Contender contender{"embree", name};
   contender.prepare = [=](const Moved& moved) { moving->prepare(moved.bodies); };
   contender.update = [=](const Moved&) -> Work {
@@ -245,9 +246,9 @@ Contender embree_contender(const dcem::Scene& scene, unsigned threads, const cha
   set_queries(
       contender, threads,
       [moving](const Ray<double>& ray, TraversalCounters&) {
-        return Answer{static_cast<double>(moving->tree().nearest(ray))};
+        return Answer{static_cast<double>(moving->tree().closest_hit(ray))};
       },
-      [moving](const Ray<double>& ray, TraversalCounters&) { return moving->tree().blocked(ray); });
+      [moving](const Ray<double>& ray, TraversalCounters&) { return moving->tree().occluded(ray); });
   return contender;
 }
 #endif
@@ -336,7 +337,7 @@ void follow(Contender& contender, const Moved& moved) {
   contender.last_work = contender.update(moved);
   contender.update_ms.push_back(watch.elapsed_ms());
   const Work& work = contender.last_work;
-  contender.work.blocks += work.blocks;
+  contender.work.leaves += work.leaves;
   contender.work.nodes += work.nodes;
   contender.work.restructured += work.restructured;
 }
@@ -344,23 +345,23 @@ void follow(Contender& contender, const Moved& moved) {
 /// Rays that are not timed; their answers are those of the frame before.
 void warm_up(Contender& contender, const FrameRays& rays, Answers& unused) {
   TraversalCounters uncounted;
-  contender.nearest_ms(rays.bounces, unused, uncounted);
-  contender.blocked_ms(rays.segments, unused, uncounted);
+  contender.trace_closest_ms(rays.bounces, unused, uncounted);
+  contender.trace_occluded_ms(rays.segments, unused, uncounted);
 }
 
-void trace(Contender& contender, const FrameRays& rays, Answers& nearest, Answers& blocked) {
+void trace(Contender& contender, const FrameRays& rays, Answers& hits, Answers& shadows) {
   TraversalCounters closest, occluded;
   const double count = static_cast<double>(rays.bounces.size());
-  contender.closest_ms.push_back(contender.nearest_ms(rays.bounces, nearest, closest));
-  contender.occluded_ms.push_back(contender.blocked_ms(rays.segments, blocked, occluded));
+  contender.closest_ms.push_back(contender.trace_closest_ms(rays.bounces, hits, closest));
+  contender.occluded_ms.push_back(contender.trace_occluded_ms(rays.segments, shadows, occluded));
   TraversalCounters uncounted;
-  contender.closest_again_ms.push_back(contender.nearest_ms(rays.bounces, nearest, uncounted));
-  contender.occluded_again_ms.push_back(contender.blocked_ms(rays.segments, blocked, uncounted));
+  contender.closest_again_ms.push_back(contender.trace_closest_ms(rays.bounces, hits, uncounted));
+  contender.occluded_again_ms.push_back(contender.trace_occluded_ms(rays.segments, shadows, uncounted));
   contender.closest_steps.push_back(static_cast<double>(closest.nodes_visited) / count);
   contender.occluded_steps.push_back(static_cast<double>(occluded.nodes_visited) / count);
   contender.note_rays(closest, rays.bounces.size());
   contender.note_rays(occluded, rays.segments.size());
-  for (const Answers* answers : {&nearest, &blocked}) {
+  for (const Answers* answers : {&hits, &shadows}) {
     for (const Answer& answer : *answers) {
       contender.hash = dcem::hash_values(contender.hash, std::bit_cast<std::uint64_t>(answer.t), answer.triangle);
     }
@@ -387,7 +388,7 @@ Moved moved_by(const dcem::Scene& scene, const dcem::ChangeSet& changes) {
 }
 
 struct FrameAnswers {
-  Answers nearest, blocked;
+  Answers closest_hit, occluded;
 };
 
 /// False where a tree of ours hits what the first one does not.
@@ -396,8 +397,8 @@ bool check(std::size_t frame, std::vector<Contender>& all, const std::vector<Fra
     Contender& each = all[index];
     // Embree counts in single precision from the scene's origin: a tenth of a millimetre is what that tells at 1 km.
     const double floor = each.family == "embree" ? 1e-4 : 0.0;
-    each.differences += count_differences(answers[index].nearest, answers[0].nearest, floor) +
-                        count_differences(answers[index].blocked, answers[0].blocked, floor);
+    each.differences += count_differences(answers[index].closest_hit, answers[0].closest_hit, floor) +
+                        count_differences(answers[index].occluded, answers[0].occluded, floor);
     if (each.family != "wide" || each.hash == all[0].hash) continue;
     std::fprintf(stderr, "frame %zu: wide %s %.2f does not hit what wide rebuild hits\n", frame, each.policy.c_str(),
                  each.limit);
@@ -413,7 +414,7 @@ class SeriesFile {
   explicit SeriesFile(const std::string& path) : file_(path) {
     file_.write(
         "cars,frame,tree,policy,update_ms,closest_ns_per_ray,occluded_ns_per_ray,closest_steps,occluded_steps,"
-        "sah_cost,blocks_written,nodes_visited,reinserted,rotated,regrown,rebuilt\n");
+        "sah_cost,leaves_written,nodes_visited,reinserted,rotated,rebuilt_in_place,rebuilt\n");
   }
 
   void add_frame(std::size_t cars, std::size_t frame, const Options& options, const std::vector<Contender>& all) {
@@ -444,7 +445,7 @@ class SeriesFile {
     const Work& last = each.last_work;
     std::string cells = number(",%.3f", each.closest_steps.back()) + number(",%.3f", each.occluded_steps.back()) +
                         number(",%.4f", each.sah_cost());
-    for (const std::uint64_t count : {last.blocks, last.nodes, last.reinserted, last.rotated, last.regrown}) {
+    for (const std::uint64_t count : {last.leaves, last.nodes, last.reinserted, last.rotated, last.rebuilt_in_place}) {
       cells += "," + std::to_string(count);
     }
     return cells + "," + last.rebuilt;
@@ -470,7 +471,7 @@ bool drive(dcem::Scene& scene, std::size_t cars, const Options& options, std::ve
       const std::size_t index = (frame + turn) % all.size();
       warm_up(all[index], others, unused);
       follow(all[index], moved);
-      trace(all[index], rays, answers[index].nearest, answers[index].blocked);
+      trace(all[index], rays, answers[index].closest_hit, answers[index].occluded);
     }
     if (!check(frame, all, answers)) return false;
     if (series) series->add_frame(cars, frame, options, all);
@@ -590,7 +591,7 @@ class Report {
       }
     }
     optional(csv, has_sah ? std::optional(row.sah_cost()) : std::nullopt, 3);
-    csv.count(row.work.blocks).count(row.work.nodes).count(row.work.restructured).count(row.differences);
+    csv.count(row.work.leaves).count(row.work.nodes).count(row.work.restructured).count(row.differences);
     csv.hash(row.hash).print();
     print_line(row, rival, rebuilt);
   }
@@ -664,7 +665,7 @@ int main(int count, char** arguments) {
         "break_even_rays_of_rebuild,break_even_rays_over_refit,update_median_ms,update_p95_ms,update_maximum_ms,"
         "closest_mrays_first,closest_mrays_middle,closest_mrays_last,occluded_mrays_first,occluded_mrays_middle,"
         "occluded_mrays_last,closest_steps_first,closest_steps_middle,closest_steps_last,occluded_steps_first,"
-        "occluded_steps_middle,occluded_steps_last,sah_cost,blocks_written,nodes_visited,restructured,differences,"
+        "occluded_steps_middle,occluded_steps_last,sah_cost,leaves_written,nodes_visited,restructured,differences,"
         "hash");
     const bool done = bench(options, series);
     if (done && series) series->commit();

@@ -56,7 +56,7 @@ class CsvRow {
   }
   /// Nothing where there is nothing to say.
   CsvRow& empty() { return text(""); }
-  /// To standard output, at once: long benchmarks are watched.
+  /// To standard output, at once: long benchmarks are tracked.
   void print() const {
     std::puts(line_.c_str());
     std::fflush(stdout);

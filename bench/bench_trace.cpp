@@ -41,20 +41,20 @@ using dcem::bench::timed;
 struct Contender {
   std::string name;
   std::function<void()> build;
-  std::function<double(const std::vector<Ray<double>>&, std::vector<double>&, TraversalCounters&)> nearest_ms;
-  std::function<double(const std::vector<Ray<double>>&, std::vector<double>&, TraversalCounters&)> blocked_ms;
+  std::function<double(const std::vector<Ray<double>>&, std::vector<double>&, TraversalCounters&)> closest_ms;
+  std::function<double(const std::vector<Ray<double>>&, std::vector<double>&, TraversalCounters&)> occluded_ms;
   std::vector<double> build_ms{};
 };
 
 /// Gives a contender the two loops over its tree.
-template <typename Nearest, typename Blocked>
-void set_queries(Contender& contender, unsigned threads, Nearest nearest, Blocked blocked) {
-  contender.nearest_ms = [=](const auto& rays, auto& answers, auto& counters) {
-    return timed(rays, answers, counters, threads, nearest);
+template <typename ClosestHit, typename Occluded>
+void set_queries(Contender& contender, unsigned threads, ClosestHit closest_hit, Occluded occluded) {
+  contender.closest_ms = [=](const auto& rays, auto& answers, auto& counters) {
+    return timed(rays, answers, counters, threads, closest_hit);
   };
-  contender.blocked_ms = [=](const auto& rays, auto& answers, auto& counters) {
+  contender.occluded_ms = [=](const auto& rays, auto& answers, auto& counters) {
     return timed(rays, answers, counters, threads,
-                 [&](const Ray<double>& ray, TraversalCounters& sum) { return blocked(ray, sum) ? 1.0 : 0.0; });
+                 [&](const Ray<double>& ray, TraversalCounters& sum) { return occluded(ray, sum) ? 1.0 : 0.0; });
   };
 }
 
@@ -63,16 +63,16 @@ constexpr const char* rival_name = "embree robust";
 
 Contender wide_contender(const std::string& name, const dcem::Scene& scene, const dcem::TriangleView& mesh,
                          const dcem::WideSettings& settings) {
-  const auto tree = std::make_shared<dcem::WideTree>();
+  const auto tree = std::make_shared<dcem::WideBvh>();
   Contender contender{name, {}, {}, {}};
   contender.build = [=, &scene] { tree->build(mesh, scene.triangle_boxes(), settings); };
   set_queries(
       contender, settings.threads,
       [tree](const Ray<double>& ray, TraversalCounters& sum) {
-        const auto hit = tree->nearest(ray, &sum);
+        const auto hit = tree->closest_hit(ray, &sum);
         return hit ? hit->t : none;
       },
-      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->blocked(ray, &sum); });
+      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->occluded(ray, &sum); });
   return contender;
 }
 
@@ -81,29 +81,29 @@ Contender batch_contender(const dcem::Scene& scene, const dcem::TriangleView& me
   struct Tree {
     explicit Tree(unsigned threads) : batch(threads) {}
 
-    dcem::WideTree tree;
+    dcem::WideBvh tree;
     dcem::WideBatch batch;
-    std::vector<std::optional<dcem::WideHit>> hits;
-    std::vector<std::uint8_t> blocked;
+    std::vector<std::optional<dcem::TriangleHit>> hits;
+    std::vector<std::uint8_t> occluded;
   };
   const auto own = std::make_shared<Tree>(threads);
   Contender contender{"wide, batch", {}, {}, {}};
   contender.build = [=, &scene] { own->tree.build(mesh, scene.triangle_boxes()); };
-  contender.nearest_ms = [=](const auto& rays, auto& answers, auto& counters) {
+  contender.closest_ms = [=](const auto& rays, auto& answers, auto& counters) {
     own->hits.resize(rays.size());
     const Stopwatch watch;
-    own->batch.nearest(own->tree, rays, own->hits, {}, &counters);
+    own->batch.closest_hit(own->tree, rays, own->hits, {}, &counters);
     const double elapsed_ms = watch.elapsed_ms();
     std::transform(own->hits.begin(), own->hits.end(), answers.begin(),
                    [](const auto& hit) { return hit ? hit->t : none; });
     return elapsed_ms;
   };
-  contender.blocked_ms = [=](const auto& rays, auto& answers, auto& counters) {
-    own->blocked.resize(rays.size());
+  contender.occluded_ms = [=](const auto& rays, auto& answers, auto& counters) {
+    own->occluded.resize(rays.size());
     const Stopwatch watch;
-    own->batch.blocked(own->tree, rays, own->blocked, {}, &counters);
+    own->batch.occluded(own->tree, rays, own->occluded, {}, &counters);
     const double elapsed_ms = watch.elapsed_ms();
-    std::copy(own->blocked.begin(), own->blocked.end(), answers.begin());
+    std::copy(own->occluded.begin(), own->occluded.end(), answers.begin());
     return elapsed_ms;
   };
   return contender;
@@ -117,13 +117,13 @@ Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
       contender, threads,
       [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
         const dcem::WatertightRay exact(ray);
-        double nearest = none;
+        double closest_hit = none;
         const auto leaf = [&](std::uint32_t triangle, double& t_max) {
           const auto t = exact.intersect(scene.corners_m(triangle));
-          if (t && *t >= ray.t_min && *t <= t_max && *t < nearest) nearest = t_max = *t;
+          if (t && *t >= ray.t_min && *t <= t_max && *t < closest_hit) closest_hit = t_max = *t;
         };
         tree->closest(ray, leaf, &sum);
-        return nearest;
+        return closest_hit;
       },
       [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
         const dcem::WatertightRay exact(ray);
@@ -140,21 +140,21 @@ Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
 Contender embree_contender(const std::string& name, const dcem::TriangleView& mesh,
                            const dcem::bench::EmbreeSettings& settings) {
   const auto tree = std::make_shared<std::unique_ptr<dcem::bench::EmbreeScene>>();
-  const auto patches = std::make_shared<std::vector<dcem::WidePatch>>();
+  const auto quads = std::make_shared<std::vector<dcem::Quad>>();
   if (settings.quads) {
-    dcem::detail::PatchBuilder(mesh, dcem::WideSettings{}.pair_flatness)
-        .append(0, static_cast<std::uint32_t>(mesh.size()), *patches);
+    dcem::detail::QuadBuilder(mesh, dcem::WideSettings{}.pair_flatness)
+        .append(0, static_cast<std::uint32_t>(mesh.size()), *quads);
   }
   Contender contender{name, {}, {}, {}};
   contender.build = [=] {
     *tree = std::make_unique<dcem::bench::EmbreeScene>(settings);
-    (*tree)->attach((*tree)->add(mesh, *patches));
+    (*tree)->attach((*tree)->add(mesh, *quads));
     (*tree)->commit();
   };
   set_queries(
       contender, settings.threads,
-      [tree](const Ray<double>& ray, TraversalCounters&) { return static_cast<double>((*tree)->nearest(ray)); },
-      [tree](const Ray<double>& ray, TraversalCounters&) { return (*tree)->blocked(ray); });
+      [tree](const Ray<double>& ray, TraversalCounters&) { return static_cast<double>((*tree)->closest_hit(ray)); },
+      [tree](const Ray<double>& ray, TraversalCounters&) { return (*tree)->occluded(ray); });
   return contender;
 }
 
@@ -173,7 +173,7 @@ Contender sorted_embree_contender(const dcem::TriangleView& mesh, unsigned threa
       return elapsed_ms;
     };
   };
-  Contender contender{plain.name, plain.build, sorted(plain.nearest_ms), sorted(plain.blocked_ms)};
+  Contender contender{plain.name, plain.build, sorted(plain.closest_ms), sorted(plain.occluded_ms)};
   return contender;
 }
 #endif
@@ -265,7 +265,7 @@ struct Row {
 };
 
 bool compare(const std::string& scene_name, std::size_t triangles, std::vector<Contender>& all, const RayKind& kind,
-             bool nearest, std::size_t rounds, unsigned threads) {
+             bool closest_hit, std::size_t rounds, unsigned threads) {
   std::vector<Row> rows(all.size());
   for (std::size_t round = 0; round < rounds; ++round) {
     for (std::size_t turn = 0; turn < all.size(); ++turn) {
@@ -273,7 +273,8 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
       Row& row = rows[index];
       row.answers.resize(kind.rays.size());
       row.counters = {};
-      row.ms.push_back((nearest ? all[index].nearest_ms : all[index].blocked_ms)(kind.rays, row.answers, row.counters));
+      row.ms.push_back(
+          (closest_hit ? all[index].closest_ms : all[index].occluded_ms)(kind.rays, row.answers, row.counters));
     }
   }
   const double count = static_cast<double>(kind.rays.size());
@@ -292,7 +293,7 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
       hash = dcem::hash_values(hash, std::bit_cast<std::uint64_t>(answer));
     }
     dcem::bench::CsvRow csv;
-    csv.text(scene_name).count(triangles).count(threads).text(kind.name).text(nearest ? "closest" : "occluded");
+    csv.text(scene_name).count(triangles).count(threads).text(kind.name).text(closest_hit ? "closest" : "occluded");
     csv.text("\"" + all[index].name + "\"");
     rival_ms > 0.0 ? csv.number(rival_ms / ms, 3) : csv.empty();
     csv.number(count / ms / 1e3, 3);
@@ -301,7 +302,7 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
     csv.number(static_cast<double>(rows[index].counters.primitives_tested) / count, 2);
     csv.count(differences).hash(hash).print();
     std::fprintf(stderr, "%-14s %-8s %-8s %-22s %6.2f x  %7.2f Mrays/s  %zu differ\n", scene_name.c_str(),
-                 kind.name.c_str(), nearest ? "closest" : "occluded", all[index].name.c_str(), rival_ms / ms,
+                 kind.name.c_str(), closest_hit ? "closest" : "occluded", all[index].name.c_str(), rival_ms / ms,
                  count / ms / 1e3, differences);
   }
   return same;
@@ -339,8 +340,8 @@ bool bench(const Options& options, const std::string& file) {
                            (options.copies > 1 ? " x " + std::to_string(options.copies * options.copies) : "");
   bool same = true;
   for (const RayKind& kind : ray_kinds(mesh, bounds, options.rays)) {
-    for (const bool nearest : {true, false}) {
-      same = compare(name, mesh.size(), all, kind, nearest, options.rounds, options.threads()) && same;
+    for (const bool closest_hit : {true, false}) {
+      same = compare(name, mesh.size(), all, kind, closest_hit, options.rounds, options.threads()) && same;
     }
   }
   if (!same) std::fputs("hits differ\n", stderr);

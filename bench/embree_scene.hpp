@@ -55,21 +55,22 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// Adds triangles (or, with `quads`, the patches made of them) as one geometry.
-  RTCGeometry add(const TriangleView& mesh, std::span<const WidePatch> patches = {}) {
-    const bool quads = settings_.quads;
-    const RTCGeometry geometry = rtcNewGeometry(device_, quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
+  /// Adds triangles (or, with `quads`, the quads made of them) as one geometry.
+  RTCGeometry add(const TriangleView& mesh, std::span<const Quad> quads = {}) {
+    const bool as_quads = settings_.quads;
+    const RTCGeometry geometry =
+        rtcNewGeometry(device_, as_quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), mesh.vertices_m.size()));
     write_vertices(vertices, mesh.vertices_m);
-    const std::size_t corners = quads ? 4 : 3;
+    const std::size_t corners = as_quads ? 4 : 3;
     auto* indices = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
-                                corners * sizeof(std::uint32_t), quads ? patches.size() : mesh.size()));
-    if (quads) {
-      for (const WidePatch& patch : patches) {
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, as_quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
+                                corners * sizeof(std::uint32_t), as_quads ? quads.size() : mesh.size()));
+    if (as_quads) {
+      for (const Quad& quad : quads) {
         for (std::size_t corner = 0; corner < 4; ++corner) {
-          *indices++ = patch.corner[patch.is_pair() || corner < 3 ? corner : 2];
+          *indices++ = quad.corner[quad.is_pair() || corner < 3 ? corner : 2];
         }
       }
     } else {
@@ -91,8 +92,8 @@ class EmbreeScene {
     }
   }
 
-  /// Parameter of the nearest hit, infinity where there is none.
-  float nearest(const Ray<double>& ray) const {
+  /// Parameter of the closest_hit hit, infinity where there is none.
+  float closest_hit(const Ray<double>& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query{};
@@ -102,7 +103,7 @@ class EmbreeScene {
     rtcIntersect1(scene_, &context, &query);
     return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<float>::infinity() : query.ray.tfar;
   }
-  bool blocked(const Ray<double>& ray) const {
+  bool occluded(const Ray<double>& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay query = embree_ray(ray);

@@ -36,7 +36,7 @@ inline Vec3 direction_on_sphere(RandomStream& random) {
   return {level * std::cos(azimuth_rad), level * std::sin(azimuth_rad), z};
 }
 
-/// A town of plain blocks: 20 × 20 houses of random size and height along streets 12 m wide, on one ground.
+/// A town of plain leaves: 20 × 20 houses of random size and height along streets 12 m wide, on one ground.
 inline TriangleMesh generated_town(std::uint64_t seed) {
   constexpr int rows = 20;
   constexpr double pitch_m = 40.0, street_m = 12.0, side_m = rows * pitch_m;
@@ -88,7 +88,7 @@ inline Scene scene_with_cars(const TriangleMesh& scenery, std::size_t cars, doub
 
 /// What is sent through the scene in every frame, all from 0.5 to 3 m above the lowest point.
 struct RaySet {
-  std::vector<Ray<double>> bounces;     ///< in all directions, for the nearest hit
+  std::vector<Ray<double>> bounces;     ///< in all directions, for the closest_hit hit
   std::vector<Ray<double>> short_legs;  ///< segments of up to 30 m between two such points, for any hit
 };
 

@@ -14,7 +14,7 @@
 
 namespace dcem::bench {
 
-/// The nearest single-precision numbers: then trees that count in those get the same rays as the others.
+/// The closest_hit single-precision numbers: then trees that count in those get the same rays as the others.
 inline Vec3 as_float(const Vec3& point) {
   return {static_cast<double>(static_cast<float>(point.x)), static_cast<double>(static_cast<float>(point.y)),
           static_cast<double>(static_cast<float>(point.z))};

@@ -66,7 +66,7 @@ std::vector<dcem::Ray<double>> rays_over(const dcem::Aabb<double>& bounds, dcem:
 /// One policy, its tree, and what it has cost so far.
 struct Contender {
   std::string name;
-  dcem::BvhMaintainer<double> maintainer;
+  dcem::BvhUpdater<double> updater;
   dcem::Bvh<double> tree{};
   double update_s = 0.0;
   std::uint64_t nodes_refit = 0, nodes_rebuilt = 0, subtrees_rebuilt = 0;
@@ -75,7 +75,7 @@ struct Contender {
 
 void follow(Contender& contender, const dcem::Scene& scene, const std::vector<std::uint32_t>& moved) {
   const auto start = std::chrono::steady_clock::now();
-  const dcem::UpkeepReport report = contender.maintainer.update(contender.tree, moved, scene.triangle_boxes());
+  const dcem::TreeUpdateReport report = contender.updater.update(contender.tree, moved, scene.triangle_boxes());
   contender.update_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   contender.nodes_refit += report.nodes_refit;
   contender.nodes_rebuilt += report.nodes_rebuilt;
@@ -83,7 +83,7 @@ void follow(Contender& contender, const dcem::Scene& scene, const std::vector<st
   contender.sah_cost.push_back(report.sah_cost);
 }
 
-/// Distance to the nearest hit of every ray; infinite where it meets nothing.
+/// Distance to the closest_hit hit of every ray; infinite where it meets nothing.
 std::vector<double> trace(Contender& contender, const dcem::Scene& scene, const std::vector<dcem::Ray<double>>& rays) {
   dcem::TraversalCounters counters;
   std::vector<double> distances_m;
@@ -137,9 +137,9 @@ void draw(const std::vector<Contender>& contenders) {
 }
 
 Contender contender(const char* name, dcem::TreePolicy policy) {
-  dcem::UpkeepSettings settings;
+  dcem::TreeUpdateSettings settings;
   settings.policy = policy;
-  return {name, dcem::BvhMaintainer<double>(settings)};
+  return {name, dcem::BvhUpdater<double>(settings)};
 }
 
 }  // namespace
@@ -151,7 +151,7 @@ int main() {
   contenders.push_back(contender("rebuild always", dcem::TreePolicy::rebuild_always));
   contenders.push_back(contender("refit only", dcem::TreePolicy::refit_only));
   contenders.push_back(contender("adaptive", dcem::TreePolicy::adaptive));
-  for (Contender& each : contenders) each.tree.build_grouped(scene.triangle_boxes(), scene.first_triangles());
+  for (Contender& each : contenders) each.tree.build_objects(scene.triangle_boxes(), scene.first_triangles());
   const std::vector<dcem::Ray<double>> rays = rays_over(contenders.front().tree.bounds(), random);
   for (std::size_t frame = 0; frame < frame_count; ++frame) {
     std::vector<std::uint32_t> moved;

@@ -29,14 +29,14 @@ class BruteForce {
 
   void build(Boxes boxes, const SahSettings& settings = {}) {
     const std::uint32_t whole = 0;
-    build_grouped(boxes, {&whole, 1}, settings);
+    build_objects(boxes, {&whole, 1}, settings);
   }
-  void build_grouped(Boxes boxes, std::span<const std::uint32_t> group_first, const SahSettings& settings = {}) {
+  void build_objects(Boxes boxes, std::span<const std::uint32_t> object_first, const SahSettings& settings = {}) {
     require_valid_settings(settings);
     require_valid_boxes(boxes);
-    require_valid_groups(group_first, boxes.size());
+    require_valid_objects(object_first, boxes.size());
     settings_ = settings;
-    group_count_ = group_first.size();
+    object_count_ = object_first.size();
     boxes_.assign(boxes.begin(), boxes.end());
     for (Box& box : boxes_) box = canonical_box(box);
   }
@@ -103,9 +103,9 @@ class BruteForce {
     for (const Box& box : boxes_) bounds.extend(box);
     return bounds;
   }
-  std::size_t group_count() const { return group_count_; }
-  std::uint32_t group_root(std::size_t group) const {
-    if (group >= group_count_) throw std::out_of_range("no such group");
+  std::size_t object_count() const { return object_count_; }
+  std::uint32_t object_root(std::size_t object) const {
+    if (object >= object_count_) throw std::out_of_range("no such object");
     return no_node;
   }
   std::span<const BvhNode<Scalar>> nodes() const { return {}; }
@@ -146,7 +146,7 @@ class BruteForce {
 
   std::vector<Box> boxes_;
   SahSettings settings_;
-  std::size_t group_count_ = 0;
+  std::size_t object_count_ = 0;
 };
 
 }  // namespace dcem

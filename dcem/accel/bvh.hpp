@@ -45,23 +45,25 @@ class Bvh {
   /// A new tree over all boxes; primitive i is box i.
   void build(Boxes boxes, const SahSettings& settings = {});
 
-  /// The same, where primitives [group_first[i], group_first[i+1]) are group i, such as one object, and the last group
-  /// ends with the boxes. Every group owns a subtree; a tree over the groups joins them. The first group starts at 0.
-  void build_grouped(Boxes boxes, std::span<const std::uint32_t> group_first, const SahSettings& settings = {});
-  /// Builds everything anew, with the groups and settings of the last build.
+  /// The same, where primitives [object_first[i], object_first[i+1]) are object i, such as one object, and the last
+  /// object ends with the boxes. Every object owns a subtree; a tree over the objects joins them. The first object
+  /// starts at 0.
+  void build_objects(Boxes boxes, std::span<const std::uint32_t> object_first, const SahSettings& settings = {});
+  /// Builds everything anew, with the objects and settings of the last build.
   void rebuild(Boxes boxes);
 
   /// Builds the tree below one node anew over the primitives it holds, with their present boxes. Nodes elsewhere keep
-  /// their slots and contents, except that ancestors are refitted if the node's box has become another. Above group
-  /// roots, groups stay groups.
+  /// their slots and contents, except that ancestors are refitted if the node's box has become another. Above object
+  /// roots, objects stay objects.
   void rebuild_subtree(std::uint32_t node, Boxes boxes);
 
-  /// Builds the nodes below one node anew, but only those of its own layer: above group roots the tree over the groups,
-  /// each group's own tree staying as it is and only hanging elsewhere; inside a group the same as rebuild_subtree.
-  void rebuild_layer(std::uint32_t node, Boxes boxes) {
+  /// Builds the nodes below one node anew, but only those of its own level: above object roots the tree over the
+  /// objects, each object's own tree staying as it is and only hanging elsewhere; inside an object the same as
+  /// rebuild_subtree.
+  void rebuild_level(std::uint32_t node, Boxes boxes) {
     require_boxes(boxes);
     require_node(node);
-    lies_in_group(node) ? rebuild_subtree(node, boxes) : rebuild_above_groups(node);
+    lies_in_object(node) ? rebuild_subtree(node, boxes) : rebuild_above_objects(node);
   }
 
   // Following motion.
@@ -75,10 +77,10 @@ class Bvh {
 
   // Queries. `counters`, when given, is added to.
 
-  /// The nearest hit: calls `leaf(primitive, t_max)` for primitives whose box the ray meets up to t_max, which starts
-  /// as the ray's and which the callback lowers to the t of each nearer hit. Near boxes come first, a box that only
-  /// touches t_max is still reported. The order among equals is open: a callback that wants one answer on a tie must
-  /// choose it by itself at equal t, for instance the lower primitive.
+  /// The closest_hit hit: calls `leaf(primitive, t_max)` for primitives whose box the ray meets up to t_max, which
+  /// starts as the ray's and which the callback lowers to the t of each nearer hit. Near boxes come first, a box that
+  /// only touches t_max is still reported. The order among equals is open: a callback that wants one answer on a tie
+  /// must choose it by itself at equal t, for instance the lower primitive.
   template <class Leaf>
   void closest(const Ray<Scalar>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
     const TraversalCounters spent = detail::walk_closest(arrays_, ray, leaf);
@@ -122,23 +124,23 @@ class Bvh {
   std::size_t primitive_count() const { return arrays_.order.size(); }
   Box bounds() const { return arrays_.empty() ? Box{} : arrays_.nodes[0].box; }
 
-  /// Root of the subtree that a group owns, no_node for an empty group. Valid until the next build or rebuild.
-  std::uint32_t group_root(std::size_t group) const { return group_root_.at(group); }
-  std::size_t group_count() const { return group_root_.size(); }
+  /// Root of the subtree that an object owns, no_node for an empty object. Valid until the next build or rebuild.
+  std::uint32_t object_root(std::size_t object) const { return object_root_.at(object); }
+  std::size_t object_count() const { return object_root_.size(); }
 
-  /// Whether a node belongs to the tree of one group; otherwise it lies above group roots.
-  bool lies_in_group(std::uint32_t node) const;
+  /// Whether a node belongs to the tree of one object; otherwise it lies above object roots.
+  bool lies_in_object(std::uint32_t node) const;
 
-  /// Calls `visit(slot)` for a node and for every node below it of the same layer, parents before children.
+  /// Calls `visit(slot)` for a node and for every node below it of the same level, parents before children.
   template <class Visit>
-  void for_each_in_layer(std::uint32_t node, Visit&& visit) const {
-    std::vector<std::uint32_t> layer{node};
-    for (std::size_t index = 0; index < layer.size(); ++index) {
-      const BvhNode<Scalar> held = arrays_.nodes[layer[index]];
-      visit(layer[index]);
+  void for_each_in_level(std::uint32_t node, Visit&& visit) const {
+    std::vector<std::uint32_t> level{node};
+    for (std::size_t index = 0; index < level.size(); ++index) {
+      const BvhNode<Scalar> held = arrays_.nodes[level[index]];
+      visit(level[index]);
       if (held.is_leaf()) continue;
       for (const std::uint32_t child : {held.left(), held.right()}) {
-        if (!wear_[child].is_group_root) layer.push_back(child);
+        if (!degradation_[child].is_object_root) level.push_back(child);
       }
     }
   }
@@ -148,16 +150,17 @@ class Bvh {
   const BvhArrays<Scalar>& arrays() const { return arrays_; }
   const SahSettings& settings() const { return settings_; }
 
-  /// Levels from the root to the deepest leaf: 0 without primitives, 1 for a single leaf. Walks the whole tree.
+  /// Depths from the root to the deepest leaf: 0 without primitives, 1 for a single leaf. Walks the whole tree.
   std::uint32_t depth() const;
 
   /// Expected cost of a long random ray by the surface-area heuristic, no unit; from a sum that every edit keeps.
   double sah_cost() const {
-    return arrays_.empty() ? 0.0 : sah_from_area(wear_[0].weighted_area_m2, static_cast<double>(bounds().half_area()));
+    return arrays_.empty() ? 0.0
+                           : sah_from_area(degradation_[0].weighted_area_m2, static_cast<double>(bounds().half_area()));
   }
   BvhQuality quality() const { return {sah_cost(), sah_at_build_}; }
   /// What is known of the subtree below a node: kept by every edit.
-  const SubtreeWear& wear(std::uint32_t node) const { return wear_.at(node); }
+  const SubtreeDegradation& degradation(std::uint32_t node) const { return degradation_.at(node); }
   /// The nodes above the primitives of the last refit, children before parents.
   std::span<const std::uint32_t> last_refit() const { return last_refit_; }
 
@@ -181,28 +184,29 @@ class Bvh {
   void require_boxes(Boxes boxes) const {
     if (boxes.size() != primitive_count()) throw std::invalid_argument("one box per primitive of the tree is needed");
   }
-  std::uint32_t group_at(std::size_t position) const;
+  std::uint32_t object_at(std::size_t position) const;
   std::uint32_t level_of(std::uint32_t node, std::uint32_t above) const;
-  void grow_groups(std::uint32_t slot, std::span<const std::uint32_t> groups, Boxes boxes, std::uint32_t levels);
-  void grow_range(std::uint32_t slot, std::size_t begin, std::size_t end, Boxes boxes, std::uint32_t levels);
-  void regrow(std::uint32_t node, Boxes boxes);
-  void rebuild_above_groups(std::uint32_t node);
+  void grow_objects(std::uint32_t slot, std::span<const std::uint32_t> objects, Boxes boxes, std::uint32_t depths);
+  void grow_range(std::uint32_t slot, std::size_t begin, std::size_t end, Boxes boxes, std::uint32_t depths);
+  void rebuild_below(std::uint32_t node, Boxes boxes);
+  void rebuild_above_objects(std::uint32_t node);
   std::uint32_t first_position(std::uint32_t node) const;
-  void hang_group(std::uint32_t slot, std::uint32_t group, const BvhNode<Scalar>& root, const SubtreeWear& wear);
-  void begin_wear_below(std::uint32_t node);
-  void begin_wear_above_groups(std::uint32_t node);
-  void refresh_wear_above(std::uint32_t node);
+  void insert_object(std::uint32_t slot, std::uint32_t object, const BvhNode<Scalar>& root,
+                     const SubtreeDegradation& degradation);
+  void begin_degradation_below(std::uint32_t node);
+  void begin_degradation_above_objects(std::uint32_t node);
+  void refresh_degradation_above(std::uint32_t node);
   RefitReport sweep_dirty();
   bool tighten(std::uint32_t slot);
   bool take_over(std::uint32_t primitive, const Box& box);
-  std::string check_groups() const;
-  std::string check_wear() const;
+  std::string check_objects() const;
+  std::string check_degradation() const;
 
   BvhArrays<Scalar> arrays_;
   SahSettings settings_;
-  std::vector<std::uint32_t> group_first_;  ///< positions; one more entry than groups
-  std::vector<std::uint32_t> group_root_;
-  std::vector<SubtreeWear> wear_;  ///< per slot
+  std::vector<std::uint32_t> object_first_;  ///< positions; one more entry than objects
+  std::vector<std::uint32_t> object_root_;
+  std::vector<SubtreeDegradation> degradation_;  ///< per slot
   double sah_at_build_ = 0.0;
   DirtyPaths dirty_;
   std::vector<std::uint32_t> last_refit_;

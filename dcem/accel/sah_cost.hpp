@@ -39,13 +39,13 @@ double subtree_sah_cost(std::span<const BvhNode<Scalar>> nodes, std::uint32_t ro
   return sah_from_area(weighted_area(nodes, root, settings), static_cast<double>(nodes[root].box.half_area()));
 }
 
-/// How far refits have worn a tree down since it was built.
+/// How far refits have degraded a tree down since it was built.
 struct BvhQuality {
   double sah_now = 0.0;       ///< SAH cost, no unit
   double sah_at_build = 0.0;  ///< SAH cost after the last whole build, no unit
 
-  /// 1 for a tree as good as new, larger when worn; 1 for a tree without surface, infinite for one that had none when
-  /// it was built.
+  /// 1 for a tree as good as new, larger when degraded; 1 for a tree without surface, infinite for one that had none
+  /// when it was built.
   double ratio() const {
     if (sah_at_build > 0.0) return sah_now / sah_at_build;
     return sah_now > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;

@@ -36,36 +36,36 @@ namespace detail {
 struct WideRotation;
 }  // namespace detail
 
-/// The nearest hit of a ray.
-struct WideHit {
+/// The closest_hit hit of a ray.
+struct TriangleHit {
   double t = 0.0;  ///< where the ray meets the plane of the triangle
-  std::uint32_t triangle = WidePatch::no_triangle;
+  std::uint32_t triangle = Quad::no_triangle;
 };
 
 /// What following a motion took.
 struct WideRefitReport {
-  std::size_t blocks_written = 0;
+  std::size_t leaves_written = 0;
   std::size_t nodes_visited = 0;
 };
 
 /// Boxes and triangles are passed in full to every edit, indexed by triangle; a triangle with an empty box is not
 /// there, any other box is that around its corners. Edits throw std::invalid_argument, before anything changes, for bad
 /// boxes (see Bvh) and numbers out of range. Queries may run on several threads at once, edits may not.
-class WideTree {
+class WideBvh {
  public:
   using Boxes = std::span<const Aabb<double>>;
 
   // Building.
 
-  /// A new tree. Triangles [group_first[i], group_first[i + 1]) are group i, the last group ends with the triangles.
-  /// Groups of up to WideSettings::unit_limit patches own a subtree.
-  void build_grouped(const TriangleView& mesh, Boxes boxes, std::span<const std::uint32_t> group_first,
+  /// A new tree. Triangles [object_first[i], object_first[i + 1]) are object i, the last object ends with the
+  /// triangles. Groups of up to WideSettings::object_subtree_limit quads own a subtree.
+  void build_objects(const TriangleView& mesh, Boxes boxes, std::span<const std::uint32_t> object_first,
                      const WideSettings& settings = {});
   void build(const TriangleView& mesh, Boxes boxes, const WideSettings& settings = {}) {
     const std::uint32_t whole = 0;
-    build_grouped(mesh, boxes, {&whole, 1}, settings);
+    build_objects(mesh, boxes, {&whole, 1}, settings);
   }
-  /// Builds everything anew, with the groups, the patches and the settings of the last build; the triangles must have
+  /// Builds everything anew, with the objects, the quads and the settings of the last build; the triangles must have
   /// the vertices that they had then.
   void rebuild(const TriangleView& mesh, Boxes boxes);
 
@@ -76,20 +76,20 @@ class WideTree {
   /// every triangle of which a corner has moved. Allocates nothing once the lists have grown.
   WideRefitReport refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes);
 
-  /// Takes units out of the tree that the last refit moved, and hangs each where it costs least (branch and bound over
-  /// Σ cost · surface: Bittner, Hapala, Havran, "Fast insertion-based optimization of bounding volume hierarchies",
-  /// Computer Graphics Forum 2013): those that make the node they hang in larger than `growth_limit` times what it was
-  /// when they came there, and of all one in `turn_length`, in turn (0: none). Growth alone misses what has become a
-  /// bad place little by little, or by what others do. Returns how many were moved.
+  /// Takes objects out of the tree that the last refit moved, and hangs each where it costs least (branch and bound
+  /// over Σ cost · surface: Bittner, Hapala, Havran, "Fast insertion-based optimization of bounding volume
+  /// hierarchies", Computer Graphics Forum 2013): those that make the node they hang in larger than `growth_limit`
+  /// times what it was when they came there, and of all one in `turn_length`, in turn (0: none). Growth alone misses
+  /// what has become a bad place little by little, or by what others do. Returns how many were moved.
   std::size_t reinsert_moved(double growth_limit, std::uint32_t turn_length = default_turn_length);
   static constexpr std::uint32_t default_turn_length = 50;
 
-  /// Builds what hangs below an inner node anew, in place, from the boxes as they are now: the node's part of its layer
-  /// (wide_layer.hpp), of which blocks and units are the leaves; node 0 is all but those. Where the result would lie
+  /// Builds what hangs below an inner node anew, in place, from the boxes as they are now: the node's part of its level
+  /// (wide levels.hpp), of which leaves and objects are the leaves; node 0 is all but those. Where the result would lie
   /// too deep, more is built anew, from a node above on. Returns how many nodes were written: none where Σ cost ·
   /// surface below the node would not fall below `wanted_share` of what it is (above 0; infinity: whatever it will be);
-  /// the node's wear is then counted from now on.
-  std::size_t regrow(std::uint32_t node, double wanted_share = std::numeric_limits<double>::infinity());
+  /// the node's degradation is then counted from now on.
+  std::size_t rebuild_subtree(std::uint32_t node, double wanted_share = std::numeric_limits<double>::infinity());
 
   /// Exchanges entries around the nodes that edits have touched since the last call, where Σ cost · surface falls (see
   /// wide_rotation.hpp), up to so many a node. Needs `watch`. Returns how many entries changed their place.
@@ -97,18 +97,18 @@ class WideTree {
 
   // Wear (see wide_wear.hpp).
 
-  /// Says what is noted from now on. What is watched anew counts as built now.
-  void watch(const WideWatch& watched) { wear_.watch(watched, arrays_); }
-  const WideWatch& watched() const { return wear_.watched(); }
+  /// Says what is noted from now on. What is tracked anew counts as built now.
+  void watch(const TrackedMeasures& tracked) { degradation_.watch(tracked, arrays_); }
+  const TrackedMeasures& tracked() const { return degradation_.tracked(); }
   /// Brings the measures up to date along the paths that edits have touched. Returns the nodes on them, children before
   /// parents; valid until the next call.
   std::span<const std::uint32_t> measure() {
-    wear_.refresh(arrays_);
-    return wear_.refreshed();
+    degradation_.refresh(arrays_);
+    return degradation_.refreshed();
   }
-  /// Per node, as of the last `measure` or `regrow`; empty where no measure is watched. Meaningless for nodes that are
-  /// not in use.
-  std::span<const WideWear> wear() const { return wear_.all(); }
+  /// Per node, as of the last `measure` or `rebuild_subtree`; empty where no measure is tracked. Meaningless for nodes
+  /// that are not in use.
+  std::span<const Degradation> degradation() const { return degradation_.all(); }
 
   // Queries. `counters`, when given, is added to.
 
@@ -117,24 +117,24 @@ class WideTree {
     bool operator()(std::uint32_t) const { return true; }
   };
 
-  /// The nearest hit from t_min to t_max among the triangles for which `considers(triangle) -> bool` holds, which must
-  /// be the same for all triangles of one surface (TriangleView::surface_of_triangle). Of equally near ones the one
-  /// with the smallest number. t comes from the plane of the triangle, whatever decided that the ray meets it; so it is
-  /// the same for every tree over the same triangles.
+  /// The closest_hit hit from t_min to t_max among the triangles for which `considers(triangle) -> bool` holds, which
+  /// must be the same for all triangles of one surface (TriangleView::surface_of_triangle). Of equally near ones the
+  /// one with the smallest number. t comes from the plane of the triangle, whatever decided that the ray meets it; so
+  /// it is the same for every tree over the same triangles.
   template <typename Considers>
-  std::optional<WideHit> nearest(const Ray<double>& ray, Considers&& considers,
-                                 TraversalCounters* counters = nullptr) const;
-  std::optional<WideHit> nearest(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
-    return nearest(ray, EveryTriangle{}, counters);
+  std::optional<TriangleHit> closest_hit(const Ray<double>& ray, Considers&& considers,
+                                         TraversalCounters* counters = nullptr) const;
+  std::optional<TriangleHit> closest_hit(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
+    return closest_hit(ray, EveryTriangle{}, counters);
   }
 
   /// Whether a triangle for which `considers(triangle) -> bool` holds is met from t_min to t_max. `first_try`: asked
   /// before the tree, for instance what was in the way a moment ago.
   template <typename Considers>
-  bool blocked(const Ray<double>& ray, Considers&& considers, TraversalCounters* counters = nullptr,
-               std::optional<std::uint32_t> first_try = {}) const;
-  bool blocked(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
-    return blocked(ray, EveryTriangle{}, counters);
+  bool occluded(const Ray<double>& ray, Considers&& considers, TraversalCounters* counters = nullptr,
+                std::optional<std::uint32_t> first_try = {}) const;
+  bool occluded(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
+    return occluded(ray, EveryTriangle{}, counters);
   }
 
   /// As Bvh::closest: calls `leaf(triangle, t_max)`, near ones first, for all triangles that the ray may meet.
@@ -164,7 +164,7 @@ class WideTree {
   // Looking inside.
 
   std::size_t primitive_count() const { return arrays_.triangles.size(); }
-  std::size_t group_count() const { return group_first_.size(); }
+  std::size_t object_count() const { return object_first_.size(); }
   Aabb<double> bounds() const { return in_world(root_box()); }
   const WideArrays& arrays() const { return arrays_; }
   const WideSettings& settings() const { return settings_; }
@@ -180,47 +180,47 @@ class WideTree {
   std::string validate(Boxes boxes) const;
 
  private:
-  using Hits = WideRay::PatchHits;
+  using Hits = WideRay::QuadHits;
   static bool has(std::uint32_t lanes, std::uint32_t lane) { return (lanes >> lane & 1U) != 0; }
 
-  detail::WideView view() const { return {arrays_.nodes, arrays_.blocks, settings_.fetch_ahead}; }
+  detail::WideView view() const { return {arrays_.nodes, arrays_.leaves, settings_.fetch_ahead}; }
   Aabb<float> root_box() const { return arrays_.nodes.empty() ? Aabb<float>{} : arrays_.nodes[0].box(); }
   Aabb<double> in_world(const Aabb<float>& box) const;
 
   static bool has_direction(const Ray<double>& ray);
-  using Known = PatchKnowledge;
-  static const PatchPlane* plane_met(const PatchPlanes& planes, const Ray<double>& ray, Known known);
-  std::optional<WideHit> hit_on(std::uint32_t patch, const Ray<double>& ray) const;
-  std::span<const PatchPlane> halves_to_ask(std::uint32_t patch, Known known) const;
+  using Known = QuadKnowledge;
+  static const TrianglePlane* plane_met(const QuadPlanes& planes, const Ray<double>& ray, Known known);
+  std::optional<TriangleHit> hit_on(std::uint32_t quad, const Ray<double>& ray) const;
+  std::span<const TrianglePlane> halves_to_ask(std::uint32_t quad, Known known) const;
   template <typename Visit>
-  bool for_each_present_patch(Visit&& visit) const;
+  bool for_each_present_quad(Visit&& visit) const;
   template <typename Considers>
-  bool is_considered(std::uint32_t patch, Considers& considers) const;
-  void offer(std::uint32_t patch, const Ray<double>& ray, Known known, std::optional<WideHit>& best) const;
+  bool is_considered(std::uint32_t quad, Considers& considers) const;
+  void offer(std::uint32_t quad, const Ray<double>& ray, Known known, std::optional<TriangleHit>& best) const;
 
   template <typename Considers>
-  std::optional<WideHit> nearest_among(const Ray<double>& ray, const WideRay& wide, Considers& considers,
-                                       TraversalCounters& counters) const;
+  std::optional<TriangleHit> closest_among(const Ray<double>& ray, const WideRay& wide, Considers& considers,
+                                           TraversalCounters& counters) const;
   template <typename Considers>
-  std::optional<WideHit> nearest_of_all(const Ray<double>& ray, Considers& considers,
-                                        TraversalCounters& counters) const;
+  std::optional<TriangleHit> closest_of_all(const Ray<double>& ray, Considers& considers,
+                                            TraversalCounters& counters) const;
 
   template <typename KeepEntry, typename Keep, typename Leaf>
   void visit_where(KeepEntry&& keep_entry, Keep&& keep_box, Leaf& leaf, TraversalCounters* counters) const;
 
   static void require_input(const TriangleView& mesh, Boxes boxes);
   static void require_corners(const TriangleView& mesh, std::uint32_t triangle);
-  void plant(const TriangleView& mesh, Boxes boxes);
+  void build_all(const TriangleView& mesh, Boxes boxes);
   void look_at_boxes(std::span<const std::uint32_t> moved, Boxes boxes);
   void mark_dirty(std::span<const std::uint32_t> moved);
-  void note_moved_unit(std::uint32_t group);
-  bool take_out_and_hang(std::uint32_t group);
-  void take_out(WidePlace place);
+  void note_moved_object(std::uint32_t object);
+  bool reinsert(std::uint32_t object);
+  void detach(NodeLane place);
   /// A node where something might hang, and what the nodes down to it would grow by.
   struct Branch {
     double cost_m2;
     std::uint32_t node;
-    std::uint32_t level;                                                           ///< of the node, 1 for the root
+    std::uint32_t depth;                                                           ///< of the node, 1 for the root
     bool operator<(const Branch& other) const { return cost_m2 > other.cost_m2; }  // the cheapest on top
   };
   struct Spot {
@@ -231,31 +231,32 @@ class WideTree {
   };
   Spot cheapest_spot(const Aabb<float>& box);
   void offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best);
-  void hang_at(WideChild child, const Aabb<float>& box, const Spot& spot);
-  void fell(std::uint32_t node);
-  std::size_t plant_planned(std::uint32_t node, const detail::WidePlan& plan, std::uint32_t slot);
-  std::size_t hang_planned(WidePlace place, const detail::WidePlan& plan, std::uint32_t slot);
-  void remember_hung(std::uint32_t node);
+  void attach_at(WideChild child, const Aabb<float>& box, const Spot& spot);
+  void release_below(std::uint32_t node);
+  std::size_t build_planned(std::uint32_t node, const detail::WidePlan& plan, std::uint32_t slot);
+  std::size_t attach_planned(NodeLane place, const detail::WidePlan& plan, std::uint32_t slot);
+  void remember_inserted(std::uint32_t node);
   void sum_anew();
-  std::size_t rotate_below(std::uint32_t node, std::uint32_t level, std::uint32_t most_per_node);
+  std::size_t rotate_below(std::uint32_t node, std::uint32_t depth, std::uint32_t most_per_node);
   void carry_out(const detail::WideRotation& rotation, std::uint32_t node);
-  void remember_hung(WideChild child);
+  void remember_inserted(WideChild child);
 
   WideArrays arrays_;
   WideSettings settings_;
-  std::vector<std::uint32_t> group_first_;
-  std::vector<WidePatch> patches_;          ///< by group
-  std::vector<std::uint32_t> first_patch_;  ///< one more entry than groups
+  std::vector<std::uint32_t> object_first_;
+  std::vector<Quad> quads_;                ///< by object
+  std::vector<std::uint32_t> first_quad_;  ///< one more entry than objects
   double sah_at_build_ = 0.0;
 
-  std::vector<std::uint32_t> dirty_blocks_;
-  std::vector<char> block_is_dirty_, is_there_now_;
-  std::vector<std::uint32_t> moved_units_;
-  std::vector<char> unit_is_moved_;
-  std::vector<float> area_when_hung_m2_;  ///< per group: half surface of the node around, when the unit came there
+  std::vector<std::uint32_t> dirty_leaves_;
+  std::vector<char> leaf_is_dirty_, is_there_now_;
+  std::vector<std::uint32_t> moved_objects_;
+  std::vector<char> object_is_moved_;
+  std::vector<float>
+      area_when_inserted_m2_;  ///< per object: half surface of the node around, when the object came there
   std::vector<Branch> branches_;
   std::size_t next_turn_ = 0;
-  detail::WideWearLog wear_;
+  detail::DegradationLog degradation_;
   detail::WidePlan plan_;  ///< kept for its memory
 };
 

@@ -34,7 +34,7 @@ struct FrameFigures {
   std::size_t paths = 0;
   double update_time_s = 0.0;  ///< wall-clock time to move scene and tree
   double solve_time_s = 0.0;   ///< wall-clock time to find paths and compute fields
-  UpkeepReport tree;
+  TreeUpdateReport tree;
   CacheCounters cache;
   WorkCounters work;
 };

@@ -77,7 +77,7 @@ struct SimulationSettings {
   double frequency_hz = 30e9;
   ItuSettings itu{};  ///< revision of the material tables, and whether they may be extrapolated
   PropagationSettings propagation{};
-  UpkeepSettings upkeep{};     ///< how the tree is kept while the scene moves. Never changes a result
+  TreeUpdateSettings tree_update{};     ///< how the tree is kept while the scene moves. Never changes a result
   unsigned threads = 0;        ///< 0: all cores. Never changes a result
   bool share_map_work = true;  ///< work that is the same at all points of a map is done once. Never changes a result
 };
@@ -125,7 +125,7 @@ inline void validate(const SimulationSettings& settings) {
   check(steady_rays(propagation) >= 1 && steady_rays(propagation) <= 100'000'000, "rays_steady: expected 1 to 1e8");
   if (propagation.atmosphere) validate(*propagation.atmosphere);
   validate(propagation.diffuse);
-  validate(settings.upkeep);
+  validate(settings.tree_update);
 }
 
 }  // namespace dcem

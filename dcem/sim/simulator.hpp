@@ -28,8 +28,8 @@
 namespace dcem {
 
 /// Owns the scene and the tree over it. `Surface` says how surfaces reflect and transmit: the scene's materials, or a
-/// model of the caller's own. `Tree` is `WideTree`, `Bvh<double>`, or `BruteForce<double>` to check them.
-template <SurfaceModel Surface = MaterialTable, typename Tree = WideTree>
+/// model of the caller's own. `Tree` is `WideBvh`, `Bvh<double>`, or `BruteForce<double>` to check them.
+template <SurfaceModel Surface = MaterialTable, typename Tree = WideBvh>
 class Simulator {
  public:
   /// Throws std::invalid_argument where a setting is out of range or a material is not tabled at the frequency.
@@ -59,7 +59,7 @@ class Simulator {
   bool is_present(const Device& device) const { return scene_.device_state(device, frame_).present; }
 
   /// Moves scene and tree to a frame without solving anything.
-  UpkeepReport move_to(const Frame& frame);
+  TreeUpdateReport move_to(const Frame& frame);
   /// One path on its own, in the current frame: over `sequence`, counted from the receiver, between a transmitter and a
   /// receiver of the scene. Nothing where there is no such path or an end is absent.
   std::optional<PathContribution> solve_path(std::size_t transmitter, std::size_t receiver,
@@ -102,7 +102,7 @@ class Simulator {
     CacheCounters cache;
   };
 
-  UpkeepReport update_tree(const ChangeSet& changes);
+  TreeUpdateReport update_tree(const ChangeSet& changes);
   LinkEnd link_end(const DeviceState& state, TraversalCounters& counters) const {
     return make_link_end(Tracer(scene_, tree_), state.position_m, state.ignored_body, counters);
   }
@@ -140,7 +140,7 @@ class Simulator {
   Surface surface_;
   Tree tree_;
   MediumLoss medium_;
-  MaintainerOf<Tree> maintainer_;
+  UpdaterOf<Tree> updater_;
   Discovery discovery_;
   CacheMode cache_;
   std::vector<std::uint32_t> moved_;  ///< triangles that the tree has still to hear of
@@ -156,7 +156,7 @@ Simulator<Surface, Tree>::Simulator(Scene scene, SimulationSettings settings, Su
     : scene_(std::move(scene)),
       settings_(std::move(settings)),
       surface_(std::move(surface)),
-      maintainer_(settings_.upkeep) {
+      updater_(settings_.tree_update) {
   validate(settings_);
   medium_ = MediumLoss(settings_.propagation.atmosphere, scene_.materials(), settings_.frequency_hz);
   discovery_ = resolve_discovery(settings_.propagation, scene_);

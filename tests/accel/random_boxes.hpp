@@ -82,7 +82,7 @@ Scalar meet_square(const dcem::Aabb<Scalar>& box, int axis, const dcem::Ray<Scal
   return t >= ray.t_min && t <= ray.t_max ? t : miss;
 }
 
-/// Nearest square over all boxes and, on a tie, the lowest primitive: through any tree with the query `closest`.
+/// ClosestHit square over all boxes and, on a tie, the lowest primitive: through any tree with the query `closest`.
 template <class Scalar>
 struct NearestSquare {
   Scalar t = std::numeric_limits<Scalar>::infinity();
@@ -92,14 +92,14 @@ struct NearestSquare {
 
 template <class Scalar, class Tree>
 NearestSquare<Scalar> nearest_square(const Tree& tree, const Boxes<Scalar>& boxes, const dcem::Ray<Scalar>& ray) {
-  NearestSquare<Scalar> nearest;
+  NearestSquare<Scalar> closest_hit;
   tree.closest(ray, [&](std::uint32_t primitive, Scalar& t_max) {
     const Scalar t = meet_square(boxes[primitive], static_cast<int>(primitive % 3), ray);
-    if (!(t < nearest.t || (t == nearest.t && primitive < nearest.primitive))) return;
-    nearest = {t, primitive};
+    if (!(t < closest_hit.t || (t == closest_hit.t && primitive < closest_hit.primitive))) return;
+    closest_hit = {t, primitive};
     t_max = t;
   });
-  return nearest;
+  return closest_hit;
 }
 
 /// The primitives that a query reports, in ascending order; a primitive reported twice stands there twice.

@@ -66,7 +66,7 @@ void shift(Aabb<Scalar>& box, const Vector3<Scalar>& by) {
 }
 
 /// Groups of 0 … 60 primitives over all of `count`.
-std::vector<std::uint32_t> random_groups(std::size_t count, std::uint64_t seed) {
+std::vector<std::uint32_t> random_objects(std::size_t count, std::uint64_t seed) {
   RandomStream random(seed);
   std::vector<std::uint32_t> first;
   for (std::size_t next = 0; next < count; next += random.next() % 4 == 0 ? 0 : random.next() % 60) {
@@ -83,7 +83,7 @@ TEST_CASE_TEMPLATE("every query gives the oracle's answer", Scalar, float, doubl
   }
 }
 
-TEST_CASE_TEMPLATE("balls: the nearest distance is the oracle's", Scalar, float, double) {
+TEST_CASE_TEMPLATE("balls: the closest_hit distance is the oracle's", Scalar, float, double) {
   const Pair<Scalar> pair(dcem_test::random_boxes<Scalar>(600, 31));
   // The ball inside a box, with the smallest half side as radius, shrunk by more than the rounding of its intersection.
   const auto distance_to = [&](const auto& tree, const Ray<Scalar>& ray) {
@@ -175,8 +175,8 @@ TEST_CASE("a tree of nothing answers nothing") {
   CHECK(tree.refit_all({}) == RefitReport{});
   CHECK_FALSE(tree.any({Vec3(0), Vec3(1)}, [](std::uint32_t) { return true; }));
   CHECK(reported([&](auto leaf) { tree.overlapping({Vec3(-1), Vec3(1)}, leaf); }).empty());
-  tree.build_grouped({}, std::vector<std::uint32_t>{0, 0});
-  CHECK(tree.group_root(1) == no_node);
+  tree.build_objects({}, std::vector<std::uint32_t>{0, 0});
+  CHECK(tree.object_root(1) == no_node);
   CHECK(tree.validate({}) == "");
 }
 
@@ -316,41 +316,41 @@ TEST_CASE("rebuilding the root is a whole build, in the same slots") {
 
 TEST_CASE_TEMPLATE("objects own subtrees", Scalar, float, double) {
   auto boxes = dcem_test::random_boxes<Scalar>(900, 101);
-  const auto groups = random_groups(boxes.size(), 102);
+  const auto objects = random_objects(boxes.size(), 102);
   Pair<Scalar> pair(boxes);
-  pair.tree.build_grouped(boxes, groups);
-  pair.oracle.build_grouped(boxes, groups);
+  pair.tree.build_objects(boxes, objects);
+  pair.oracle.build_objects(boxes, objects);
   pair.check(1000, 103);
-  REQUIRE(pair.tree.group_count() == groups.size());
-  for (std::size_t group = 0; group < groups.size(); ++group) {
-    const std::size_t end = group + 1 < groups.size() ? groups[group + 1] : boxes.size();
-    const std::uint32_t root = pair.tree.group_root(group);
-    CHECK((root == no_node) == (end == groups[group]));
+  REQUIRE(pair.tree.object_count() == objects.size());
+  for (std::size_t object = 0; object < objects.size(); ++object) {
+    const std::size_t end = object + 1 < objects.size() ? objects[object + 1] : boxes.size();
+    const std::uint32_t root = pair.tree.object_root(object);
+    CHECK((root == no_node) == (end == objects[object]));
     Aabb<Scalar> expected;
-    for (std::size_t primitive = groups[group]; primitive < end; ++primitive) expected.extend(boxes[primitive]);
+    for (std::size_t primitive = objects[object]; primitive < end; ++primitive) expected.extend(boxes[primitive]);
     if (root != no_node) CHECK(pair.tree.nodes()[root].box == expected);
   }
-  CHECK_THROWS_AS(pair.tree.group_root(groups.size()), std::out_of_range);
+  CHECK_THROWS_AS(pair.tree.object_root(objects.size()), std::out_of_range);
 }
 
-TEST_CASE("groups survive motion, rebuilding of one of them and rebuilding above them") {
+TEST_CASE("objects survive motion, rebuilding of one of them and rebuilding above them") {
   auto boxes = dcem_test::random_boxes<double>(900, 111);
-  const auto groups = random_groups(boxes.size(), 112);
+  const auto objects = random_objects(boxes.size(), 112);
   Pair<double> pair(boxes);
-  pair.tree.build_grouped(pair.boxes, groups);
+  pair.tree.build_objects(pair.boxes, objects);
   RandomStream random(113);
   for (int round = 0; round < 60; ++round) {
-    const std::size_t group = random.next() % groups.size();
-    const std::uint32_t root = pair.tree.group_root(group);
+    const std::size_t object = random.next() % objects.size();
+    const std::uint32_t root = pair.tree.object_root(object);
     if (root == no_node) continue;
-    const std::size_t end = group + 1 < groups.size() ? groups[group + 1] : pair.boxes.size();
-    std::vector<std::uint32_t> moved(end - groups[group]);
-    std::iota(moved.begin(), moved.end(), groups[group]);
+    const std::size_t end = object + 1 < objects.size() ? objects[object + 1] : pair.boxes.size();
+    std::vector<std::uint32_t> moved(end - objects[object]);
+    std::iota(moved.begin(), moved.end(), objects[object]);
     const Vec3 by = dcem_test::random_point<double>(random, 5.0);
     for (const std::uint32_t primitive : moved) shift(pair.boxes[primitive], by);
     if (round % 3 == 0) {
       pair.tree.rebuild_subtree(root, pair.boxes);
-      CHECK(pair.tree.group_root(group) == root);
+      CHECK(pair.tree.object_root(object) == root);
     } else {
       pair.tree.refit(moved, pair.boxes);
     }
@@ -369,12 +369,12 @@ TEST_CASE("the deepest tree that can be built is walked in full") {
     const Vec3 corner(std::ldexp(1.0, 45 - index));
     boxes.push_back({corner, corner * 1.5});
   }
-  std::vector<std::uint32_t> groups;
-  for (std::uint32_t first = 0; first < 450; first += 3) groups.push_back(first);
-  for (const bool grouped : {false, true}) {
+  std::vector<std::uint32_t> objects;
+  for (std::uint32_t first = 0; first < 450; first += 3) objects.push_back(first);
+  for (const bool by_object : {false, true}) {
     Bvh<double> tree;
-    if (grouped) {
-      tree.build_grouped(boxes, groups);
+    if (by_object) {
+      tree.build_objects(boxes, objects);
     } else {
       tree.build(boxes);
     }
@@ -420,20 +420,20 @@ TEST_CASE("the larger child is the left one, and any-hit stops at once") {
   CHECK(counters.primitives_tested == 1);
 }
 
-TEST_CASE("from either end of a row, the nearest square is found among the first few") {
+TEST_CASE("from either end of a row, the closest_hit square is found among the first few") {
   Boxes<double> boxes;
   for (int index = 0; index < 1000; ++index) boxes.push_back({Vec3(index, 0, 0), Vec3(index, 1, 1)});
   Bvh<double> tree;
   tree.build(boxes);
   for (const double side : {-1.0, 1.0}) {
     const Ray<double> ray{Vec3(500 + 600 * side, 0.4, 0.6), Vec3(-side, 0, 0)};
-    double nearest = 0.0;
+    double closest_hit = 0.0;
     std::size_t asked = 0;
     tree.closest(ray, [&](std::uint32_t primitive, double& t_max) {
       ++asked;
-      nearest = t_max = std::min(t_max, std::abs(ray.origin.x - primitive));
+      closest_hit = t_max = std::min(t_max, std::abs(ray.origin.x - primitive));
     });
-    CHECK(nearest == (side < 0 ? 100.0 : 101.0));
+    CHECK(closest_hit == (side < 0 ? 100.0 : 101.0));
     CHECK(asked <= maximum_leaf_size);
   }
 }
@@ -441,12 +441,12 @@ TEST_CASE("from either end of a row, the nearest square is found among the first
 TEST_CASE("queries on several threads give what one thread gives") {
   const Pair<double> pair(dcem_test::random_boxes<double>(800, 141));
   const auto answers = [&](unsigned threads) {
-    std::vector<dcem_test::NearestSquare<double>> nearest(2000);
-    parallel_for(nearest.size(), threads, [&](std::size_t index, unsigned) {
+    std::vector<dcem_test::NearestSquare<double>> closest_hit(2000);
+    parallel_for(closest_hit.size(), threads, [&](std::size_t index, unsigned) {
       RandomStream random(index);
-      nearest[index] = nearest_square(pair.tree, pair.boxes, dcem_test::random_ray<double>(random));
+      closest_hit[index] = nearest_square(pair.tree, pair.boxes, dcem_test::random_ray<double>(random));
     });
-    return nearest;
+    return closest_hit;
   };
   CHECK(answers(1) == answers(4));
 }

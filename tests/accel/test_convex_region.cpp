@@ -82,7 +82,7 @@ TEST_CASE("a frustum is as wide and as high as its angles say") {
 TEST_CASE("no tree loses a triangle that has a point in the region, and both find the same") {
   const dcem_test::WideMesh mesh = dcem_test::boxes_mesh(300, 11);
   const std::vector<Aabb<double>> boxes = mesh.boxes();
-  WideTree wide;
+  WideBvh wide;
   wide.build(mesh.view(), boxes);
   Bvh<double> binary;
   binary.build(boxes);

@@ -14,7 +14,7 @@
 
 using namespace dcem;
 using dcem_test::any_ray;
-using dcem_test::fault_of_nearest;
+using dcem_test::fault_of_closest;
 using dcem_test::hits_on_line;
 using dcem_test::infinity;
 using dcem_test::not_a_number;
@@ -25,12 +25,12 @@ using dcem_test::WideMesh;
 
 namespace {
 
-struct Planted {
+struct Built {
   WideMesh mesh;
   std::vector<Aabb<double>> boxes;
-  WideTree tree;
+  WideBvh tree;
 
-  explicit Planted(WideMesh given, const WideSettings& settings = {}) : mesh(std::move(given)), boxes(mesh.boxes()) {
+  explicit Built(WideMesh given, const WideSettings& settings = {}) : mesh(std::move(given)), boxes(mesh.boxes()) {
     tree.build(mesh.view(), boxes, settings);
     REQUIRE(tree.validate(boxes) == "");
   }
@@ -41,31 +41,31 @@ struct Planted {
   }
 };
 
-std::optional<WideHit> nearest_by_closest(const WideTree& tree, const WideMesh& mesh, const Ray<double>& ray) {
-  std::optional<WideHit> best;
+std::optional<TriangleHit> closest_by_callback(const WideBvh& tree, const WideMesh& mesh, const Ray<double>& ray) {
+  std::optional<TriangleHit> best;
   const WatertightRay exact(ray);
   tree.closest(ray, [&](std::uint32_t triangle, double& t_max) {
     const auto t = exact.intersect(mesh.corners(triangle));
     if (!t || !(*t >= ray.t_min && *t <= t_max)) return;
-    best = WideHit{*t, triangle};
+    best = TriangleHit{*t, triangle};
     t_max = *t;
   });
   return best;
 }
 
 /// All ray queries against the oracle.
-void check_ray(const Planted& scene, const Ray<double>& ray, RandomStream& random) {
+void check_ray(const Built& scene, const Ray<double>& ray, RandomStream& random) {
   INFO(text_of(ray));
-  const WideTree& tree = scene.tree;
+  const WideBvh& tree = scene.tree;
   const std::vector<OracleHit> line = hits_on_line(scene.mesh, ray);
-  REQUIRE(fault_of_nearest(line, ray, tree.nearest(ray)) == "");
-  REQUIRE(fault_of_nearest(line, ray, nearest_by_closest(tree, scene.mesh, ray)) == "");
-  const int in_the_way = dcem_test::oracle_blocked(line, ray);
+  REQUIRE(fault_of_closest(line, ray, tree.closest_hit(ray)) == "");
+  REQUIRE(fault_of_closest(line, ray, closest_by_callback(tree, scene.mesh, ray)) == "");
+  const int in_the_way = dcem_test::oracle_occluded(line, ray);
   const auto first_try = static_cast<std::uint32_t>(random.next() % scene.mesh.triangles.size());
   const auto every = [](std::uint32_t) { return true; };
   if (in_the_way >= 0) {
-    REQUIRE(tree.blocked(ray) == (in_the_way == 1));
-    REQUIRE(tree.blocked(ray, every, nullptr, first_try) == (in_the_way == 1));
+    REQUIRE(tree.occluded(ray) == (in_the_way == 1));
+    REQUIRE(tree.occluded(ray, every, nullptr, first_try) == (in_the_way == 1));
   }
   const WatertightRay exact(ray);
   const auto is_met = [&](std::uint32_t triangle) {
@@ -82,19 +82,19 @@ void check_ray(const Planted& scene, const Ray<double>& ray, RandomStream& rando
   REQUIRE(std::ranges::all_of(all, [&](std::uint32_t triangle) { return scene.mesh.is_there(triangle); }));
 }
 
-void check_rays(const Planted& scene, int trials, std::uint64_t seed) {
+void check_rays(const Built& scene, int trials, std::uint64_t seed) {
   RandomStream random(seed);
   const Aabb<double> bounds = scene.bounds();
   int hits = 0;
   for (int trial = 0; trial < trials; ++trial) {
     const Ray<double> ray = any_ray(random, scene.mesh, bounds);
     check_ray(scene, ray, random);
-    hits += scene.tree.nearest(ray) ? 1 : 0;
+    hits += scene.tree.closest_hit(ray) ? 1 : 0;
   }
   CHECK(hits > trials / 20);
 }
 
-void check_regions(const Planted& scene, int trials, std::uint64_t seed) {
+void check_regions(const Built& scene, int trials, std::uint64_t seed) {
   BruteForce<double> oracle;
   oracle.build(scene.boxes);
   RandomStream random(seed);
@@ -124,17 +124,17 @@ WideMesh without_every(const WideMesh& mesh, std::uint32_t step) {
 TEST_CASE("soups, boxes, balls: every query gives the oracle's answer") {
   for (const std::size_t count : {1U, 2U, 3U, 8U, 9U, 40U, 700U}) {
     CAPTURE(count);
-    const Planted scene(dcem_test::soup(count, count));
+    const Built scene(dcem_test::soup(count, count));
     check_rays(scene, count < 100 ? 400 : 1500, 10 + count);
     check_regions(scene, 300, 20 + count);
   }
-  check_rays(Planted(dcem_test::boxes_mesh(60, 31)), 3000, 32);
-  check_regions(Planted(dcem_test::boxes_mesh(60, 31)), 500, 33);
-  check_rays(Planted(dcem_test::ball(Vec3(0.3, 0.2, 0.1), 5.0, 12)), 3000, 34);
+  check_rays(Built(dcem_test::boxes_mesh(60, 31)), 3000, 32);
+  check_regions(Built(dcem_test::boxes_mesh(60, 31)), 500, 33);
+  check_rays(Built(dcem_test::ball(Vec3(0.3, 0.2, 0.1), 5.0, 12)), 3000, 34);
 }
 
 TEST_CASE("a dirty mesh: needles, no area, repeated points, triangles drawn twice") {
-  check_rays(Planted(dcem_test::dirty_mesh(60, 41)), 6000, 42);
+  check_rays(Built(dcem_test::dirty_mesh(60, 41)), 6000, 42);
 }
 
 TEST_CASE("a triangle drawn twice is as solid as one drawn once") {
@@ -147,9 +147,9 @@ TEST_CASE("a triangle drawn twice is as solid as one drawn once") {
     }
     mesh.add(0, 1, 2);
     kind == 0 ? mesh.add(0, 1, 2) : mesh.add(0, 1, kind == 1 ? 3U : 4U);
-    const Planted scene(mesh);
-    CHECK(scene.tree.nearest({Vec3(1.5, 1, 5), Vec3(0, 0, -1)}).has_value());
-    CHECK(scene.tree.blocked({Vec3(1.5, 1, 5), Vec3(0, 0, -1)}));
+    const Built scene(mesh);
+    CHECK(scene.tree.closest_hit({Vec3(1.5, 1, 5), Vec3(0, 0, -1)}).has_value());
+    CHECK(scene.tree.occluded({Vec3(1.5, 1, 5), Vec3(0, 0, -1)}));
     check_rays(scene, 1000, 43);
   }
 }
@@ -157,7 +157,7 @@ TEST_CASE("a triangle drawn twice is as solid as one drawn once") {
 TEST_CASE("bent quadrilaterals, also along their surface") {
   for (const double bend_m : {1e-7, 1e-5, 2e-4}) {
     CAPTURE(bend_m);
-    const Planted scene(dcem_test::bent_ground(16, bend_m, 51));
+    const Built scene(dcem_test::bent_ground(16, bend_m, 51));
     check_rays(scene, 2000, 52);
     RandomStream random(53);
     for (int trial = 0; trial < 6000; ++trial) {
@@ -179,7 +179,7 @@ TEST_CASE("a pair folded at its diagonal, met twice: the nearer hit counts, and 
   for (const Vec3& vertex : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0, 0, -9e-4)}) mesh.add_vertex(vertex);
   mesh.add(0, 1, 2);
   mesh.add(0, 2, 3);
-  const Planted scene(mesh);
+  const Built scene(mesh);
   RandomStream random(55);
   for (int trial = 0; trial < 5000; ++trial) {
     const Vec3 from(-1, -1 + random.uniform(), -9e-4 * random.uniform() - 3e-4);
@@ -195,24 +195,24 @@ TEST_CASE("shifted by 10 km, huge and tiny: the answers are those of double prec
   const WideMesh mesh = dcem_test::boxes_mesh(40, 61);
   const WideMesh pieces = dcem_test::soup(200, 62);
   for (const WideMesh& given : {mesh, pieces}) {
-    check_rays(Planted(moved_by(given, 1.0, Vec3(1e4, -1e4, 300.0))), 1500, 63);
-    check_rays(Planted(moved_by(given, 1e-6, Vec3(0.0))), 1500, 64);
-    check_rays(Planted(moved_by(given, 1e-7, Vec3(0.3, 0.1, 0.2))), 1500, 64);
-    check_rays(Planted(moved_by(given, 1e9, Vec3(0.0))), 1500, 65);
-    check_rays(Planted(moved_by(given, 1e13, Vec3(0.0))), 1500, 66);
+    check_rays(Built(moved_by(given, 1.0, Vec3(1e4, -1e4, 300.0))), 1500, 63);
+    check_rays(Built(moved_by(given, 1e-6, Vec3(0.0))), 1500, 64);
+    check_rays(Built(moved_by(given, 1e-7, Vec3(0.3, 0.1, 0.2))), 1500, 64);
+    check_rays(Built(moved_by(given, 1e9, Vec3(0.0))), 1500, 65);
+    check_rays(Built(moved_by(given, 1e13, Vec3(0.0))), 1500, 66);
   }
 }
 
 TEST_CASE("small things far from zero: 1e9 m and 1e14 m away") {
   const WideMesh pieces = dcem_test::soup(200, 71);
-  check_rays(Planted(moved_by(pieces, 1.0, Vec3(1e9, -1e9, 1e9))), 1500, 72);
-  check_rays(Planted(moved_by(pieces, 1.0, Vec3(1e14, 1e14, -1e14))), 1500, 73);
+  check_rays(Built(moved_by(pieces, 1.0, Vec3(1e9, -1e9, 1e9))), 1500, 72);
+  check_rays(Built(moved_by(pieces, 1.0, Vec3(1e14, 1e14, -1e14))), 1500, 73);
 }
 
 TEST_CASE("one thing beside the origin of a map, another at its far end") {
   WideMesh mesh = moved_by(dcem_test::soup(100, 75), 1e-3, Vec3(-2e4, 1e4, 0));
   mesh.append(moved_by(dcem_test::soup(100, 76), 1e-3, Vec3(3e4, -1e4, 0)));
-  const Planted scene(mesh);
+  const Built scene(mesh);
   RandomStream random(77);
   const Aabb<double> there = inflated(Aabb<double>{Vec3(-2e4, 1e4, 0), Vec3(-2e4, 1e4, 0)}, 0.01);
   for (int trial = 0; trial < 3000; ++trial) check_ray(scene, any_ray(random, mesh, there), random);
@@ -221,11 +221,11 @@ TEST_CASE("one thing beside the origin of a map, another at its far end") {
 TEST_CASE("objects stacked on one point") {
   WideMesh mesh;
   for (int copy = 0; copy < 60; ++copy) mesh.append(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
-  check_rays(Planted(mesh), 1000, 81);
+  check_rays(Built(mesh), 1000, 81);
   WideMesh points;
   for (int copy = 0; copy < 100; ++copy) points.add(Vec3(1), Vec3(1), Vec3(1));
   points.append(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
-  check_rays(Planted(points), 1000, 82);
+  check_rays(Built(points), 1000, 82);
 }
 
 TEST_CASE("sizes that double from one to the next: the tree stays shallow enough for its walks") {
@@ -236,17 +236,17 @@ TEST_CASE("sizes that double from one to the next: the tree stays shallow enough
   }
   for (const std::uint32_t limit : {512U, 0U}) {
     WideSettings settings;
-    settings.unit_limit = limit;
-    const Planted scene(mesh, settings);
-    CHECK(scene.tree.nearest({Vec3(1e12, 1e11, 1e11), Vec3(-1, -0.1, -0.1)}).has_value() ==
+    settings.object_subtree_limit = limit;
+    const Built scene(mesh, settings);
+    CHECK(scene.tree.closest_hit({Vec3(1e12, 1e11, 1e11), Vec3(-1, -0.1, -0.1)}).has_value() ==
           !hits_on_line(mesh, {Vec3(1e12, 1e11, 1e11), Vec3(-1, -0.1, -0.1)}).empty());
   }
 }
 
 TEST_CASE("an empty tree, and a tree of triangles that are not there") {
-  const Planted none{WideMesh()};
+  const Built none{WideMesh()};
   const Ray<double> ray{Vec3(0, 0, 5), Vec3(0, 0, -1)};
-  const auto all_of = [&](const WideTree& tree) {
+  const auto all_of = [&](const WideBvh& tree) {
     std::size_t count = 0;
     const auto leaf = [&](std::uint32_t) { ++count; };
     tree.all(ray, leaf);
@@ -255,15 +255,15 @@ TEST_CASE("an empty tree, and a tree of triangles that are not there") {
     tree.closest(ray, [&](std::uint32_t, double&) { ++count; });
     return count;
   };
-  CHECK(!none.tree.nearest(ray));
-  CHECK(!none.tree.blocked(ray));
-  CHECK(!none.tree.blocked(ray, WideTree::EveryTriangle{}, nullptr, 3U));
+  CHECK(!none.tree.closest_hit(ray));
+  CHECK(!none.tree.occluded(ray));
+  CHECK(!none.tree.occluded(ray, WideBvh::EveryTriangle{}, nullptr, 3U));
   CHECK(all_of(none.tree) == 0);
   CHECK(none.tree.bounds().empty());
-  const Planted gone(without_every(dcem_test::boxes_mesh(5, 91), 1));
-  CHECK(!gone.tree.nearest(ray));
-  CHECK(!gone.tree.blocked(ray));
-  CHECK(!gone.tree.nearest({Vec3(0), Vec3(1e-20, 0, 0)}));
+  const Built gone(without_every(dcem_test::boxes_mesh(5, 91), 1));
+  CHECK(!gone.tree.closest_hit(ray));
+  CHECK(!gone.tree.occluded(ray));
+  CHECK(!gone.tree.closest_hit({Vec3(0), Vec3(1e-20, 0, 0)}));
   CHECK(all_of(gone.tree) == 0);
   CHECK(gone.tree.bounds().empty());
 }
@@ -271,7 +271,7 @@ TEST_CASE("an empty tree, and a tree of triangles that are not there") {
 TEST_CASE("a triangle with an empty box is not there, be it half of a pair") {
   for (const std::uint32_t step : {2U, 3U, 5U}) {
     CAPTURE(step);
-    const Planted scene(without_every(dcem_test::boxes_mesh(30, 92), step));
+    const Built scene(without_every(dcem_test::boxes_mesh(30, 92), step));
     check_rays(scene, 2000, 93);
     check_regions(scene, 300, 94);
   }
@@ -281,7 +281,7 @@ TEST_CASE("what a query considers is all that it finds") {
   WideMesh mesh = dcem_test::boxes_mesh(50, 101);
   for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
     mesh.surface.push_back(triangle / 2 % 7);
-  const Planted scene(mesh);
+  const Built scene(mesh);
   RandomStream random(102);
   for (int trial = 0; trial < 3000; ++trial) {
     const Ray<double> ray = any_ray(random, mesh, scene.bounds());
@@ -290,18 +290,18 @@ TEST_CASE("what a query considers is all that it finds") {
     const auto considers = [&](std::uint32_t triangle) { return mesh.surface[triangle] != left_out; };
     std::vector<OracleHit> line = hits_on_line(mesh, ray);
     std::erase_if(line, [&](const OracleHit& hit) { return !considers(hit.triangle); });
-    REQUIRE(fault_of_nearest(line, ray, scene.tree.nearest(ray, considers)) == "");
-    const int in_the_way = dcem_test::oracle_blocked(line, ray);
+    REQUIRE(fault_of_closest(line, ray, scene.tree.closest_hit(ray, considers)) == "");
+    const int in_the_way = dcem_test::oracle_occluded(line, ray);
     if (in_the_way < 0) continue;
     const auto first_try = static_cast<std::uint32_t>(random.next() % mesh.triangles.size());
-    REQUIRE(scene.tree.blocked(ray, considers) == (in_the_way == 1));
-    REQUIRE(scene.tree.blocked(ray, considers, nullptr, first_try) == (in_the_way == 1));
-    REQUIRE(scene.tree.blocked(ray, considers, nullptr, 0xfffffff0U) == (in_the_way == 1));
+    REQUIRE(scene.tree.occluded(ray, considers) == (in_the_way == 1));
+    REQUIRE(scene.tree.occluded(ray, considers, nullptr, first_try) == (in_the_way == 1));
+    REQUIRE(scene.tree.occluded(ray, considers, nullptr, 0xfffffff0U) == (in_the_way == 1));
   }
 }
 
 TEST_CASE("directions of any length, components of zero, and rays from behind") {
-  const Planted scene(dcem_test::boxes_mesh(40, 111));
+  const Built scene(dcem_test::boxes_mesh(40, 111));
   RandomStream random(112);
   for (int trial = 0; trial < 6000; ++trial) {
     Ray<double> ray = any_ray(random, scene.mesh, scene.bounds());
@@ -317,7 +317,7 @@ TEST_CASE("directions of any length, components of zero, and rays from behind") 
 
 TEST_CASE("a short direction from far away") {
   // The slab of a ray all but parallel to it must not be left early.
-  const Planted scene(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
+  const Built scene(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
   RandomStream random(115);
   for (const double far_m : {1e2, 1e3, 1e5, 1e7, 1e9}) {
     for (const double length : {1.5e-12, 1e-9, 1.0, 1e6}) {
@@ -331,10 +331,10 @@ TEST_CASE("a short direction from far away") {
         ray.origin[axis] = -far_m;
         ray.direction[axis] = length;
         INFO(text_of(ray));
-        const auto hit = scene.tree.nearest(ray);
+        const auto hit = scene.tree.closest_hit(ray);
         REQUIRE(hit.has_value());
         REQUIRE(hit->t == doctest::Approx((far_m - 1) / length).epsilon(1e-9));
-        REQUIRE(scene.tree.blocked(ray));
+        REQUIRE(scene.tree.occluded(ray));
       }
     }
   }
@@ -343,13 +343,13 @@ TEST_CASE("a short direction from far away") {
 TEST_CASE("rays that are none meet nothing") {
   WideMesh mesh = dcem_test::boxes_mesh(20, 121);
   mesh.append(dcem_test::soup(60, 122, 20.0));
-  const Planted scene(mesh);
+  const Built scene(mesh);
   const auto meets_nothing = [&](const Ray<double>& ray) {
     INFO(text_of(ray));
-    CHECK(!scene.tree.nearest(ray));
-    CHECK(!scene.tree.blocked(ray));
+    CHECK(!scene.tree.closest_hit(ray));
+    CHECK(!scene.tree.occluded(ray));
     for (std::uint32_t first_try = 0; first_try < scene.mesh.triangles.size(); ++first_try) {
-      REQUIRE(!scene.tree.blocked(ray, WideTree::EveryTriangle{}, nullptr, first_try));
+      REQUIRE(!scene.tree.occluded(ray, WideBvh::EveryTriangle{}, nullptr, first_try));
     }
   };
   const Vec3 from(-30, 0.1, 0.2), along(1, 0.01, 0.02);
@@ -373,24 +373,24 @@ TEST_CASE("rays that are none meet nothing") {
 }
 
 TEST_CASE("hits exactly at t_min and t_max count") {
-  const Planted scene(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
+  const Built scene(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
   for (const double t : {4.0, 6.0}) {
-    const auto hit = scene.tree.nearest({Vec3(-5, 0.25, 0.125), Vec3(1, 0, 0), t, t});
+    const auto hit = scene.tree.closest_hit({Vec3(-5, 0.25, 0.125), Vec3(1, 0, 0), t, t});
     REQUIRE(hit.has_value());
     CHECK(hit->t == t);
-    CHECK(scene.tree.blocked({Vec3(-5, 0.25, 0.125), Vec3(1, 0, 0), t, t}));
+    CHECK(scene.tree.occluded({Vec3(-5, 0.25, 0.125), Vec3(1, 0, 0), t, t}));
   }
-  CHECK(scene.tree.nearest({Vec3(-1, 0.25, 0.125), Vec3(1, 0, 0), 0.0, 0.0}).has_value());
+  CHECK(scene.tree.closest_hit({Vec3(-1, 0.25, 0.125), Vec3(1, 0, 0), 0.0, 0.0}).has_value());
 }
 
 TEST_CASE("ends just before or behind a surface: the surface is not met, or is") {
-  const Planted scene(dcem_test::boxes_mesh(30, 125));
+  const Built scene(dcem_test::boxes_mesh(30, 125));
   RandomStream random(126);
   int met = 0;
   for (int trial = 0; trial < 4000; ++trial) {
     Ray<double> ray = any_ray(random, scene.mesh, scene.bounds());
     ray.t_min = 0.0, ray.t_max = infinity;
-    const auto hit = scene.tree.nearest(ray);
+    const auto hit = scene.tree.closest_hit(ray);
     if (!hit || hit->t < 1e-3) continue;
     ++met;
     // Of the order of a rounding in single precision, and far above one in double.
@@ -407,7 +407,7 @@ TEST_CASE("ends just before or behind a surface: the surface is not met, or is")
 
 TEST_CASE("boxes in single precision hold those in double, also seen from the world") {
   for (const Vec3& shift : {Vec3(0), Vec3(1e4, -1e4, 3), Vec3(1e9)}) {
-    const Planted scene(moved_by(dcem_test::boxes_mesh(30, 127), 1.0, shift));
+    const Built scene(moved_by(dcem_test::boxes_mesh(30, 127), 1.0, shift));
     const WideArrays& arrays = scene.tree.arrays();
     for (const Aabb<double>& box : scene.boxes) {
       const Aabb<float> rounded = arrays.rounded_out(box);
@@ -432,7 +432,7 @@ TEST_CASE("boxes in single precision hold those in double, also seen from the wo
   // A face in the origin of the tree, where single precision leaves no room.
   WideMesh faces = dcem_test::box_mesh(Vec3(-2), Vec3(2));
   faces.add(Vec3(0, 1, 1), Vec3(0, 1.5, 1), Vec3(0, 1, 1.5));
-  const Planted scene(faces);
+  const Built scene(faces);
   std::size_t count = 0;
   scene.tree.overlapping({Vec3(-0.5, 1, 1), Vec3(0, 1.2, 1.2)},
                          [&](std::uint32_t triangle) { count += triangle == 12; });
@@ -444,11 +444,11 @@ TEST_CASE("boxes in single precision hold those in double, also seen from the wo
 TEST_CASE("of equally near triangles the one with the smallest number") {
   WideMesh mesh;
   for (int copy = 0; copy < 50; ++copy) mesh.append(dcem_test::box_mesh(Vec3(-1), Vec3(1)));
-  const Planted scene(mesh);
+  const Built scene(mesh);
   RandomStream random(131);
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3 aim(dcem_test::between(random, -0.99, 0.99), dcem_test::between(random, -0.99, 0.99), 1.0);
-    const auto hit = scene.tree.nearest(
+    const auto hit = scene.tree.closest_hit(
         segment_between(Vec3(0.1, 0.2, 9.0), Vec3(0.1, 0.2, 9.0) + 2.0 * (aim - Vec3(0.1, 0.2, 9.0))));
     REQUIRE(hit.has_value());
     REQUIRE(hit->triangle < 12);
@@ -457,7 +457,7 @@ TEST_CASE("of equally near triangles the one with the smallest number") {
 
 TEST_CASE("Munich: rays through the town give the oracle's answers") {
   DCEM_NEEDS_SHARED();
-  const Planted scene(dcem_test::read_obj(dcem::test::shared_path("scenes/munich.obj")));
+  const Built scene(dcem_test::read_obj(dcem::test::shared_path("scenes/munich.obj")));
   REQUIRE(scene.mesh.triangles.size() == 38936);
   check_rays(scene, 300, 141);
 }
@@ -471,7 +471,7 @@ TEST_CASE("no ray leaks through an edge or a corner of a closed mesh") {
       closed[0].changed([&](const Vec3& v) { return v + glm::cross(axis, v) * 0.7 + Vec3(3e3, 2e3, 10); }));
   closed.push_back(closed[1].changed([&](const Vec3& v) { return v * 1e-4 + Vec3(3e3, 2e3, 10); }));
   for (const WideMesh& mesh : closed) {
-    const Planted scene(mesh);
+    const Built scene(mesh);
     const Vec3 centre = scene.bounds().center();
     const double size = scene.bounds().extent().x;
     for (int trial = 0; trial < 40000; ++trial) {
@@ -482,42 +482,42 @@ TEST_CASE("no ray leaks through an edge or a corner of a closed mesh") {
       const Vec3 from = centre + dcem_test::random_in_cube(random, 0.1 * size);
       const Ray<double> ray{from, aim - from};
       INFO(text_of(ray));
-      const auto hit = scene.tree.nearest(ray);
+      const auto hit = scene.tree.closest_hit(ray);
       REQUIRE(hit.has_value());
       // The point aimed at is rounded to 5e-13 m, 3 km from zero.
       REQUIRE(std::abs(hit->t - 1.0) < 1e-9 + 4e-12 / glm::length(ray.direction));
-      REQUIRE(scene.tree.blocked(ray));
+      REQUIRE(scene.tree.occluded(ray));
     }
   }
 }
 
 TEST_CASE("in huge pages or not, the tree is the same") {
-  const dcem_test::WideMesh mesh = dcem_test::soup(40'000, 4);  // some megabytes of blocks
+  const dcem_test::WideMesh mesh = dcem_test::soup(40'000, 4);  // some megabytes of leaves
   const std::vector<Aabb<double>> boxes = mesh.boxes();
-  WideTree tree, other;
+  WideBvh tree, other;
   tree.build(mesh.view(), boxes);
   other.build(mesh.view(), boxes, {.huge_pages = false});
-  CHECK(tree.arrays().blocks.get_allocator().asks());
-  CHECK_FALSE(other.arrays().blocks.get_allocator().asks());
-  REQUIRE(std::span(tree.arrays().blocks).size_bytes() > HugePageAllocator<PatchBlock>::least_bytes);
+  CHECK(tree.arrays().leaves.get_allocator().asks());
+  CHECK_FALSE(other.arrays().leaves.get_allocator().asks());
+  REQUIRE(std::span(tree.arrays().leaves).size_bytes() > HugePageAllocator<QuadLeaf>::least_bytes);
   const auto same = [](const auto& one, const auto& another, auto member) {
     return std::ranges::equal(one, another, {}, member, member);
   };
   for (int turn = 0; turn < 2; ++turn) {
     CHECK(same(tree.arrays().nodes, other.arrays().nodes, &WideNode::bounds_m));
     CHECK(same(tree.arrays().nodes, other.arrays().nodes, &WideNode::child));
-    CHECK(same(tree.arrays().blocks, other.arrays().blocks, &PatchBlock::corner_m));
+    CHECK(same(tree.arrays().leaves, other.arrays().leaves, &QuadLeaf::corner_m));
     CHECK(other.validate(boxes).empty());
     // What was asked for in one way is given back before it is asked for in the other.
     other.build(mesh.view(), boxes);
-    CHECK(other.arrays().blocks.get_allocator().asks());
+    CHECK(other.arrays().leaves.get_allocator().asks());
   }
 }
 
 TEST_CASE("what is switched off changes no answer") {
   const dcem_test::WideMesh mesh = dcem_test::soup(3000, 8);
   const std::vector<Aabb<double>> boxes = mesh.boxes();
-  WideTree tree, other;
+  WideBvh tree, other;
   tree.build(mesh.view(), boxes);
   other.build(mesh.view(), boxes,
               {.pair_flatness = -1.0, .huge_pages = false, .divide_by_size = false, .fetch_ahead = false});
@@ -526,7 +526,7 @@ TEST_CASE("what is switched off changes no answer") {
   RandomStream random(5);
   for (int turn = 0; turn < 2000; ++turn) {
     const Ray<double> ray{dcem_test::random_point<double>(random, 10.0), dcem_test::random_direction(random)};
-    const auto expected = tree.nearest(ray), found = other.nearest(ray);
+    const auto expected = tree.closest_hit(ray), found = other.closest_hit(ray);
     REQUIRE(found.has_value() == expected.has_value());
     if (!found) continue;
     ++hits;
@@ -538,12 +538,12 @@ TEST_CASE("what is switched off changes no answer") {
 
 TEST_CASE("bad input is refused before anything changes") {
   const WideMesh mesh = dcem_test::boxes_mesh(10, 161);
-  Planted scene(mesh);
+  Built scene(mesh);
   const Ray<double> ray{Vec3(30, 0.3, 0.2), Vec3(-1, 0, 0)};
   const auto refused = [&](auto&& edit) {
     CHECK_THROWS_AS(edit(), std::invalid_argument);
     REQUIRE(scene.tree.validate(scene.boxes) == "");
-    REQUIRE(scene.tree.group_count() == 1);
+    REQUIRE(scene.tree.object_count() == 1);
   };
   const std::vector<std::uint32_t> whole{0};
   std::vector<std::uint32_t> all(mesh.triangles.size());
@@ -554,7 +554,7 @@ TEST_CASE("bad input is refused before anything changes") {
     boxes[100].min.y = bad;
     if (bad == infinity) boxes[100] = {Vec3(-infinity), Vec3(infinity)};
     refused([&] { scene.tree.build(other.view(), boxes); });
-    refused([&] { scene.tree.build_grouped(other.view(), boxes, whole); });
+    refused([&] { scene.tree.build_objects(other.view(), boxes, whole); });
     refused([&] { scene.tree.rebuild(other.view(), boxes); });
     refused([&] { scene.tree.refit(all, other.view(), boxes); });
   }
@@ -569,19 +569,19 @@ TEST_CASE("bad input is refused before anything changes") {
   refused([&] { scene.tree.refit(std::vector<std::uint32_t>{0, 1, 120}, other.view(), other.boxes()); });
   for (const std::vector<std::uint32_t>& first :
        {std::vector<std::uint32_t>{}, {1}, {0, 50, 40}, {0, 121}, {0, 0xffffffffU}}) {
-    refused([&] { scene.tree.build_grouped(other.view(), other.boxes(), first); });
+    refused([&] { scene.tree.build_objects(other.view(), other.boxes(), first); });
   }
   for (const WideSettings& settings :
        {WideSettings{WideCosts{0.0, 1.0}}, WideSettings{WideCosts{1.0, NAN}}, WideSettings{WideCosts{}, NAN},
         WideSettings{WideCosts{}, 1e-3, 512, 0}, WideSettings{WideCosts{}, 1e-3, 512, 9}}) {
     refused([&] { scene.tree.build(other.view(), other.boxes(), settings); });
   }
-  CHECK(scene.tree.nearest(ray).has_value() == !hits_on_line(mesh, ray).empty());
+  CHECK(scene.tree.closest_hit(ray).has_value() == !hits_on_line(mesh, ray).empty());
 }
 
 TEST_CASE("surfaces for some triangles only, and corners that name no vertex, are refused") {
   WideMesh mesh = dcem_test::boxes_mesh(10, 165);
-  Planted scene(mesh);
+  Built scene(mesh);
   WideMesh partly = mesh;
   partly.surface.assign(5, 0);
   CHECK_THROWS_AS(scene.tree.build(partly.view(), scene.boxes), std::invalid_argument);

@@ -1,4 +1,4 @@
-/// Every policy of tree upkeep answers every question as the oracle does, in every frame of randomized drives.
+/// Every policy of tree tree_update answers every question as the oracle does, in every frame of randomized drives.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -135,12 +135,12 @@ constexpr std::array policies{TreePolicy::rebuild_always, TreePolicy::refit_only
 
 /// What a drive has put to the test.
 struct Tally {
-  std::uint64_t frames = 0, hits = 0, blocked = 0, found = 0, regional = 0, rebuilt = 0, roots = 0;
+  std::uint64_t frames = 0, hits = 0, occluded = 0, found = 0, regional = 0, rebuilt = 0, roots = 0;
 
   Tally& operator+=(const Tally& other) {
     frames += other.frames;
     hits += other.hits;
-    blocked += other.blocked;
+    occluded += other.occluded;
     found += other.found;
     regional += other.regional;
     rebuilt += other.rebuilt;
@@ -153,15 +153,15 @@ template <class Scalar>
 Tally follow(const Traffic& traffic, std::uint64_t seed, int frames, int questions) {
   Drive<Scalar> drive(traffic, seed);
   BruteForce<Scalar> oracle;
-  BruteForceMaintainer<Scalar> oracle_maintainer;
-  oracle.build_grouped(drive.boxes(), drive.first());
+  BruteForceUpdater<Scalar> oracle_maintainer;
+  oracle.build_objects(drive.boxes(), drive.first());
   std::array<Bvh<Scalar>, policies.size()> trees;
-  std::vector<BvhMaintainer<Scalar>> maintainers;
+  std::vector<BvhUpdater<Scalar>> updaters;
   for (std::size_t index = 0; index < policies.size(); ++index) {
-    UpkeepSettings settings;
+    TreeUpdateSettings settings;
     settings.policy = policies[index];
-    maintainers.emplace_back(settings);
-    trees[index].build_grouped(drive.boxes(), drive.first());
+    updaters.emplace_back(settings);
+    trees[index].build_objects(drive.boxes(), drive.first());
   }
   Tally tally;
   for (int frame = 0; frame < frames; ++frame, ++tally.frames) {
@@ -170,7 +170,7 @@ Tally follow(const Traffic& traffic, std::uint64_t seed, int frames, int questio
     const auto& boxes = drive.boxes();
     oracle_maintainer.update(oracle, moved, boxes);
     for (std::size_t index = 0; index < trees.size(); ++index) {
-      const UpkeepReport report = maintainers[index].update(trees[index], moved, boxes);
+      const TreeUpdateReport report = updaters[index].update(trees[index], moved, boxes);
       if (policies[index] == TreePolicy::adaptive) {
         tally.rebuilt += report.subtrees_rebuilt;
         tally.roots += report.root_rebuilt ? 1U : 0U;
@@ -180,20 +180,20 @@ Tally follow(const Traffic& traffic, std::uint64_t seed, int frames, int questio
     for (int question = 0; question < questions; ++question) {
       const Ray<Scalar> ray = drive.ray();
       const Aabb<Scalar> region = drive.region();
-      const auto blocks = [&](std::uint32_t primitive) {
+      const auto leaves = [&](std::uint32_t primitive) {
         return !std::isnan(dcem_test::meet_square(boxes[primitive], static_cast<int>(primitive % 3), ray));
       };
-      const auto nearest = nearest_square(oracle, boxes, ray);
-      const bool any = oracle.any(ray, blocks);
+      const auto closest_hit = nearest_square(oracle, boxes, ray);
+      const bool any = oracle.any(ray, leaves);
       const Numbers all = reported([&](auto leaf) { oracle.all(ray, leaf); });
       const Numbers inside = reported([&](auto leaf) { oracle.overlapping(region, leaf); });
-      tally.hits += nearest.primitive != 0xffffffffU ? 1U : 0U;
-      tally.blocked += any ? 1U : 0U;
+      tally.hits += closest_hit.primitive != 0xffffffffU ? 1U : 0U;
+      tally.occluded += any ? 1U : 0U;
       tally.found += all.size();
       tally.regional += inside.size();
       for (const Bvh<Scalar>& tree : trees) {
-        REQUIRE(nearest_square(tree, boxes, ray).t == nearest.t);
-        REQUIRE(tree.any(ray, blocks) == any);
+        REQUIRE(nearest_square(tree, boxes, ray).t == closest_hit.t);
+        REQUIRE(tree.any(ray, leaves) == any);
         REQUIRE(reported([&](auto leaf) { tree.all(ray, leaf); }) == all);
         REQUIRE(reported([&](auto leaf) { tree.overlapping(region, leaf); }) == inside);
       }
@@ -205,7 +205,7 @@ Tally follow(const Traffic& traffic, std::uint64_t seed, int frames, int questio
 /// Questions that all miss prove nothing.
 void check_that_something_was_met(const Tally& tally) {
   CHECK(tally.hits > tally.frames / 2);
-  CHECK(tally.blocked >= tally.hits);
+  CHECK(tally.occluded >= tally.hits);
   CHECK(tally.found > tally.frames);
   CHECK(tally.regional > tally.frames);
   CHECK(tally.rebuilt > 0);
@@ -286,12 +286,12 @@ TEST_CASE("tiny boxes: surfaces below the smallest number, ratios beyond the lar
     draw();
     Bvh<double> tree;
     BruteForce<double> oracle;
-    tree.build_grouped(boxes, first);
-    oracle.build_grouped(boxes, first);
-    BvhMaintainer<double> maintainer;
+    tree.build_objects(boxes, first);
+    oracle.build_objects(boxes, first);
+    BvhUpdater<double> updater;
     for (int frame = 0; frame < 40; ++frame) {
       draw();
-      const UpkeepReport report = maintainer.update(tree, all, boxes);
+      const TreeUpdateReport report = updater.update(tree, all, boxes);
       oracle.refit_all(boxes);
       CHECK(std::isfinite(report.sah_cost));
       CHECK(tree.validate(boxes) == "");

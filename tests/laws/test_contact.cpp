@@ -212,9 +212,9 @@ TEST_CASE("seams: every ray from inside a closed mesh hits it, also one aimed at
   for (const Mat3& turn : turns()) {
     Patches turned = mapped(box, [&](const Vec3& p) { return turn * p; });
     const Scene scene = scene_through_files(turned);
-    WideTree tree;
+    WideBvh tree;
     build_tree(tree, scene);
-    const SceneTracer<WideTree> tracer(scene, tree);
+    const SceneTracer<WideBvh> tracer(scene, tree);
     TraversalCounters counters;
     for (const Patch& face : turned) {
       for (std::size_t corner = 0; corner < 4; ++corner) {

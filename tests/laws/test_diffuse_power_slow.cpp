@@ -71,8 +71,8 @@ struct Illuminated {
     build_tree(tree, scene);
   }
 
-  WideTree tree;
-  SceneTracer<WideTree> tracer;
+  WideBvh tree;
+  SceneTracer<WideBvh> tracer;
   MaterialTable table;
   AnyPathLoss loss;
   MediumLoss medium;
@@ -84,7 +84,7 @@ double grid_power(const Scene& scene, const Illuminated& world, const Vec3& from
   TraversalCounters counters;
   const LinkEnd from = make_link_end(world.tracer, from_m, {}, counters),
                 to = make_link_end(world.tracer, to_m, {}, counters);
-  ScatterSolver<WideTree> solver(world.tracer, 2);
+  ScatterSolver<WideBvh> solver(world.tracer, 2);
   Path path;
   double sum = 0.0;
   for (std::uint32_t triangle = 0; triangle < scene.triangles().size(); ++triangle) {

@@ -76,7 +76,7 @@ inline Scene scene_of(const TriangleMesh& mesh) {
 }
 
 /// A scene with a tree over it and questions to both.
-template <typename Tree = WideTree>
+template <typename Tree = WideBvh>
 struct TracedScene {
   explicit TracedScene(Scene of) : scene(std::move(of)) { apply(scene.frame_at(0.0)); }
   TracedScene(const TracedScene&) = delete;

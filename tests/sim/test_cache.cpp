@@ -400,7 +400,7 @@ TEST_CASE("no policy of the tree changes a bit") {
     Scene scene = office();
     add_devices(scene);
     SimulationSettings settings = seeded();
-    settings.upkeep.policy = policy;
+    settings.tree_update.policy = policy;
     Simulator<> simulator(scene, settings);
     std::vector<std::map<std::string, std::string>> frames;
     for (std::size_t index = 0; index < 30; ++index) {

@@ -35,7 +35,7 @@ struct BvhArrays {
   /// The first of two neighbouring slots.
   std::uint32_t take_pair();
 
-  /// Frees every slot below `root`, which itself stays and must be planted anew.
+  /// Frees every slot below `root`, which itself stays and must be built anew.
   void free_below(std::uint32_t root);
 
   /// Frees pairs of slots by their first slots; nothing that stays may lead there.
@@ -44,7 +44,7 @@ struct BvhArrays {
   /// Copies a tree in the layout of SahBuilder::build into `slot` and newly taken pairs, and calls
   /// `finish_leaf(slot)` for each leaf.
   template <class FinishLeaf>
-  void plant(std::uint32_t slot, std::span<const BvhNode<Scalar>> sprout, FinishLeaf&& finish_leaf);
+  void build_all(std::uint32_t slot, std::span<const BvhNode<Scalar>> sprout, FinishLeaf&& finish_leaf);
 };
 
 template <std::floating_point Scalar>
@@ -97,7 +97,8 @@ void BvhArrays<Scalar>::release(std::span<const std::uint32_t> pairs) {
 
 template <std::floating_point Scalar>
 template <class FinishLeaf>
-void BvhArrays<Scalar>::plant(std::uint32_t slot, std::span<const BvhNode<Scalar>> sprout, FinishLeaf&& finish_leaf) {
+void BvhArrays<Scalar>::build_all(std::uint32_t slot, std::span<const BvhNode<Scalar>> sprout,
+                                  FinishLeaf&& finish_leaf) {
   std::vector<std::uint32_t> slots(sprout.size(), slot);
   for (std::size_t local = 1; local < sprout.size(); local += 2) {
     slots[local] = take_pair();
@@ -109,7 +110,7 @@ void BvhArrays<Scalar>::plant(std::uint32_t slot, std::span<const BvhNode<Scalar
     node.first = slots[node.first];
     parent[node.left()] = parent[node.right()] = slots[local];
   }
-  // Last, because finishing a leaf may plant another tree there, which moves the node array.
+  // Last, because finishing a leaf may build_all another tree there, which moves the node array.
   for (std::size_t local = 0; local < sprout.size(); ++local) {
     if (sprout[local].is_leaf()) finish_leaf(slots[local]);
   }

@@ -11,15 +11,15 @@
 
 namespace dcem {
 
-inline constexpr std::uint32_t no_node = 0xffffffffU;    ///< parent of the root; root of an empty group
+inline constexpr std::uint32_t no_node = 0xffffffffU;    ///< parent of the root; root of an empty object
 inline constexpr std::uint32_t free_slot = 0xfffffffeU;  ///< parent of a node slot that is not in use
 
 /// No leaf holds more primitives than this, whatever the boxes look like.
 inline constexpr std::uint32_t maximum_leaf_size = 8;
-/// Levels of one built tree: of the tree over one group, and of the tree over the groups.
-inline constexpr std::uint32_t maximum_build_levels = 64;
-/// A walk leaves at most one node behind per level; a whole tree has two built trees on top of one another.
-inline constexpr std::uint32_t traversal_stack_size = 2 * maximum_build_levels;
+/// Depths of one built tree: of the tree over one object, and of the tree over the objects.
+inline constexpr std::uint32_t maximum_build_depth = 64;
+/// A walk leaves at most one node behind per depth; a whole tree has two built trees on top of one another.
+inline constexpr std::uint32_t traversal_stack_size = 2 * maximum_build_depth;
 
 /// A box and what is below it: two children in neighbouring slots, or a range of the tree's primitive order.
 template <std::floating_point Scalar>
@@ -33,23 +33,23 @@ struct BvhNode {
   std::uint32_t right() const { return first + 1; }
 };
 
-/// Calls `visit(slot, level)` for `root` (level 1) and every node below it, parents before children.
+/// Calls `visit(slot, depth)` for `root` (depth 1) and every node below it, parents before children.
 template <std::floating_point Scalar, class Visit>
 void for_each_node(std::span<const BvhNode<Scalar>> nodes, std::uint32_t root, Visit&& visit) {
   struct Pending {
     std::uint32_t slot;
-    std::uint32_t level;
+    std::uint32_t depth;
   };
   std::array<Pending, traversal_stack_size> stack;
   std::size_t height = 0;
   Pending current{root, 1};
   while (true) {
-    visit(current.slot, current.level);
+    visit(current.slot, current.depth);
     const BvhNode<Scalar>& node = nodes[current.slot];
     if (!node.is_leaf()) {
       DCEM_ASSERT(height < stack.size());
-      stack[height++] = {node.right(), current.level + 1};
-      current = {node.left(), current.level + 1};
+      stack[height++] = {node.right(), current.depth + 1};
+      current = {node.left(), current.depth + 1};
     } else if (height > 0) {
       current = stack[--height];
     } else {

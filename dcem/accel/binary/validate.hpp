@@ -24,7 +24,7 @@ class BvhInspector {
 
  private:
   std::string check_sizes() const;
-  std::string check_node(std::uint32_t slot, std::uint32_t level);
+  std::string check_node(std::uint32_t slot, std::uint32_t depth);
   std::string check_inner(std::uint32_t slot) const;
   std::string check_leaf(std::uint32_t slot);
   std::string check_position(std::uint32_t slot, std::size_t position);
@@ -96,8 +96,8 @@ std::string BvhInspector<Scalar>::check_inner(std::uint32_t slot) const {
 }
 
 template <std::floating_point Scalar>
-std::string BvhInspector<Scalar>::check_node(std::uint32_t slot, std::uint32_t level) {
-  if (level >= traversal_stack_size) return at(slot, "deeper than the traversal stack");
+std::string BvhInspector<Scalar>::check_node(std::uint32_t slot, std::uint32_t depth) {
+  if (depth >= traversal_stack_size) return at(slot, "deeper than the traversal stack");
   if (slot_seen_[slot]) return at(slot, "reached twice");
   slot_seen_[slot] = true;
   return arrays_.nodes[slot].is_leaf() ? check_leaf(slot) : check_inner(slot);
@@ -127,13 +127,13 @@ std::string BvhInspector<Scalar>::find_defect() {
   if (arrays_.parent[0] != no_node) return at(0, "the root has a parent");
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pending{{0, 1}};
   while (!pending.empty()) {
-    const auto [slot, level] = pending.back();
+    const auto [slot, depth] = pending.back();
     pending.pop_back();
-    if (std::string defect = check_node(slot, level); !defect.empty()) return defect;
+    if (std::string defect = check_node(slot, depth); !defect.empty()) return defect;
     const BvhNode<Scalar>& node = arrays_.nodes[slot];
     if (node.is_leaf()) continue;
-    pending.emplace_back(node.right(), level + 1);
-    pending.emplace_back(node.left(), level + 1);
+    pending.emplace_back(node.right(), depth + 1);
+    pending.emplace_back(node.left(), depth + 1);
   }
   for (std::size_t primitive = 0; primitive < boxes_.size(); ++primitive) {
     if (!primitive_seen_[primitive]) return "primitive " + std::to_string(primitive) + " is in no leaf";
@@ -144,7 +144,7 @@ std::string BvhInspector<Scalar>::find_defect() {
 }  // namespace detail
 
 /// A sentence about the first broken promise, empty when there is none: children inside parents and linked to them,
-/// every box exactly tight, each primitive in one leaf that it is linked to, levels within the traversal stack, every
+/// every box exactly tight, each primitive in one leaf that it is linked to, depths within the traversal stack, every
 /// slot either in the tree or free. `boxes` are the primitives' boxes as they are now.
 template <std::floating_point Scalar>
 std::string find_defect(const BvhArrays<Scalar>& arrays, std::span<const Aabb<Scalar>> boxes) {

@@ -106,16 +106,16 @@ void require_valid_boxes(std::span<const Aabb<Scalar>> boxes) {
   }
 }
 
-/// Throws std::invalid_argument unless the primitives come in groups [group_first[i], group_first[i+1]) that start at
-/// 0.
-inline void require_valid_groups(std::span<const std::uint32_t> group_first, std::size_t primitive_count) {
+/// Throws std::invalid_argument unless the primitives come in objects [object_first[i], object_first[i+1]) that start
+/// at 0.
+inline void require_valid_objects(std::span<const std::uint32_t> object_first, std::size_t primitive_count) {
   std::size_t previous = 0;
-  for (const std::uint32_t first : group_first) {
-    if (first < previous || first > primitive_count) throw std::invalid_argument("group starts must ascend");
+  for (const std::uint32_t first : object_first) {
+    if (first < previous || first > primitive_count) throw std::invalid_argument("object starts must ascend");
     previous = first;
   }
-  const bool starts_at_zero = group_first.empty() ? primitive_count == 0 : group_first.front() == 0;
-  if (!starts_at_zero) throw std::invalid_argument("the first group must start at primitive 0");
+  const bool starts_at_zero = object_first.empty() ? primitive_count == 0 : object_first.front() == 0;
+  if (!starts_at_zero) throw std::invalid_argument("the first object must start at primitive 0");
 }
 
 /// The smallest box of another precision that holds `box`: a tree in float over geometry in double must round outward.

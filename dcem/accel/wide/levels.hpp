@@ -1,6 +1,6 @@
 #pragma once
-/// Layers of a wide tree: the tree over all, whose leaves are blocks and units, and the tree within each unit, whose
-/// leaves are blocks. Edits stay within a layer.
+/// Levels of a wide tree: the tree over all, whose leaves are leaves and objects, and the tree within each object,
+/// whose leaves are leaves. Edits stay within a level.
 #include <cstdint>
 
 #include "dcem/accel/wide/arrays.hpp"
@@ -8,27 +8,27 @@
 
 namespace dcem::detail {
 
-/// Nodes of a built layer lie on no deeper level, its root being on level 1: below them there are leaves.
-inline constexpr std::uint32_t wide_layer_levels = WideBinner::levels - 1;
+/// Nodes of a built level lie on no deeper depth, its root being on depth 1: below them there are leaves.
+inline constexpr std::uint32_t wide_level_depth_limit = WideBinner::depths - 1;
 
-/// Whether a child is a node of the same layer as the node in which it hangs.
-inline bool is_layer_node(const WideArrays& arrays, WideChild child) {
-  return !child.is_none() && !child.is_block() && arrays.node_unit[child.index()] == WideArrays::no_unit;
+/// Whether a child is a node of the same level as the node in which it hangs.
+inline bool is_level_node(const WideArrays& arrays, WideChild child) {
+  return !child.is_none() && !child.is_leaf() && arrays.object_rooted_at_node[child.index()] == WideArrays::no_object;
 }
 
-inline bool is_layer_root(const WideArrays& arrays, std::uint32_t node) {
-  return node == 0 || arrays.node_unit[node] != WideArrays::no_unit;
+inline bool is_level_root(const WideArrays& arrays, std::uint32_t node) {
+  return node == 0 || arrays.object_rooted_at_node[node] != WideArrays::no_object;
 }
 
-/// Level of a node within its layer, 1 for its root.
-inline std::uint32_t layer_level(const WideArrays& arrays, std::uint32_t node) {
-  std::uint32_t level = 1;
-  for (; !is_layer_root(arrays, node); node = arrays.node_place[node].node()) ++level;
-  return level;
+/// Level of a node within its level, 1 for its root.
+inline std::uint32_t depth_in_level(const WideArrays& arrays, std::uint32_t node) {
+  std::uint32_t depth = 1;
+  for (; !is_level_root(arrays, node); node = arrays.lane_of_node[node].node()) ++depth;
+  return depth;
 }
 
 inline bool is_used_node(const WideArrays& arrays, std::uint32_t node) {
-  return node < arrays.nodes.size() && (node == 0 || !arrays.node_place[node].is_none());
+  return node < arrays.nodes.size() && (node == 0 || !arrays.lane_of_node[node].is_none());
 }
 
 /// Eight boxes, one in each lane.

@@ -1,5 +1,5 @@
 #pragma once
-/// The parts of a wide tree: nodes of eight boxes, and blocks of eight patches in its leaves.
+/// The parts of a wide tree: nodes of eight boxes, and leaves of eight quads in its leaves.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,32 +11,32 @@
 
 namespace dcem {
 
-/// What an entry of a node leads to: another node, a block of patches, or nothing.
+/// What an entry of a node leads to: another node, a leaf of quads, or nothing.
 struct WideChild {
-  static constexpr std::uint32_t block_flag = 0x80000000U;
+  static constexpr std::uint32_t leaf_flag = 0x80000000U;
   static constexpr std::uint32_t none_code = 0xffffffffU;
 
   std::uint32_t code = none_code;
 
   static WideChild node(std::uint32_t index) { return {index}; }
-  static WideChild block(std::uint32_t index) { return {index | block_flag}; }
+  static WideChild leaf(std::uint32_t index) { return {index | leaf_flag}; }
   bool is_none() const { return code == none_code; }
-  bool is_block() const { return (code & block_flag) != 0; }
-  std::uint32_t index() const { return code & ~block_flag; }
+  bool is_leaf() const { return (code & leaf_flag) != 0; }
+  std::uint32_t index() const { return code & ~leaf_flag; }
   friend bool operator==(const WideChild&, const WideChild&) = default;
 };
 
 /// A lane of a node, as one number.
-struct WidePlace {
+struct NodeLane {
   static constexpr std::uint32_t none_code = 0xffffffffU;
 
   std::uint32_t code = none_code;
 
-  static WidePlace at(std::uint32_t node, std::uint32_t lane) { return {node * simd_lanes + lane}; }
+  static NodeLane at(std::uint32_t node, std::uint32_t lane) { return {node * simd_lanes + lane}; }
   bool is_none() const { return code == none_code; }
   std::uint32_t node() const { return code / simd_lanes; }
   std::uint32_t lane() const { return code % simd_lanes; }
-  friend bool operator==(const WidePlace&, const WidePlace&) = default;
+  friend bool operator==(const NodeLane&, const NodeLane&) = default;
 };
 
 /// Eight boxes and what is in them. Boxes are rounded outwards from the double ones, metres from the tree's origin. A
@@ -91,24 +91,24 @@ struct alignas(64) WideNode {
   }
 };
 
-/// Eight patches, each one triangle or two that make a flat convex quadrilateral a b c d. In a triangle d is the middle
+/// Eight quads, each one triangle or two that make a flat convex quadrilateral a b c d. In a triangle d is the middle
 /// of a c.
 ///
-/// The numbers serve to say of a ray that it surely misses a patch or surely hits it; where neither is sure, double
-/// precision decides. The patches of block b have the numbers 8 b + lane.
-struct alignas(64) PatchBlock {
+/// The numbers serve to say of a ray that it surely misses a quad or surely hits it; where neither is sure, double
+/// precision decides. The quads of leaf b have the numbers 8 b + lane.
+struct alignas(64) QuadLeaf {
   std::array<float, 3> centre_m{};  ///< from the tree's origin, exact
   float size_m = 0.0F;              ///< no corner has a larger coordinate, from the centre
-  float reach_m = 0.0F;             ///< edge_error_factor · the longest distance between two corners of a patch
+  float reach_m = 0.0F;             ///< edge_error_factor · the longest distance between two corners of a quad
   float bend_m = 0.0F;              ///< how far d is from the plane of a, b, c, at most
-  std::uint32_t lanes = 0;          ///< bit i: there is a patch in lane i, and it is in the scene
+  std::uint32_t lanes = 0;          ///< bit i: there is a quad in lane i, and it is in the scene
   std::array<std::array<float, simd_lanes>, 3> normal{};  ///< of a, b, c; zero where they have none
   /// [corner][axis][lane], from the centre.
   std::array<std::array<std::array<float, simd_lanes>, 3>, 4> corner_m{};
 
-  /// Room for the rounding of the edge functions: see WideRay::meets(const PatchBlock&).
+  /// Room for the rounding of the edge functions: see WideRay::meets(const QuadLeaf&).
   static constexpr double edge_error_factor = 10.0;
 };
-static_assert(sizeof(WideNode) == 256 && sizeof(PatchBlock) == 512, "lines of memory are what rays wait for");
+static_assert(sizeof(WideNode) == 256 && sizeof(QuadLeaf) == 512, "lines of memory are what rays wait for");
 
 }  // namespace dcem

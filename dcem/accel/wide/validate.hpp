@@ -27,7 +27,7 @@ class WideInspector {
     }
     if (arrays_.nodes.empty()) return boxes_.empty() ? "" : "there is no root";
     node_seen_.assign(arrays_.nodes.size(), false);
-    block_seen_.assign(arrays_.blocks.size(), false);
+    leaf_seen_.assign(arrays_.leaves.size(), false);
     if (std::string defect = check_node(0, 1); !defect.empty()) return defect;
     return check_whole();
   }
@@ -37,8 +37,8 @@ class WideInspector {
     return std::string(what) + " " + std::to_string(index) + ": " + defect;
   }
 
-  std::string check_node(std::uint32_t node, std::uint32_t level) {
-    if (level > wide_levels) return at("node", node, "lies deeper than a walk can follow");
+  std::string check_node(std::uint32_t node, std::uint32_t depth) {
+    if (depth > wide_depth_limit) return at("node", node, "lies deeper than a walk can follow");
     if (node_seen_[node]) return at("node", node, "hangs in two places");
     node_seen_[node] = true;
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
@@ -48,47 +48,47 @@ class WideInspector {
         if (!box.empty()) return at("node", node, "a lane without child has a box");
         continue;
       }
-      if (std::string defect = check_child(child, WidePlace::at(node, lane), box, level); !defect.empty()) {
+      if (std::string defect = check_child(child, NodeLane::at(node, lane), box, depth); !defect.empty()) {
         return defect;
       }
     }
     return {};
   }
 
-  std::string check_child(WideChild child, WidePlace place, const Aabb<float>& box, std::uint32_t level) {
-    const bool exists = child.index() < (child.is_block() ? arrays_.blocks.size() : arrays_.nodes.size());
+  std::string check_child(WideChild child, NodeLane place, const Aabb<float>& box, std::uint32_t depth) {
+    const bool exists = child.index() < (child.is_leaf() ? arrays_.leaves.size() : arrays_.nodes.size());
     if (!exists) return at("node", place.node(), "leads to what does not exist");
     if (arrays_.place_of(child) != place) return at("node", place.node(), "a child does not know where it hangs");
-    const std::uint32_t unit = arrays_.unit_of(child);
-    if (unit != WideArrays::no_unit && !(arrays_.unit_root[unit] == child)) {
-      return at("node", place.node(), "a unit does not know its root");
+    const std::uint32_t object = arrays_.object_rooted_at(child);
+    if (object != WideArrays::no_object && !(arrays_.object_root[object] == child)) {
+      return at("node", place.node(), "an object does not know its root");
     }
-    sum_m2_ += (child.is_block() ? arrays_.costs.block : arrays_.costs.node) * static_cast<double>(box.half_area());
-    if (child.is_block()) return check_block(child.index(), box);
+    sum_m2_ += (child.is_leaf() ? arrays_.costs.leaf : arrays_.costs.node) * static_cast<double>(box.half_area());
+    if (child.is_leaf()) return check_leaf(child.index(), box);
     if (arrays_.nodes[child.index()].box() != box) return at("node", child.index(), "its box is not tight");
-    return check_node(child.index(), level + 1);
+    return check_node(child.index(), depth + 1);
   }
 
-  std::string check_block(std::uint32_t block, const Aabb<float>& box) {
-    if (block_seen_[block]) return at("block", block, "hangs in two places");
-    block_seen_[block] = true;
+  std::string check_leaf(std::uint32_t leaf, const Aabb<float>& box) {
+    if (leaf_seen_[leaf]) return at("leaf", leaf, "hangs in two places");
+    leaf_seen_[leaf] = true;
     Aabb<double> all;
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-      const std::uint32_t index = block * simd_lanes + lane;
-      const WidePatch& patch = arrays_.patches[index];
-      const bool there = !patch.is_none() && !arrays_.box_of_patch(patch).empty();
-      if ((arrays_.blocks[block].lanes >> lane & 1U) != (there ? 1U : 0U)) {
-        return at("block", block, "its lanes are not those of the triangles that are there");
+      const std::uint32_t index = leaf * simd_lanes + lane;
+      const Quad& quad = arrays_.quads[index];
+      const bool there = !quad.is_none() && !arrays_.box_of_quad(quad).empty();
+      if ((arrays_.leaves[leaf].lanes >> lane & 1U) != (there ? 1U : 0U)) {
+        return at("leaf", leaf, "its lanes are not those of the triangles that are there");
       }
-      if (patch.is_none()) continue;
-      for (const std::uint32_t triangle : patch.triangles()) {
-        if (triangle >= boxes_.size()) return at("block", block, "holds a triangle that does not exist");
-        if (arrays_.patch_of_triangle[triangle] != index) return at("triangle", triangle, "is in another patch");
+      if (quad.is_none()) continue;
+      for (const std::uint32_t triangle : quad.triangles()) {
+        if (triangle >= boxes_.size()) return at("leaf", leaf, "holds a triangle that does not exist");
+        if (arrays_.quad_of_triangle[triangle] != index) return at("triangle", triangle, "is in another quad");
         ++triangles_;
       }
-      all.extend(arrays_.box_of_patch(patch));
+      all.extend(arrays_.box_of_quad(quad));
     }
-    return arrays_.rounded_out(all) == box ? "" : at("block", block, "its box is not tight");
+    return arrays_.rounded_out(all) == box ? "" : at("leaf", leaf, "its box is not tight");
   }
 
   std::string check_whole() const {
@@ -97,8 +97,8 @@ class WideInspector {
           std::find(arrays_.free_nodes.begin(), arrays_.free_nodes.end(), node) != arrays_.free_nodes.end();
       if (node_seen_[node] == is_free) return at("node", node, "is neither used nor free, or both");
     }
-    for (std::uint32_t block = 0; block < block_seen_.size(); ++block) {
-      if (!block_seen_[block]) return at("block", block, "hangs nowhere");
+    for (std::uint32_t leaf = 0; leaf < leaf_seen_.size(); ++leaf) {
+      if (!leaf_seen_[leaf]) return at("leaf", leaf, "hangs nowhere");
     }
     if (triangles_ != boxes_.size()) return "not every triangle is in the tree";
     // The sum is kept by differences: it drifts by roundings only.
@@ -108,7 +108,7 @@ class WideInspector {
 
   const WideArrays& arrays_;
   std::span<const Aabb<double>> boxes_;
-  std::vector<bool> node_seen_, block_seen_;
+  std::vector<bool> node_seen_, leaf_seen_;
   std::size_t triangles_ = 0;
   double sum_m2_ = 0.0;
 };

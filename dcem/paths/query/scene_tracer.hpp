@@ -1,6 +1,6 @@
 #pragma once
 /// Questions that paths ask of the scene: what does a ray hit, is a leg free and which sheets does it cross, which
-/// facets are at a point. `Tree` is `WideTree`, `Bvh<double>` or their oracle `BruteForce<double>`, over the scene's
+/// facets are at a point. `Tree` is `WideBvh`, `Bvh<double>` or their oracle `BruteForce<double>`, over the scene's
 /// triangles.
 #include <algorithm>
 #include <array>

@@ -18,21 +18,21 @@ inline TriangleView triangle_view(const Scene& scene) {
 /// One group per body.
 template <typename Tree>
 void build_tree(Tree& tree, const Scene& scene) {
-  if constexpr (std::same_as<Tree, WideTree>) {
-    tree.build_grouped(triangle_view(scene), scene.triangle_boxes(), scene.first_triangles());
+  if constexpr (std::same_as<Tree, WideBvh>) {
+    tree.build_objects(triangle_view(scene), scene.triangle_boxes(), scene.first_triangles());
   } else {
-    tree.build_grouped(scene.triangle_boxes(), scene.first_triangles());
+    tree.build_objects(scene.triangle_boxes(), scene.first_triangles());
   }
 }
 
 /// Brings the tree up to date with the scene, in which the triangles in `moved` have moved.
 template <typename Tree>
-UpkeepReport update_tree(MaintainerOf<Tree>& maintainer, Tree& tree, std::span<const std::uint32_t> moved,
+TreeUpdateReport update_tree(UpdaterOf<Tree>& updater, Tree& tree, std::span<const std::uint32_t> moved,
                          const Scene& scene) {
-  if constexpr (std::same_as<Tree, WideTree>) {
-    return maintainer.update(tree, moved, triangle_view(scene), scene.triangle_boxes());
+  if constexpr (std::same_as<Tree, WideBvh>) {
+    return updater.update(tree, moved, triangle_view(scene), scene.triangle_boxes());
   } else {
-    return maintainer.update(tree, moved, scene.triangle_boxes());
+    return updater.update(tree, moved, scene.triangle_boxes());
   }
 }
 

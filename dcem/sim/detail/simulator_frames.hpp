@@ -40,7 +40,7 @@ FrameResult Simulator<Surface, Tree>::advance(const Frame& frame) {
 }
 
 template <SurfaceModel Surface, typename Tree>
-UpkeepReport Simulator<Surface, Tree>::move_to(const Frame& frame) {
+TreeUpdateReport Simulator<Surface, Tree>::move_to(const Frame& frame) {
   const ChangeSet changes = scene_.apply(frame);
   CacheCounters not_reported;
   forget_replaced(changes, not_reported);
@@ -49,13 +49,13 @@ UpkeepReport Simulator<Surface, Tree>::move_to(const Frame& frame) {
 }
 
 template <SurfaceModel Surface, typename Tree>
-UpkeepReport Simulator<Surface, Tree>::update_tree(const ChangeSet& changes) {
+TreeUpdateReport Simulator<Surface, Tree>::update_tree(const ChangeSet& changes) {
   for (const BodyId body : changes.moved) {
     const auto [first, last] = scene_.triangle_range(body);
     for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
   }
   // Kept where this throws (a box too far away): the tree must hear of them in a later frame.
-  const UpkeepReport report = dcem::update_tree(maintainer_, tree_, moved_, scene_);
+  const TreeUpdateReport report = dcem::update_tree(updater_, tree_, moved_, scene_);
   moved_.clear();
   return report;
 }

@@ -192,7 +192,7 @@ template <SurfaceModel Surface>
 SimulationSettings Verifier<Surface>::rival(SimulationSettings settings, Discovery discovery) {
   settings.propagation.discovery = discovery;
   settings.propagation.cache = CacheMode::off;
-  settings.upkeep.policy = TreePolicy::rebuild_always;
+  settings.tree_update.policy = TreePolicy::rebuild_always;
   return settings;
 }
 

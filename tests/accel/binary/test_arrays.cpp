@@ -16,7 +16,7 @@ TEST_CASE("pairs of slots start even, and freed pairs are used again, lowest fir
   sprout[4] = {{}, 5, 1};
   std::vector<std::uint32_t> leaves;
   const auto note = [&](std::uint32_t leaf) { leaves.push_back(leaf); };
-  arrays.plant(0, sprout, note);
+  arrays.build_all(0, sprout, note);
   CHECK(leaves == std::vector<std::uint32_t>{2, 4, 5});
   CHECK(arrays.nodes[0].left() == 2);
   CHECK(arrays.nodes[3].left() == 4);

@@ -32,10 +32,10 @@ TEST_CASE("a node with primitives is a leaf, the others have two neighbouring ch
   CHECK(nodes[2].right() == 4);
 }
 
-TEST_CASE("the walk below a node meets each node once, parents first, with its level") {
+TEST_CASE("the walk below a node meets each node once, parents first, with its depth") {
   const auto nodes = three_leaves();
   std::vector<std::pair<std::uint32_t, std::uint32_t>> met;
-  const auto note = [&](std::uint32_t slot, std::uint32_t level) { met.emplace_back(slot, level); };
+  const auto note = [&](std::uint32_t slot, std::uint32_t depth) { met.emplace_back(slot, depth); };
   for_each_node<float>(nodes, 0, note);
   CHECK(met == std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {1, 2}, {2, 2}, {3, 3}, {4, 3}});
   met.clear();

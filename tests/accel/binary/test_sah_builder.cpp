@@ -25,7 +25,7 @@ Built<Scalar> built(const dcem_test::Boxes<Scalar>& boxes, const SahSettings& se
   for (std::uint32_t index = 0; index < boxes.size(); ++index) result.items.emplace_back(boxes[index], index);
   result.nodes = SahBuilder<Scalar>(settings).build(result.items);
   for_each_node<Scalar>(result.nodes, 0,
-                        [&](std::uint32_t, std::uint32_t level) { result.depth = std::max(result.depth, level); });
+                        [&](std::uint32_t, std::uint32_t depth) { result.depth = std::max(result.depth, depth); });
   return result;
 }
 
@@ -65,7 +65,7 @@ TEST_CASE_TEMPLATE("no leaf exceeds the limit, also for identical boxes", Scalar
 TEST_CASE("equal costs are divided evenly: points on a line make no chain") {
   dcem_test::Boxes<double> boxes;
   for (int index = 0; index < 4096; ++index) boxes.push_back({Vec3(index, 0, 0), Vec3(index, 0, 0)});
-  // 1024 leaves of 4 would be 11 levels; the bins are not aligned with the points, which may cost a few.
+  // 1024 leaves of 4 would be 11 depths; the bins are not aligned with the points, which may cost a few.
   CHECK(built(boxes).depth <= 15);
 }
 
@@ -77,13 +77,13 @@ TEST_CASE("boxes that shrink geometrically cannot make the tree deeper than its 
   }
   const auto tree = built(boxes);
   CHECK(tree.depth > 32);
-  CHECK(tree.depth <= maximum_build_levels);
+  CHECK(tree.depth <= maximum_build_depth);
   std::vector<BuildItem<double>> items = tree.items;
   // 450 items need 9 halvings at most: ten levels are always enough.
   const auto shallow = SahBuilder<double>({}).build(items, 10);
-  std::uint32_t depth = 0;
-  for_each_node<double>(shallow, 0, [&](std::uint32_t, std::uint32_t level) { depth = std::max(depth, level); });
-  CHECK(depth <= 10);
+  std::uint32_t deepest = 0;
+  for_each_node<double>(shallow, 0, [&](std::uint32_t, std::uint32_t depth) { deepest = std::max(deepest, depth); });
+  CHECK(deepest <= 10);
 }
 
 TEST_CASE_TEMPLATE("the order of the boxes does not change the tree", Scalar, float, double) {
@@ -125,7 +125,7 @@ TEST_CASE("the surface-area heuristic beats halving by number") {
   const double sah = subtree_sah_cost<float>(built(boxes).nodes, 0, settings);
   std::vector<BuildItem<float>> items;
   for (std::uint32_t index = 0; index < boxes.size(); ++index) items.emplace_back(boxes[index], index);
-  // With the fewest levels allowed the builder must take the median everywhere: 5000 items, 13 halvings.
+  // With the fewest depths allowed the builder must take the median everywhere: 5000 items, 13 halvings.
   const auto median = SahBuilder<float>(settings).build(items, 14);
   CHECK(sah < 0.95 * subtree_sah_cost<float>(median, 0, settings));
 }

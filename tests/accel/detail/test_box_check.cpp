@@ -28,16 +28,16 @@ TEST_CASE("every box that is turned inside out on an axis counts as the empty bo
   CHECK(canonical_box(box) == box);
 }
 
-TEST_CASE("groups start at 0 and ascend") {
+TEST_CASE("objects start at 0 and ascend") {
   const std::array<std::uint32_t, 3> good{0, 4, 4};
   const std::array<std::uint32_t, 2> late{1, 4};
   const std::array<std::uint32_t, 3> falling{0, 4, 3};
-  CHECK_NOTHROW(require_valid_groups(good, 4));
-  CHECK_NOTHROW(require_valid_groups({}, 0));
-  CHECK_THROWS_AS(require_valid_groups(good, 3), std::invalid_argument);
-  CHECK_THROWS_AS(require_valid_groups({}, 3), std::invalid_argument);
-  CHECK_THROWS_AS(require_valid_groups(late, 4), std::invalid_argument);
-  CHECK_THROWS_AS(require_valid_groups(falling, 4), std::invalid_argument);
+  CHECK_NOTHROW(require_valid_objects(good, 4));
+  CHECK_NOTHROW(require_valid_objects({}, 0));
+  CHECK_THROWS_AS(require_valid_objects(good, 3), std::invalid_argument);
+  CHECK_THROWS_AS(require_valid_objects({}, 3), std::invalid_argument);
+  CHECK_THROWS_AS(require_valid_objects(late, 4), std::invalid_argument);
+  CHECK_THROWS_AS(require_valid_objects(falling, 4), std::invalid_argument);
 }
 
 TEST_CASE("a box rounded outward to float holds the box, and rounding it back changes nothing") {

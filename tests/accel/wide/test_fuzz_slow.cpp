@@ -120,9 +120,9 @@ void add_pair(WideMesh& mesh, RandomStream& random, double bend) {
 class Scene {
  public:
   Scene(std::uint64_t seed, const Scale& scale) : random_(seed), scale_(scale) {
-    add_group(dcem_test::bent_ground(10, 1e-4, seed));
-    const std::uint32_t groups = static_cast<std::uint32_t>(5 + random_.next() % 40);
-    for (std::uint32_t group = 0; group < groups; ++group) {
+    add_object(dcem_test::bent_ground(10, 1e-4, seed));
+    const std::uint32_t objects = static_cast<std::uint32_t>(5 + random_.next() % 40);
+    for (std::uint32_t object = 0; object < objects; ++object) {
       WideMesh part;
       switch (random_.next() % 6) {
         case 0:
@@ -144,19 +144,19 @@ class Scene {
           for (int pair = 0; pair < 6; ++pair) add_pair(part, random_, std::pow(10.0, between(random_, -5, 0)));
           part = part.changed([](const Vec3& v) { return 0.3 * v; });
       }
-      add_group(part);
+      add_object(part);
     }
     mesh.absent.assign(mesh.triangles.size(), false);
     rest_ = mesh.vertices;
     place_all();
   }
 
-  /// Some groups move, bend, collapse, vanish in whole or in part.
+  /// Some objects move, bend, collapse, vanish in whole or in part.
   void step() {
     moved.clear();
-    for (std::size_t group = 0; group < offset_.size(); ++group) {
+    for (std::size_t object = 0; object < offset_.size(); ++object) {
       if (random_.uniform() < 0.6) continue;
-      change(group);
+      change(object);
     }
     boxes = mesh.boxes();
   }
@@ -169,13 +169,13 @@ class Scene {
     boxes = mesh.boxes();
   }
 
-  WideTree built(double flatness, WideQuality quality, std::uint32_t unit_limit = 60) const {
+  WideBvh built(double flatness, WideQuality quality, std::uint32_t object_subtree_limit = 60) const {
     WideSettings settings;
     settings.pair_flatness = flatness;
     settings.quality = quality;
-    settings.unit_limit = unit_limit;
-    WideTree tree;
-    tree.build_grouped(mesh.view(), boxes, group_first, settings);
+    settings.object_subtree_limit = object_subtree_limit;
+    WideBvh tree;
+    tree.build_objects(mesh.view(), boxes, object_first, settings);
     return tree;
   }
   /// A ray of some kind, in the scene's scale.
@@ -225,37 +225,38 @@ class Scene {
   }
 
   WideMesh mesh;
-  std::vector<std::uint32_t> group_first, moved;
+  std::vector<std::uint32_t> object_first, moved;
   std::vector<Aabb<double>> boxes;
 
  private:
-  void add_group(const WideMesh& part) {
-    group_first.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
+  void add_object(const WideMesh& part) {
+    object_first.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
     vertex_first_.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
     mesh.append(part);
-    offset_.push_back(group_first.size() == 1 ? Vec3(0.0) : random_in_cube(random_, 6.0));
+    offset_.push_back(object_first.size() == 1 ? Vec3(0.0) : random_in_cube(random_, 6.0));
   }
-  std::uint32_t vertex_end(std::size_t group) const {
-    return group + 1 < vertex_first_.size() ? vertex_first_[group + 1] : static_cast<std::uint32_t>(rest_.size());
+  std::uint32_t vertex_end(std::size_t object) const {
+    return object + 1 < vertex_first_.size() ? vertex_first_[object + 1] : static_cast<std::uint32_t>(rest_.size());
   }
-  void place(std::size_t group, double bend, double shrink) {
-    for (std::uint32_t vertex = vertex_first_[group]; vertex < vertex_end(group); ++vertex) {
-      const Vec3 local = shrink * rest_[vertex] + offset_[group] + (bend > 0 ? random_in_cube(random_, bend) : Vec3(0));
-      const Vec3 away = group % 2 == 1 ? Vec3(scale_.far, 0, 0) : Vec3(0);
+  void place(std::size_t object, double bend, double shrink) {
+    for (std::uint32_t vertex = vertex_first_[object]; vertex < vertex_end(object); ++vertex) {
+      const Vec3 local =
+          shrink * rest_[vertex] + offset_[object] + (bend > 0 ? random_in_cube(random_, bend) : Vec3(0));
+      const Vec3 away = object % 2 == 1 ? Vec3(scale_.far, 0, 0) : Vec3(0);
       mesh.vertices[vertex] = scale_.at + away + scale_.size * local;
     }
   }
   void place_all() {
-    for (std::size_t group = 0; group < offset_.size(); ++group) place(group, 0.0, 1.0);
+    for (std::size_t object = 0; object < offset_.size(); ++object) place(object, 0.0, 1.0);
     boxes = mesh.boxes();
   }
-  void change(std::size_t group) {
+  void change(std::size_t object) {
     const double kind = random_.uniform();
-    if (group > 0) offset_[group] += random_in_cube(random_, kind < 0.1 ? 6.0 : 0.3);
-    place(group, kind > 0.7 ? std::pow(10.0, between(random_, -4, 0)) : 0.0, kind > 0.65 && kind < 0.7 ? 0.0 : 1.0);
-    const auto end = group + 1 < group_first.size() ? group_first[group + 1] : mesh.triangles.size();
+    if (object > 0) offset_[object] += random_in_cube(random_, kind < 0.1 ? 6.0 : 0.3);
+    place(object, kind > 0.7 ? std::pow(10.0, between(random_, -4, 0)) : 0.0, kind > 0.65 && kind < 0.7 ? 0.0 : 1.0);
+    const auto end = object + 1 < object_first.size() ? object_first[object + 1] : mesh.triangles.size();
     const bool goes = random_.uniform() < 0.1, comes = random_.uniform() < 0.3, in_part = random_.uniform() < 0.1;
-    for (std::uint32_t triangle = group_first[group]; triangle < end; ++triangle) {
+    for (std::uint32_t triangle = object_first[object]; triangle < end; ++triangle) {
       if (comes) mesh.absent[triangle] = false;
       if (goes || (in_part && random_.uniform() < 0.3)) mesh.absent[triangle] = true;
       moved.push_back(triangle);
@@ -281,7 +282,7 @@ std::string shape_of(const Scene& scene, std::uint32_t triangle) {
                 c.x, c.y, c.z);
   return text;
 }
-std::string show(const std::optional<WideHit>& hit) {
+std::string show(const std::optional<TriangleHit>& hit) {
   if (!hit) return "none";
   char text[80];
   std::snprintf(text, sizeof text, "%.17g on %u", hit->t, hit->triangle);
@@ -289,7 +290,7 @@ std::string show(const std::optional<WideHit>& hit) {
 }
 
 /// What is wrong with an answer, against the reference; empty where nothing is.
-std::string fault_of(const Scene& scene, const Ray<double>& ray, const std::optional<WideHit>& hit, bool blocked) {
+std::string fault_of(const Scene& scene, const Ray<double>& ray, const std::optional<TriangleHit>& hit, bool occluded) {
   std::vector<Reference> all(scene.mesh.triangles.size());
   for (std::uint32_t triangle = 0; triangle < all.size(); ++triangle) {
     if (scene.mesh.is_there(triangle)) all[triangle] = reference_of(ray, scene.mesh.corners(triangle));
@@ -299,8 +300,8 @@ std::string fault_of(const Scene& scene, const Ray<double>& ray, const std::opti
     surely = surely || one.meeting == Meeting::surely;
     perhaps = perhaps || one.meeting != Meeting::no;
   }
-  if (blocked && !perhaps) return "blocked by nothing";
-  if (!blocked && surely) return "not blocked";
+  if (occluded && !perhaps) return "occluded by nothing";
+  if (!occluded && surely) return "not occluded";
   if (hit.has_value() && !perhaps) return "nothing is met";
   if (!hit && surely) return "nothing found";
   if (!hit) return {};
@@ -328,10 +329,10 @@ bool is_noise(const TriangleCorners& corners, const Ray<double>& ray) {
          !(std::abs(glm::dot(across, ray.direction)) > 1e-12 * size * size * glm::length(ray.direction));
 }
 
-/// The nearest hit through WatertightRay, by whatever hands out the triangles.
+/// The closest_hit hit through WatertightRay, by whatever hands out the triangles.
 struct Exact {
   double t = infinity;
-  std::uint32_t triangle = WidePatch::no_triangle;
+  std::uint32_t triangle = Quad::no_triangle;
   bool operator==(const Exact&) const = default;
 };
 void offer(const WideMesh& mesh, const Ray<double>& ray, std::uint32_t triangle, Exact& best) {
@@ -345,29 +346,29 @@ struct Tally {
   int hits = 0, misses = 0;
 };
 
-void check_ray(const Scene& scene, const std::vector<const WideTree*>& trees, const Ray<double>& ray, Tally& tally) {
+void check_ray(const Scene& scene, const std::vector<const WideBvh*>& trees, const Ray<double>& ray, Tally& tally) {
   INFO(text_of(ray));
-  const WideTree& tree = *trees[0];
-  const auto hit = tree.nearest(ray);
-  const bool blocked = tree.blocked(ray);
-  CHECK(fault_of(scene, ray, hit, blocked) == "");
-  const auto is_noisy = [&](const std::optional<WideHit>& one) {
+  const WideBvh& tree = *trees[0];
+  const auto hit = tree.closest_hit(ray);
+  const bool occluded = tree.occluded(ray);
+  CHECK(fault_of(scene, ray, hit, occluded) == "");
+  const auto is_noisy = [&](const std::optional<TriangleHit>& one) {
     return one && is_noise(scene.mesh.corners(one->triangle), ray);
   };
   for (std::size_t index = 1; index < trees.size(); ++index) {
-    if (is_noisy(hit) || is_noisy(trees[index]->nearest(ray))) continue;
-    const auto other = trees[index]->nearest(ray);
+    if (is_noisy(hit) || is_noisy(trees[index]->closest_hit(ray))) continue;
+    const auto other = trees[index]->closest_hit(ray);
     INFO(shape_of(scene, hit ? hit->triangle : other ? other->triangle : 0));
     INFO("tree " << index << ": " << show(other) << " instead of " << show(hit));
-    // The sign of t = 0 is that of the patch's order of corners.
+    // The sign of t = 0 is that of the quad's order of corners.
     CHECK(hit.has_value() == other.has_value());
     if (hit && other) {
       CHECK(hit->t == other->t);
       CHECK(hit->triangle == other->triangle);
     }
-    CHECK(trees[index]->blocked(ray) == blocked);
+    CHECK(trees[index]->occluded(ray) == occluded);
   }
-  CHECK(blocked == hit.has_value());
+  CHECK(occluded == hit.has_value());
   (hit ? tally.hits : tally.misses) += 1;
   Exact brute, walked;
   for (std::uint32_t triangle = 0; triangle < scene.mesh.triangles.size(); ++triangle) {
@@ -398,7 +399,7 @@ void check_ray(const Scene& scene, const std::vector<const WideTree*>& trees, co
   }
 }
 
-void check_boxes(const Scene& scene, const WideTree& tree, RandomStream& random) {
+void check_boxes(const Scene& scene, const WideBvh& tree, RandomStream& random) {
   const std::size_t count = scene.boxes.size();
   const auto one = scene.boxes[random.next() % count], other = scene.boxes[random.next() % count];
   Aabb<double> region = one;
@@ -408,11 +409,11 @@ void check_boxes(const Scene& scene, const WideTree& tree, RandomStream& random)
   std::vector<int> seen(count, 0), visited(count, 0);
   tree.overlapping(region, [&](std::uint32_t triangle) { ++seen[triangle]; });
   const Vec3 normal = random_direction(random);
-  const double level = one.empty() ? 0.0 : glm::dot(normal, one.center());
+  const double depth = one.empty() ? 0.0 : glm::dot(normal, one.center());
   const auto keep = [&](const Aabb<double>& box) {
     double most = 0.0;
     for (int axis = 0; axis < 3; ++axis) most += std::max(normal[axis] * box.min[axis], normal[axis] * box.max[axis]);
-    return most >= level;
+    return most >= depth;
   };
   tree.visit(keep, [&](std::uint32_t triangle) { ++visited[triangle]; });
   for (std::size_t triangle = 0; triangle < count; ++triangle) {
@@ -425,12 +426,12 @@ void check_boxes(const Scene& scene, const WideTree& tree, RandomStream& random)
 }
 
 /// What is broken. Of a tree of which nothing is there the tracked sum is what roundings left of it: it weighs nothing.
-std::string defect_of(const WideTree& tree, const Scene& scene) {
+std::string defect_of(const WideBvh& tree, const Scene& scene) {
   const std::string defect = tree.validate(scene.boxes);
   return tree.bounds().empty() && defect == "the sum of areas is off" ? "" : defect;
 }
 
-void edit(Scene& scene, WideTree& tree, RandomStream& random) {
+void edit(Scene& scene, WideBvh& tree, RandomStream& random) {
   const auto chance = [&](double of) { return random.uniform() < of; };
   if (chance(0.1)) tree.watch({chance(0.5), chance(0.5), chance(0.5)});
   if (chance(0.02)) {
@@ -458,7 +459,7 @@ void edit(Scene& scene, WideTree& tree, RandomStream& random) {
   for (int turn = 0; turn < 3 && chance(0.4); ++turn) {
     const std::vector<std::uint32_t> nodes = nodes_of(tree.arrays());
     const std::array shares{infinity, 1.0, 0.9, 1e-300};
-    tree.regrow(nodes[random.next() % nodes.size()], shares[random.next() % 4]);
+    tree.rebuild_subtree(nodes[random.next() % nodes.size()], shares[random.next() % 4]);
     REQUIRE(defect_of(tree, scene) == "");
   }
 }
@@ -476,13 +477,13 @@ void drive(const Scale& scale, int scenes, int frames, int rays, std::uint64_t s
     CAPTURE(own_seed);
     Scene scene(own_seed, scale);
     RandomStream random(own_seed + 1000);
-    WideTree tree = scene.built(1e-3, static_cast<WideQuality>(number % 3), number % 2 == 0 ? 60 : 500);
+    WideBvh tree = scene.built(1e-3, static_cast<WideQuality>(number % 3), number % 2 == 0 ? 60 : 500);
     for (int frame = 0; frame < frames; ++frame) {
       CAPTURE(frame);
       if (frame > 0) edit(scene, tree, random);
       REQUIRE(defect_of(tree, scene) == "");
-      const WideTree fresh = scene.built(1e-3, WideQuality::good), alone = scene.built(-1.0, WideQuality::fast);
-      const WideTree high = scene.built(0.5, WideQuality::high, 0);
+      const WideBvh fresh = scene.built(1e-3, WideQuality::good), alone = scene.built(-1.0, WideQuality::fast);
+      const WideBvh high = scene.built(0.5, WideQuality::high, 0);
       REQUIRE(high.validate(scene.boxes) == "");
       for (int turn = 0; turn < rays; ++turn) check_ray(scene, {&tree, &alone, &fresh, &high}, scene.ray(), tally);
       for (int turn = 0; turn < 4; ++turn) check_boxes(scene, tree, random);

@@ -293,10 +293,10 @@ inline std::vector<OracleHit> hits_on_line(const WideMesh& mesh, const Ray<doubl
   return hits;
 }
 
-/// What is wrong with an answer to "which is the nearest", empty when it is right. A hit whose t could be on either
+/// What is wrong with an answer to "which is the closest_hit", empty when it is right. A hit whose t could be on either
 /// side of t_min, t_max or of another hit by rounding may be taken or left.
-inline std::string fault_of_nearest(const std::vector<OracleHit>& line, const Ray<double>& ray,
-                                    const std::optional<dcem::WideHit>& found) {
+inline std::string fault_of_closest(const std::vector<OracleHit>& line, const Ray<double>& ray,
+                                    const std::optional<dcem::TriangleHit>& found) {
   const auto surely_inside = [&](const OracleHit& hit) {
     return hit.t - hit.tolerance > ray.t_min && hit.t + hit.tolerance < ray.t_max;
   };
@@ -323,7 +323,7 @@ inline std::string fault_of_nearest(const std::vector<OracleHit>& line, const Ra
 }
 
 /// Whether something is in the way: 1 surely, 0 surely not, -1 where rounding decides.
-inline int oracle_blocked(const std::vector<OracleHit>& line, const Ray<double>& ray) {
+inline int oracle_occluded(const std::vector<OracleHit>& line, const Ray<double>& ray) {
   int answer = 0;
   for (const OracleHit& hit : line) {
     if (hit.t - hit.tolerance > ray.t_min && hit.t + hit.tolerance < ray.t_max) return 1;

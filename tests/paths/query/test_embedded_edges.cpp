@@ -39,7 +39,7 @@ struct Covered {
 
 Covered covered_in(Scene scene) {
   scene.apply(scene.frame_at(0.0));
-  WideTree tree;
+  WideBvh tree;
   build_tree(tree, scene);
   Covered result;
   const std::vector<char> covered = covered_edges(scene, tree, 1);

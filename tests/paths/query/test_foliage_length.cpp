@@ -767,7 +767,7 @@ TEST_CASE("a ray goes through foliage as if it were not there") {
     if (with_crowns) add_crowns(scene);
     TracedScene<> traced(std::move(scene));
     std::set<Sequence> proposed;
-    RayLauncher<WideTree> launcher(traced.tracer, {5000, 2, 2});
+    RayLauncher<WideBvh> launcher(traced.tracer, {5000, 2, 2});
     launcher.for_each_sequence(traced.end(receivers_m[0]), Mat3(1.0),
                                [&](const Sequence& sequence, const std::vector<Vec3>&) { proposed.insert(sequence); });
     return std::pair(proposed, launcher.rays());
@@ -800,7 +800,7 @@ TEST_CASE("no point of a map is hidden by foliage: not within a crown, not on it
   scene.set_scenery(ground);
   scene.add_object("hedge", make_box(Vec3(6, 2, 2), "leaves"), LinearMotion{});
   TracedScene<> traced(std::move(scene));
-  const ObstructionTest<WideTree> test(traced.tracer, traced.tree, {Vec3(-20, 0, 5)});
+  const ObstructionTest<WideBvh> test(traced.tracer, traced.tree, {Vec3(-20, 0, 5)});
   for (const Vec3& point_m : {Vec3(0, 0, 1), Vec3(3, 0.5, 1), Vec3(1, 1, 1), Vec3(1, 0.5, 2), Vec3(3, 1, 2)}) {
     CHECK_FALSE(test.obstructed(point_m));
     CHECK(traced.end(point_m).mounted_on.empty());

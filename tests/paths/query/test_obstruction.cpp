@@ -15,7 +15,7 @@ namespace {
 using Points = std::vector<Vec3>;
 
 bool obstructed(TracedScene<>& traced, const Points& transmitters_m, const Vec3& point_m) {
-  return ObstructionTest<WideTree>(traced.tracer, traced.tree, transmitters_m).obstructed(point_m);
+  return ObstructionTest<WideBvh>(traced.tracer, traced.tree, transmitters_m).obstructed(point_m);
 }
 
 }  // namespace

@@ -114,13 +114,13 @@ inline std::uint32_t join(std::span<std::uint32_t> parts, std::vector<BinaryNode
   return parts[0];
 }
 
-/// Levels of a tree, the root's included.
-inline std::uint32_t level_count(std::span<const WideSplit> splits) {
-  std::vector<std::uint32_t> level(splits.size(), 1);
+/// Depths of a tree, the root's included.
+inline std::uint32_t depth_of_tree(std::span<const WideSplit> splits) {
+  std::vector<std::uint32_t> depth(splits.size(), 1);
   for (std::size_t slot = 0; slot < splits.size(); ++slot) {
-    if (!splits[slot].is_leaf()) level[splits[slot].left] = level[splits[slot].right] = level[slot] + 1;
+    if (!splits[slot].is_leaf()) depth[splits[slot].left] = depth[splits[slot].right] = depth[slot] + 1;
   }
-  return splits.empty() ? 0 : *std::max_element(level.begin(), level.end());
+  return splits.empty() ? 0 : *std::max_element(depth.begin(), depth.end());
 }
 
 }  // namespace dcem::detail

@@ -1,5 +1,5 @@
 #pragma once
-/// Builds a wide tree: a binary tree over patches and units, collapsed to eight children a node.
+/// Builds a wide tree: a binary tree over quads and objects, collapsed to eight children a node.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,15 +28,15 @@ enum class WideQuality {
 
 /// How a wide tree is built.
 struct WideSettings {
-  /// Relative costs of nodes and blocks, by which the binary tree is collapsed.
+  /// Relative costs of nodes and leaves, by which the binary tree is collapsed.
   WideCosts costs{};
-  /// Two triangles become one patch where the fourth corner is no further from the plane of the others than this times
+  /// Two triangles become one quad where the fourth corner is no further from the plane of the others than this times
   /// the shared edge (no unit). Default 1e-3; negative switches pairing off.
   double pair_flatness = 1e-3;
-  /// A group of at most this many patches owns a subtree that moves as a whole; a larger one, such as a city, is mixed
+  /// An object of at most this many quads owns a subtree that moves as a whole; a larger one, such as a city, is mixed
   /// with its surroundings (number). Default 512.
-  std::uint32_t unit_limit = 512;
-  /// Splitting ends at this many patches of one group where it gains little (number, 1 … 8). Default 8; 1 leaves it to
+  std::uint32_t object_subtree_limit = 512;
+  /// Splitting ends at this many quads of one object where it gains little (number, 1 … 8). Default 8; 1 leaves it to
   /// the collapse alone.
   std::uint32_t leaf_limit = 8;
   /// Threads of a build (number); 0: as many as the machine has. The tree does not depend on it. Default 1.
@@ -54,7 +54,7 @@ struct WideSettings {
 /// Throws std::invalid_argument for settings outside the ranges written above.
 inline void validate(const WideSettings& settings) {
   const auto positive = [](double cost) { return cost >= 1e-9 && cost <= 1e9; };
-  if (!positive(settings.costs.node) || !positive(settings.costs.block)) {
+  if (!positive(settings.costs.node) || !positive(settings.costs.leaf)) {
     throw std::invalid_argument("costs of a wide tree: expected numbers from 1e-9 to 1e9");
   }
   if (std::isnan(settings.pair_flatness)) throw std::invalid_argument("pair_flatness: expected a number");
@@ -68,26 +68,26 @@ class WideBuilder {
  public:
   explicit WideBuilder(const WideSettings& settings) : settings_(settings) {}
 
-  /// Group i has the patches [first_patch[i], first_patch[i + 1]). Corners, origin and presence are set in `arrays`.
-  void build(WideArrays& arrays, std::span<const WidePatch> patches, std::span<const std::uint32_t> first_patch) {
+  /// Group i has the quads [first_quad[i], first_quad[i + 1]). Corners, origin and presence are set in `arrays`.
+  void build(WideArrays& arrays, std::span<const Quad> quads, std::span<const std::uint32_t> first_quad) {
     arrays_ = &arrays;
-    patches_ = patches;
-    arrays.take_node();  // the root is node 0, before the nodes of any unit
-    const std::size_t groups = first_patch.size() - 1;
-    arrays.unit_root.assign(groups, WideChild{});
+    quads_ = quads;
+    arrays.take_node();  // the root is node 0, before the nodes of any object
+    const std::size_t objects = first_quad.size() - 1;
+    arrays.object_root.assign(objects, WideChild{});
     std::vector<WideItem> items;
-    items.reserve(patches.size());
-    for (std::uint32_t group = 0; group < groups; ++group) {
-      if (first_patch[group + 1] - first_patch[group] > settings_.unit_limit) {
-        for (std::uint32_t patch = first_patch[group]; patch < first_patch[group + 1]; ++patch) {
-          items.push_back(item_around(arrays_->box_of_patch(patches_[patch]), patch, group));
+    items.reserve(quads.size());
+    for (std::uint32_t object = 0; object < objects; ++object) {
+      if (first_quad[object + 1] - first_quad[object] > settings_.object_subtree_limit) {
+        for (std::uint32_t quad = first_quad[object]; quad < first_quad[object + 1]; ++quad) {
+          items.push_back(item_around(arrays_->box_of_quad(quads_[quad]), quad, object));
         }
-      } else if (first_patch[group + 1] > first_patch[group]) {
-        items.push_back(plant_unit(group, first_patch[group], first_patch[group + 1]));
+      } else if (first_quad[object + 1] > first_quad[object]) {
+        items.push_back(build_object(object, first_quad[object], first_quad[object + 1]));
       }
     }
     if (items.empty()) return;
-    plant_root(items);
+    build_root(items);
     write_boxes();
   }
 
@@ -102,19 +102,20 @@ class WideBuilder {
     if (settings_.divide_by_size) item.note_size();
     return item;
   }
-  /// Makes a group's own subtree and the item that stands for it.
-  WideItem plant_unit(std::uint32_t group, std::uint32_t first, std::uint32_t last) {
+  /// Makes an object's own subtree and the item that stands for it.
+  WideItem build_object(std::uint32_t object, std::uint32_t first, std::uint32_t last) {
     std::vector<WideItem> own;
     Aabb<double> box;
-    for (std::uint32_t patch = first; patch < last; ++patch) {
-      const Aabb<double> held = arrays_->box_of_patch(patches_[patch]);
-      own.push_back(item_around(held, patch, group));
+    for (std::uint32_t quad = first; quad < last; ++quad) {
+      const Aabb<double> held = arrays_->box_of_quad(quads_[quad]);
+      own.push_back(item_around(held, quad, object));
       box.extend(held);
     }
-    const WideChild root = own.size() <= simd_lanes ? plant_block(own, group) : plant_tree(own);
-    arrays_->unit_root[group] = root;
-    (root.is_block() ? arrays_->block_unit[root.index()] : arrays_->node_unit[root.index()]) = group;
-    return item_around(box, group, WideItem::no_kind);
+    const WideChild root = own.size() <= simd_lanes ? build_leaf(own, object) : build_tree(own);
+    arrays_->object_root[object] = root;
+    (root.is_leaf() ? arrays_->object_rooted_at_leaf[root.index()] : arrays_->object_rooted_at_node[root.index()]) =
+        object;
+    return item_around(box, object, WideItem::no_kind);
   }
 
   /// The binary tree that the wide one is made from.
@@ -122,13 +123,13 @@ class WideBuilder {
     std::vector<WideSplit> binary = WideBinner().build(items, settings_.leaf_limit, settings_.threads);
     if (settings_.quality == WideQuality::fast) return binary;
     if (settings_.quality == WideQuality::good) {
-      WideRegroup::optimize(binary, items, settings_.costs, 1);
+      LeafOptimizer::optimize(binary, items, settings_.costs, 1);
       return binary;
     }
     // What reinsertion leaves behind regrouping improves, and the other way round; a third turn gains next to nothing.
     for (int turn = 0; turn < 2; ++turn) {
       reinsert(binary, items);
-      WideRegroup::optimize(binary, items, settings_.costs, 10);
+      LeafOptimizer::optimize(binary, items, settings_.costs, 10);
     }
     return binary;
   }
@@ -138,50 +139,50 @@ class WideBuilder {
     const std::vector<WideSplit> before = binary;
     const std::vector<WideItem> items_before(items.begin(), items.end());
     const double cost_before_m2 = WideCollapse(binary, items, settings_.costs).cost_m2();
-    WideOptimizer::optimize(binary, items, settings_.threads);
+    ReinsertionOptimizer::optimize(binary, items, settings_.threads);
     if (WideCollapse(binary, items, settings_.costs).cost_m2() <= cost_before_m2) return;
     binary = before;
     std::copy(items_before.begin(), items_before.end(), items.begin());
   }
 
-  WideChild plant_tree(std::span<WideItem> items) {
+  WideChild build_tree(std::span<WideItem> items) {
     const std::vector<WideSplit> binary = divided(items);
     const WideCollapse collapse(binary, items, settings_.costs);
-    const WideChild root = plant_entry(binary, collapse, items, 0);
-    if (!root.is_block()) fill_node(root.index(), binary, collapse, items, 0);
+    const WideChild root = build_child(binary, collapse, items, 0);
+    if (!root.is_leaf()) fill_node(root.index(), binary, collapse, items, 0);
     return root;
   }
 
-  void plant_root(std::span<WideItem> items) {
+  void build_root(std::span<WideItem> items) {
     const std::vector<WideSplit> binary = divided(items);
     const WideCollapse collapse(binary, items, settings_.costs);
-    if (collapse.is_block(0)) {
-      hang(plant_entry(binary, collapse, items, 0), WidePlace::at(0, 0));
+    if (collapse.is_leaf(0)) {
+      hang(build_child(binary, collapse, items, 0), NodeLane::at(0, 0));
     } else {
       fill_node(0, binary, collapse, items, 0);
     }
   }
 
-  /// A block, or a node that is filled later.
-  WideChild plant_entry(std::span<const WideSplit> binary, const WideCollapse& collapse,
+  /// A leaf, or a node that is filled later.
+  WideChild build_child(std::span<const WideSplit> binary, const WideCollapse& collapse,
                         std::span<const WideItem> items, std::uint32_t slot) {
-    if (!collapse.is_block(slot)) return WideChild::node(arrays_->take_node());
+    if (!collapse.is_leaf(slot)) return WideChild::node(arrays_->take_node());
     const std::span<const WideItem> held = items.subspan(binary[slot].first, binary[slot].count);
-    if (held.front().kind == WideItem::no_kind) return arrays_->unit_root[held.front().index];
-    return plant_block(held, held.front().kind);
+    if (held.front().kind == WideItem::no_kind) return arrays_->object_root[held.front().index];
+    return build_leaf(held, held.front().kind);
   }
 
-  WideChild plant_block(std::span<const WideItem> held, std::uint32_t group) {
-    const std::uint32_t block = arrays_->add_block(group);
+  WideChild build_leaf(std::span<const WideItem> held, std::uint32_t object) {
+    const std::uint32_t leaf = arrays_->add_leaf(object);
     for (std::uint32_t lane = 0; lane < held.size(); ++lane) {
-      const WidePatch& patch = patches_[held[lane].index];
-      arrays_->patches[block * simd_lanes + lane] = patch;
-      for (const std::uint32_t triangle : patch.triangles()) {
-        arrays_->patch_of_triangle[triangle] = block * simd_lanes + lane;
+      const Quad& quad = quads_[held[lane].index];
+      arrays_->quads[leaf * simd_lanes + lane] = quad;
+      for (const std::uint32_t triangle : quad.triangles()) {
+        arrays_->quad_of_triangle[triangle] = leaf * simd_lanes + lane;
       }
     }
-    arrays_->find_run(block);
-    return WideChild::block(block);
+    arrays_->find_run(leaf);
+    return WideChild::leaf(leaf);
   }
 
   void fill_node(std::uint32_t node, std::span<const WideSplit> binary, const WideCollapse& collapse,
@@ -190,28 +191,28 @@ class WideBuilder {
     const std::size_t count = collapse.entries(slot, entries);
     // Siblings side by side in memory, because a ray that looks at one often looks at the next.
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-      hang(plant_entry(binary, collapse, items, entries[lane]), WidePlace::at(node, lane));
+      hang(build_child(binary, collapse, items, entries[lane]), NodeLane::at(node, lane));
     }
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-      if (collapse.is_block(entries[lane])) continue;
-      fill_node(arrays_->child_at(WidePlace::at(node, lane)).index(), binary, collapse, items, entries[lane]);
+      if (collapse.is_leaf(entries[lane])) continue;
+      fill_node(arrays_->child_at(NodeLane::at(node, lane)).index(), binary, collapse, items, entries[lane]);
     }
   }
 
   /// Boxes come last, all at once.
-  void hang(WideChild child, WidePlace place) { arrays_->hang(child, place, {}); }
+  void hang(WideChild child, NodeLane place) { arrays_->hang(child, place, {}); }
 
   void write_boxes() {
-    std::vector<Aabb<float>> boxes(arrays_->blocks.size());
-    parallel_for(boxes.size() / blocks_at_a_time + 1, settings_.threads, [&](std::size_t part, unsigned) {
-      const std::size_t last = std::min(boxes.size(), (part + 1) * blocks_at_a_time);
-      for (std::size_t block = part * blocks_at_a_time; block < last; ++block) {
-        boxes[block] = arrays_->write_block(static_cast<std::uint32_t>(block));
+    std::vector<Aabb<float>> boxes(arrays_->leaves.size());
+    parallel_for(boxes.size() / leaves_at_a_time + 1, settings_.threads, [&](std::size_t part, unsigned) {
+      const std::size_t last = std::min(boxes.size(), (part + 1) * leaves_at_a_time);
+      for (std::size_t leaf = part * leaves_at_a_time; leaf < last; ++leaf) {
+        boxes[leaf] = arrays_->write_leaf(static_cast<std::uint32_t>(leaf));
       }
     });
-    for (std::uint32_t block = 0; block < boxes.size(); ++block) {
-      arrays_->note_extent(boxes[block]);
-      arrays_->set_box(arrays_->block_place[block], boxes[block]);
+    for (std::uint32_t leaf = 0; leaf < boxes.size(); ++leaf) {
+      arrays_->note_extent(boxes[leaf]);
+      arrays_->set_box(arrays_->lane_of_leaf[leaf], boxes[leaf]);
     }
     tighten_below(0);
   }
@@ -219,17 +220,17 @@ class WideBuilder {
   void tighten_below(std::uint32_t node) {
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
       const WideChild child = arrays_->nodes[node].child[lane];
-      if (child.is_none() || child.is_block()) continue;
+      if (child.is_none() || child.is_leaf()) continue;
       tighten_below(child.index());
-      arrays_->set_box(WidePlace::at(node, lane), arrays_->nodes[child.index()].box());
+      arrays_->set_box(NodeLane::at(node, lane), arrays_->nodes[child.index()].box());
     }
   }
 
-  static constexpr std::size_t blocks_at_a_time = 256;
+  static constexpr std::size_t leaves_at_a_time = 256;
 
   WideSettings settings_;
   WideArrays* arrays_ = nullptr;
-  std::span<const WidePatch> patches_;
+  std::span<const Quad> quads_;
 };
 
 }  // namespace dcem

@@ -15,14 +15,14 @@ namespace dcem {
 
 /// What a wide tree costs; no unit, only the ratio matters.
 struct WideCosts {
-  double node = 1.0;   ///< visiting a node: eight boxes at once
-  double block = 1.0;  ///< a block of up to eight patches at once
+  double node = 1.0;  ///< visiting a node: eight boxes at once
+  double leaf = 1.0;  ///< a leaf of up to eight quads at once
 };
 
-/// Decides which binary nodes become wide nodes, which become blocks, and which vanish.
+/// Decides which binary nodes become wide nodes, which become leaves, and which vanish.
 ///
 /// For every binary node the least cost of showing what is below it as at most i entries of some wide node, i = 1 … 8,
-/// from the same of its children. One entry is a block (up to eight patches of one kind) or a wide node, which costs
+/// from the same of its children. One entry is a leaf (up to eight quads of one kind) or a wide node, which costs
 /// its surface and what its own eight entries cost (Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs
 /// through compressed wide BVHs", HPG 2017, section 3.2).
 class WideCollapse {
@@ -49,8 +49,8 @@ class WideCollapse {
     }
   }
 
-  /// Whether the node, shown as one entry, is a block (or an item that is an entry by itself).
-  bool is_block(std::uint32_t slot) const { return plans_[slot].block; }
+  /// Whether the node, shown as one entry, is a leaf (or an item that is an entry by itself).
+  bool is_leaf(std::uint32_t slot) const { return plans_[slot].leaf; }
 
   /// Σ cost · half surface over all that the root's entries are and hold; the root itself, as a node, is left out.
   double cost_m2() const { return plans_.empty() ? 0.0 : static_cast<double>(plans_.front().cost[most - 1]); }
@@ -80,7 +80,7 @@ class WideCollapse {
     std::array<float, most> cost{};         ///< [i − 1]: with at most i entries
     std::array<std::uint8_t, most> left{};  ///< [i − 1]: entries of the left child; 0: as with one entry less
     std::uint8_t count = 0;                 ///< items of one kind below, most + 1 when more or mixed
-    bool block = false;
+    bool leaf = false;
     std::uint32_t kind = WideItem::no_kind;
   };
 
@@ -88,8 +88,8 @@ class WideCollapse {
     Plan& own = plans_[slot];
     own.kind = kind;
     own.count = static_cast<std::uint8_t>(kind == WideItem::no_kind ? most + 1 : nodes_[slot].count);
-    own.block = true;
-    own.cost.fill(static_cast<float>(costs_.block) * nodes_[slot].half_area_m2);
+    own.leaf = true;
+    own.cost.fill(static_cast<float>(costs_.leaf) * nodes_[slot].half_area_m2);
   }
 
   void plan_inner(std::size_t slot) {
@@ -101,9 +101,9 @@ class WideCollapse {
     own.count = static_cast<std::uint8_t>(left.kind == right.kind ? std::min(count, most + 1) : most + 1);
     for (std::uint32_t entries = 2; entries <= most; ++entries) share_out(own, left, right, entries);
     const float as_node = static_cast<float>(costs_.node) * node.half_area_m2 + own.cost[most - 1];
-    const float as_block = static_cast<float>(costs_.block) * node.half_area_m2;
-    own.block = own.count <= most && as_block <= as_node;
-    own.cost[0] = own.block ? as_block : as_node;
+    const float as_leaf = static_cast<float>(costs_.leaf) * node.half_area_m2;
+    own.leaf = own.count <= most && as_leaf <= as_node;
+    own.cost[0] = own.leaf ? as_leaf : as_node;
   }
 
   static void share_out(Plan& own, const Plan& left, const Plan& right, std::uint32_t entries) {

@@ -21,11 +21,11 @@ inline float half_area_of(const Float4& size_m) {
 
 /// What the tree is built from.
 struct WideItem {
-  static constexpr std::uint32_t no_kind = 0xffffffffU;  ///< of an item that shares a block with nothing
+  static constexpr std::uint32_t no_kind = 0xffffffffU;  ///< of an item that shares a leaf with nothing
 
   Float4 low, high;  ///< the box; an empty one is a point at 0. The fourth numbers: 0, and what `note_size` says
   std::uint32_t index = 0;
-  std::uint32_t kind = no_kind;  ///< items of one kind may share a block
+  std::uint32_t kind = no_kind;  ///< items of one kind may share a leaf
 
   /// Makes half the surface a fourth coordinate. Items are divided by it, too: the ground of a city is as large as all
   /// else together, and wherever its centre lies the box of what is beside it would be everything.

@@ -1,5 +1,5 @@
 #pragma once
-/// A plan for building a part of a wide tree anew above its blocks and units.
+/// A plan for building a part of a wide tree anew above its leaves and objects.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace dcem {
 
 namespace detail {
 
-/// What a node leads to where its layer ends: a block or a unit.
+/// What a node leads to where its level ends: a leaf or an object.
 struct WideLeaf {
   WideChild child;
   Aabb<float> box;
@@ -25,22 +25,22 @@ struct WideLeaf {
 inline double weighted_area(const WideArrays& arrays, const WideNode& node) {
   double sum_m2 = 0.0;
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    const double cost = node.child[lane].is_block() ? arrays.costs.block : arrays.costs.node;
+    const double cost = node.child[lane].is_leaf() ? arrays.costs.leaf : arrays.costs.node;
     if (!node.child[lane].is_none()) sum_m2 += cost * static_cast<double>(node.box(lane).half_area());
   }
   return sum_m2;
 }
 
-/// The same over all that hangs below a node in its layer.
-inline double layer_area_below(const WideArrays& arrays, std::uint32_t node) {
+/// The same over all that hangs below a node in its level.
+inline double level_area_below(const WideArrays& arrays, std::uint32_t node) {
   double sum_m2 = weighted_area(arrays, arrays.nodes[node]);
   for (const WideChild child : arrays.nodes[node].child) {
-    if (is_layer_node(arrays, child)) sum_m2 += layer_area_below(arrays, child.index());
+    if (is_level_node(arrays, child)) sum_m2 += level_area_below(arrays, child.index());
   }
   return sum_m2;
 }
 
-/// A plan for the part of a layer that hangs below one node. Changes nothing.
+/// A plan for the part of a level that hangs below one node. Changes nothing.
 class WidePlan {
  public:
   WidePlan() = default;
@@ -63,7 +63,7 @@ class WidePlan {
 
   bool empty() const { return leaves_.empty(); }
   /// Of a binary node that becomes no wide one.
-  bool is_leaf(std::uint32_t slot) const { return collapse_.is_block(slot); }
+  bool is_leaf(std::uint32_t slot) const { return collapse_.is_leaf(slot); }
   const WideLeaf& leaf(std::uint32_t slot) const { return leaves_[items_[binary_[slot].first].index]; }
 
   /// What the wide node of a binary one holds, the largest first. Returns how many.
@@ -82,24 +82,24 @@ class WidePlan {
     return sum_m2;
   }
 
-  /// Levels of wide nodes.
-  std::uint32_t levels(std::uint32_t slot = 0) const {
+  /// Depths of wide nodes.
+  std::uint32_t depths(std::uint32_t slot = 0) const {
     if (is_leaf(slot)) return 0;
     std::uint32_t below = 0;
-    collapse_.for_each_entry(slot, [&](std::uint32_t entry) { below = std::max(below, levels(entry)); });
+    collapse_.for_each_entry(slot, [&](std::uint32_t entry) { below = std::max(below, depths(entry)); });
     return below + 1;
   }
 
  private:
   double weight_m2(const WideCosts& costs, std::uint32_t slot) const {
-    const bool is_block = is_leaf(slot) && leaf(slot).child.is_block();
-    return (is_block ? costs.block : costs.node) * static_cast<double>(binary_[slot].half_area_m2);
+    const bool is_quad_leaf = is_leaf(slot) && leaf(slot).child.is_leaf();
+    return (is_quad_leaf ? costs.leaf : costs.node) * static_cast<double>(binary_[slot].half_area_m2);
   }
 
   void collect(const WideArrays& arrays, std::uint32_t node) {
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
       const WideChild child = arrays.nodes[node].child[lane];
-      if (is_layer_node(arrays, child)) {
+      if (is_level_node(arrays, child)) {
         collect(arrays, child.index());
       } else if (!child.is_none()) {
         leaves_.push_back({child, arrays.nodes[node].box(lane)});

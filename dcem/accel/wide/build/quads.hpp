@@ -34,7 +34,7 @@ struct TriangleView {
 };
 
 /// One triangle, or two that share the edge from corner c to corner a.
-struct WidePatch {
+struct Quad {
   static constexpr std::uint32_t no_triangle = 0xffffffffU;
 
   std::array<std::uint32_t, 2> triangle{no_triangle, no_triangle};
@@ -43,7 +43,7 @@ struct WidePatch {
   /// Which of a, b, c is the first corner of the first triangle, and which of a, c, d of the second: 0, 1 or 2.
   std::array<std::uint32_t, 2> begin{};
 
-  static WidePatch alone(std::uint32_t triangle, const std::array<std::uint32_t, 3>& vertices) {
+  static Quad alone(std::uint32_t triangle, const std::array<std::uint32_t, 3>& vertices) {
     return {{triangle, no_triangle}, {vertices[0], vertices[1], vertices[2], vertices[0]}, {}};
   }
   bool is_none() const { return triangle[0] == no_triangle; }
@@ -87,13 +87,13 @@ struct EdgePair {
 };
 
 /// Pairs the triangles [first, last) greedily, the longest shared edge first.
-class PatchBuilder {
+class QuadBuilder {
  public:
   /// `flatness`: how far the fourth corner may lie from the plane of the others, relative to the shared edge; below 0
   /// there are no pairs.
-  PatchBuilder(const TriangleView& mesh, double flatness) : mesh_(mesh), flatness_(flatness) {}
+  QuadBuilder(const TriangleView& mesh, double flatness) : mesh_(mesh), flatness_(flatness) {}
 
-  void append(std::uint32_t first, std::uint32_t last, std::vector<WidePatch>& patches) {
+  void append(std::uint32_t first, std::uint32_t last, std::vector<Quad>& quads) {
     if (last == first) return;
     pairs_.clear();
     if (flatness_ >= 0.0) {
@@ -106,11 +106,11 @@ class PatchBuilder {
       const Pair& pair = pairs_[entry.index];
       if (taken_[pair.one - first] || taken_[pair.other - first]) continue;
       taken_[pair.one - first] = taken_[pair.other - first] = true;
-      patches.push_back(patch_of(pair));
+      quads.push_back(quad_of(pair));
     }
     for (std::uint32_t triangle = first; triangle < last; ++triangle) {
       if (taken_[triangle - first]) continue;
-      patches.push_back(WidePatch::alone(triangle, mesh_.triangles[triangle]));
+      quads.push_back(Quad::alone(triangle, mesh_.triangles[triangle]));
     }
   }
 
@@ -136,7 +136,7 @@ class PatchBuilder {
 
   /// All edges, in a list per lower vertex.
   void collect_edges(std::uint32_t first, std::uint32_t last) {
-    // Lists for the vertices of these triangles alone: a scene has thousands of groups.
+    // Lists for the vertices of these triangles alone: a scene has thousands of objects.
     std::uint32_t lowest = mesh_.triangles[first][0], highest = lowest;
     for (std::uint32_t triangle = first; triangle < last; ++triangle) {
       const auto [low, high] = std::ranges::minmax(mesh_.triangles[triangle]);
@@ -224,7 +224,7 @@ class PatchBuilder {
                                             : Pair{ways.length_squared_m2, other, one, corner(d), corner(b)});
   }
 
-  WidePatch patch_of(const Pair& pair) const {
+  Quad quad_of(const Pair& pair) const {
     const auto &vertices = mesh_.triangles[pair.one], &others = mesh_.triangles[pair.other];
     const std::uint32_t b = pair.b, c = (b + 1) % 3, a = (b + 2) % 3;
     const std::uint32_t begin = (3 - a) % 3, other_begin = pair.d == 0 ? 2U : others[0] == vertices[a] ? 0U : 1U;

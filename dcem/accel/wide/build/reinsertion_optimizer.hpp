@@ -22,18 +22,18 @@ namespace dcem {
 /// Graphics Forum 2018): the best move of every node is looked for in the tree as it stands, in threads; then the moves
 /// are made one by one, the greatest gain first, each weighed anew. So the sum never rises, and the tree is the same
 /// for any number of threads.
-class WideOptimizer {
+class ReinsertionOptimizer {
  public:
   static constexpr int most_passes = 10;
   static constexpr double least_gain = 1e-3;  ///< a pass that gains a smaller part of the sum is the last one
   /// A search looks at no more nodes: boxes that all overlap would make it look at all of them.
   static constexpr int most_visits = 200;
 
-  /// Changes the tree and the order of its items. It gets no deeper than WideBinner::levels: a pass that makes it
+  /// Changes the tree and the order of its items. It gets no deeper than WideBinner::depths: a pass that makes it
   /// deeper is taken back, and the last one.
   static void optimize(std::vector<WideSplit>& splits, std::span<WideItem> items, unsigned threads) {
     if (splits.size() < 5) return;  // three leaves at least
-    WideOptimizer work(detail::with_boxes(splits, items), threads);
+    ReinsertionOptimizer work(detail::with_boxes(splits, items), threads);
     if (!std::isfinite(work.nodes_.front().half_area_m2)) return;
     const std::vector<WideItem> before(items.begin(), items.end());
     std::vector<WideItem> placed(items.size());
@@ -41,7 +41,7 @@ class WideOptimizer {
       const double sum_m2 = work.sum_m2();
       const double gain_m2 = work.pass();
       std::vector<WideSplit> better = detail::in_order(work.nodes_, 0, before, placed);
-      if (!(gain_m2 > 0.0) || detail::level_count(better) > WideBinner::levels) break;
+      if (!(gain_m2 > 0.0) || detail::depth_of_tree(better) > WideBinner::depths) break;
       splits = std::move(better);
       std::copy(placed.begin(), placed.end(), items.begin());
       if (gain_m2 < least_gain * sum_m2) break;
@@ -61,7 +61,7 @@ class WideOptimizer {
     std::uint32_t node;
   };
 
-  WideOptimizer(std::vector<Node> nodes, unsigned threads) : nodes_(std::move(nodes)), threads_(threads) {}
+  ReinsertionOptimizer(std::vector<Node> nodes, unsigned threads) : nodes_(std::move(nodes)), threads_(threads) {}
 
   double sum_m2() const {
     double sum = 0.0;

@@ -56,7 +56,7 @@ class WideSplitter {
     });
   }
 
-  /// Where no plane divides, or levels run short: the median along the longest axis.
+  /// Where no plane divides, or depths run short: the median along the longest axis.
   static std::size_t halve(std::span<WideItem> items, const Float4& extent) {
     int axis = extent[1] > extent[0] ? 1 : 0;
     if (extent[2] > extent[axis]) axis = 2;
@@ -94,7 +94,7 @@ class WideSplitter {
   static Int4 bin_of(const WideItem& item, const Float4& low, const Float4& scale) {
     return __builtin_convertvector((item.twice_centre() - low) * scale, Int4);
   }
-  /// What shares a block with nothing is a unit, and takes a block of its own at least.
+  /// What shares a leaf with nothing is an object, and takes a leaf of its own at least.
   static std::uint32_t count_of(const WideItem& item) { return item.kind == WideItem::no_kind ? simd_lanes : 1; }
 
   static Choice best_choice(std::span<const WideItem> items, const Float4& low, const Float4& scale) {
@@ -156,11 +156,11 @@ class WideSplitter {
     for (std::size_t axis = 0; axis < 3; ++axis) ranks[axis] = detail::LaneKeys(Float8(places[axis])).ranks();
   }
 
-  /// What tracing so many items takes, up to a factor: they come in blocks of eight, so that a split that fills them is
-  /// worth more. (Whole blocks alone: large patches end up in blocks with small ones. Powers below 1: lopsided trees.)
+  /// What tracing so many items takes, up to a factor: they come in leaves of eight, so that a split that fills them is
+  /// worth more. (Whole leaves alone: large quads end up in leaves with small ones. Powers below 1: lopsided trees.)
   static float weight_of(std::uint32_t count) {
-    const std::uint32_t blocks = (count + simd_lanes - 1) / simd_lanes;
-    return static_cast<float>(count) + 5.0F * static_cast<float>(blocks);
+    const std::uint32_t leaves = (count + simd_lanes - 1) / simd_lanes;
+    return static_cast<float>(count) + 5.0F * static_cast<float>(leaves);
   }
 
   /// Divides before each of the places, none of them or some empty.

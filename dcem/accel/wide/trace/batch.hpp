@@ -25,20 +25,20 @@ class WideBatch {
   /// `threads`: of a call (number); 0: as many as the machine has.
   explicit WideBatch(unsigned threads = 1) : threads_(threads) {}
 
-  /// WideTree::nearest of every ray. Throws std::invalid_argument where there is not one place for each answer.
-  template <typename Considers = WideTree::EveryTriangle>
-  void nearest(const WideTree& tree, std::span<const Ray<double>> rays, std::span<std::optional<WideHit>> hits,
-               const Considers& considers = {}, TraversalCounters* counters = nullptr) {
+  /// WideBvh::closest_hit of every ray. Throws std::invalid_argument where there is not one place for each answer.
+  template <typename Considers = WideBvh::EveryTriangle>
+  void closest_hit(const WideBvh& tree, std::span<const Ray<double>> rays, std::span<std::optional<TriangleHit>> hits,
+                   const Considers& considers = {}, TraversalCounters* counters = nullptr) {
     trace(rays, hits, counters,
-          [&](const Ray<double>& ray, TraversalCounters& spent) { return tree.nearest(ray, considers, &spent); });
+          [&](const Ray<double>& ray, TraversalCounters& spent) { return tree.closest_hit(ray, considers, &spent); });
   }
 
-  /// WideTree::blocked of every ray: 1 or 0. Throws as `nearest`.
-  template <typename Considers = WideTree::EveryTriangle>
-  void blocked(const WideTree& tree, std::span<const Ray<double>> rays, std::span<std::uint8_t> is_blocked,
-               const Considers& considers = {}, TraversalCounters* counters = nullptr) {
-    trace(rays, is_blocked, counters, [&](const Ray<double>& ray, TraversalCounters& spent) {
-      return static_cast<std::uint8_t>(tree.blocked(ray, considers, &spent) ? 1 : 0);
+  /// WideBvh::occluded of every ray: 1 or 0. Throws as `closest_hit`.
+  template <typename Considers = WideBvh::EveryTriangle>
+  void occluded(const WideBvh& tree, std::span<const Ray<double>> rays, std::span<std::uint8_t> is_occluded,
+                const Considers& considers = {}, TraversalCounters* counters = nullptr) {
+    trace(rays, is_occluded, counters, [&](const Ray<double>& ray, TraversalCounters& spent) {
+      return static_cast<std::uint8_t>(tree.occluded(ray, considers, &spent) ? 1 : 0);
     });
   }
 

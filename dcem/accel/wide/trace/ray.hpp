@@ -1,7 +1,7 @@
 #pragma once
-/// A ray prepared for nodes of eight boxes and blocks of eight patches, in single precision.
+/// A ray prepared for nodes of eight boxes and leaves of eight quads, in single precision.
 ///
-/// Single precision never decides against double precision: a box that the double ray meets is met, and of a patch the
+/// Single precision never decides against double precision: a box that the double ray meets is met, and of a quad the
 /// answer is "surely not", "surely" or "ask".
 #include <algorithm>
 #include <array>
@@ -17,11 +17,11 @@
 
 namespace dcem {
 
-/// What single precision knows of a ray and a patch that it may meet.
-enum class PatchKnowledge : std::uint8_t {
+/// What single precision knows of a ray and a quad that it may meet.
+enum class QuadKnowledge : std::uint8_t {
   nothing,
-  met,    ///< the line of the ray meets the patch
-  first,  ///< it meets the first triangle of the patch
+  met,    ///< the line of the ray meets the quad
+  first,  ///< it meets the first triangle of the quad
   second
 };
 
@@ -48,32 +48,32 @@ class WideRay {
   /// more, and no way ends beyond 4e5 extents: a sixth of the 4 units.
   Mask8 meets(const WideNode& node, float t_max, Float8& entry) const;
 
-  /// What is known of a ray and the patches of a block.
-  struct PatchHits {
-    Float8 first;           ///< a patch is met no earlier than here
+  /// What is known of a ray and the quads of a leaf.
+  struct QuadHits {
+    Float8 first;           ///< a quad is met no earlier than here
     Float8 last;            ///< and no later than here
-    std::uint32_t certain;  ///< bit i: patch i is met, not before t_min
-    /// Bit i: if patch i is met, then it is its first, or its second triangle, by the side of the diagonal on which the
+    std::uint32_t certain;  ///< bit i: quad i is met, not before t_min
+    /// Bit i: if quad i is met, then it is its first, or its second triangle, by the side of the diagonal on which the
     /// ray passes; neither where that is not sure.
     std::array<std::uint32_t, 2> side;
 
-    PatchKnowledge known(std::uint32_t lane) const {
+    QuadKnowledge known(std::uint32_t lane) const {
       const auto bit = [lane](std::uint32_t lanes) { return lanes >> lane & 1U; };
-      constexpr std::array answers{PatchKnowledge::nothing, PatchKnowledge::met, PatchKnowledge::first,
-                                   PatchKnowledge::second};
+      constexpr std::array answers{QuadKnowledge::nothing, QuadKnowledge::met, QuadKnowledge::first,
+                                   QuadKnowledge::second};
       return answers[bit(certain) * (1 + bit(side[0]) + 2 * bit(side[1]))];
     }
   };
 
-  /// Bit i: the ray may meet patch i of the block between t_min and `t_max` (padded).
+  /// Bit i: the ray may meet quad i of the leaf between t_min and `t_max` (padded).
   ///
   /// Formula: the edge functions of the sheared corners as in WatertightRay; inside where all four have one sign; t
-  /// from the plane of the patch. Error: a sheared coordinate is off by at most δ = 16 units of (distance + size) and
+  /// from the plane of the quad. Error: a sheared coordinate is off by at most δ = 16 units of (distance + size) and
   /// 2⁻⁴⁸ of the farthest coordinate, which are what double precision leaves of them; an edge function of a
   /// quadrilateral that holds the origin by at most 10·diameter·δ + 2δ² (its corners are within two diameters); a bent
-  /// pair adds its bend to δ. Diameter and bend are the largest of the block. The plane is off by 2δ + bend along its
+  /// pair adds its bend to δ. Diameter and bend are the largest of the leaf. The plane is off by 2δ + bend along its
   /// normal, which t feels divided by the slope.
-  std::uint32_t meets(const PatchBlock& block, float t_max, PatchHits& hits) const;
+  std::uint32_t meets(const QuadLeaf& leaf, float t_max, QuadHits& hits) const;
 
  private:
   static constexpr float unit = 0x1p-24F;  ///< relative error of one rounding
@@ -83,8 +83,8 @@ class WideRay {
   struct Sheared {
     Float8 x, y;
   };
-  Sheared shear(const PatchBlock& block, std::size_t corner, float x_shift, float y_shift) const {
-    const auto& at_m = block.corner_m[corner];
+  Sheared shear(const QuadLeaf& leaf, std::size_t corner, float x_shift, float y_shift) const {
+    const auto& at_m = leaf.corner_m[corner];
     const Float8 z(at_m[axis_[2]]);
     return {simd::multiply_add(z, -shear_[axis_[0]], Float8(at_m[axis_[0]])) + x_shift,
             simd::multiply_add(z, -shear_[axis_[1]], Float8(at_m[axis_[1]])) + y_shift};
@@ -100,10 +100,10 @@ class WideRay {
 
   // Left without initial values: each ray would pay for them.
   alignas(16) Axes near_offset_, far_offset_, reciprocal_, far_reciprocal_;
-  alignas(16) Axes direction_, patch_origin_, patch_origin_low_;
+  alignas(16) Axes direction_, leaf_origin_, leaf_origin_low_;
   alignas(16) Axes shear_;                         ///< direction over that along the main axis
   alignas(16) std::array<std::uint32_t, 4> near_;  ///< rows of WideNode::bounds_m that face the ray
-  alignas(16) std::array<std::uint32_t, 4> axis_;  ///< x, y and z as the patches see them; z is the ray's main axis
+  alignas(16) std::array<std::uint32_t, 4> axis_;  ///< x, y and z as the quads see them; z is the ray's main axis
   float t_min_;
   float far_error_m_;  ///< of double precision: origin and corners are counted from the tree's origin
   bool usable_;
@@ -147,8 +147,8 @@ namespace detail {
   keep(reciprocal_, reciprocal);
   keep(far_reciprocal_, far_reciprocal);
   keep(direction_, direction);
-  keep(patch_origin_, from);
-  keep(patch_origin_low_, from_low);
+  keep(leaf_origin_, from);
+  keep(leaf_origin_low_, from_low);
   keep(near_, Int4{0, 2, 4, 0} - (sign >> 31));
   const std::uint32_t z_is_longest = size[2] > std::max(size[0], size[1]) ? 1U : 0U;
   const std::uint32_t z = 2 * z_is_longest + (1 - z_is_longest) * (size[1] > size[0] ? 1U : 0U);
@@ -178,35 +178,34 @@ namespace detail {
   return simd::not_later(entry, simd::earlier(simd::earlier(far(0), far(1)), simd::earlier(far(2), t_max)));
 }
 
-[[gnu::always_inline]] inline std::uint32_t WideRay::meets(const PatchBlock& block, float t_max,
-                                                           PatchHits& hits) const {
+[[gnu::always_inline]] inline std::uint32_t WideRay::meets(const QuadLeaf& leaf, float t_max, QuadHits& hits) const {
   // From the ray's origin to the centre: rounded relative to their distance, because the centre is exact.
   const auto [x, y, z, unused] = axis_;
-  const float x0 = (block.centre_m[x] - patch_origin_[x]) - patch_origin_low_[x];
-  const float y0 = (block.centre_m[y] - patch_origin_[y]) - patch_origin_low_[y];
-  const float z0 = (block.centre_m[z] - patch_origin_[z]) - patch_origin_low_[z];
+  const float x0 = (leaf.centre_m[x] - leaf_origin_[x]) - leaf_origin_low_[x];
+  const float y0 = (leaf.centre_m[y] - leaf_origin_[y]) - leaf_origin_low_[y];
+  const float z0 = (leaf.centre_m[z] - leaf_origin_[z]) - leaf_origin_low_[z];
   const float distance_m = std::max(std::abs(x0), std::max(std::abs(y0), std::abs(z0)));
-  const float error_m = 16 * unit * distance_m + (16 * unit * block.size_m + far_error_m_);
+  const float error_m = 16 * unit * distance_m + (16 * unit * leaf.size_m + far_error_m_);
   const float x_shift = x0 - shear_[x] * z0, y_shift = y0 - shear_[y] * z0;
-  const Sheared a = shear(block, 0, x_shift, y_shift), b = shear(block, 1, x_shift, y_shift);
-  const Sheared c = shear(block, 2, x_shift, y_shift), d = shear(block, 3, x_shift, y_shift);
+  const Sheared a = shear(leaf, 0, x_shift, y_shift), b = shear(leaf, 1, x_shift, y_shift);
+  const Sheared c = shear(leaf, 2, x_shift, y_shift), d = shear(leaf, 3, x_shift, y_shift);
   const Float8 ab = edge(a, b), bc = edge(b, c), cd = edge(c, d), da = edge(d, a);
-  const float reach = block.reach_m;
-  const Float8 error((reach + 2 * error_m) * (block.bend_m + error_m));
+  const float reach = leaf.reach_m;
+  const Float8 error((reach + 2 * error_m) * (leaf.bend_m + error_m));
   const Float8 low = simd::minimum(simd::minimum(ab, bc), simd::minimum(cd, da));
   const Float8 high = simd::maximum(simd::maximum(ab, bc), simd::maximum(cd, da));
   // Refusals are asked for, not passes: NaN, from numbers near the limits, refuses nothing.
-  const std::uint32_t candidates = block.lanes & ~((low < -error) & (high > error)).bits();
+  const std::uint32_t candidates = leaf.lanes & ~((low < -error) & (high > error)).bits();
   if (candidates == 0) return 0;
-  const Float8 nx(block.normal[x]), ny(block.normal[y]), nz(block.normal[z]);
+  const Float8 nx(leaf.normal[x]), ny(leaf.normal[y]), nz(leaf.normal[z]);
   const Float8 steepness = Float8(1.0F) / (nx * direction_[x] + ny * direction_[y] + nz * direction_[z]);
-  const auto& corner_m = block.corner_m[0];
+  const auto& corner_m = leaf.corner_m[0];
   const Float8 ax(corner_m[x]), ay(corner_m[y]), az(corner_m[z]);
   const Float8 t = (nx * (ax + x0) + ny * (ay + y0) + nz * (az + z0)) * steepness;
-  const Float8 margin = simd::absolute(Float8(block.bend_m + 2 * error_m) * steepness);
+  const Float8 margin = simd::absolute(Float8(leaf.bend_m + 2 * error_m) * steepness);
   hits.first = t - margin;
   hits.last = t + margin;
-  // Far beside a patch the products are rounded by more than the error allows for.
+  // Far beside a quad the products are rounded by more than the error allows for.
   const Mask8 is_near = (simd::absolute(a.x) < reach) & (simd::absolute(a.y) < reach);
   // A triangle's fourth corner lies on an edge: that edge's two functions have the triangle's sign as well.
   hits.certain = candidates & (((low > error) | (high < -error)) & is_near & (hits.first > t_min_)).bits();

@@ -87,9 +87,9 @@ class RayOrder {
     const double longest = std::max({size.x, size.y, size.z});
     const Vec3 towards = (ray.direction / longest + 1.0) * static_cast<double>(1U << (direction_bits_ - 1));
     for (int axis = 0; axis < 3; ++axis) {
-      const std::uint32_t level = number(towards[axis], std::size_t{1} << direction_bits_);
+      const std::uint32_t depth = number(towards[axis], std::size_t{1} << direction_bits_);
       for (std::uint32_t bit = 0; bit < direction_bits_; ++bit) {
-        result |= (level >> bit & 1U) << (3 * bit + static_cast<std::uint32_t>(axis));
+        result |= (depth >> bit & 1U) << (3 * bit + static_cast<std::uint32_t>(axis));
       }
     }
     return result;

@@ -1,6 +1,6 @@
 #pragma once
-/// How far motion has worn the parts of a wide tree down since they were built: two measures per inner node, brought up
-/// to date along the paths that edits have touched, and nowhere else.
+/// How far motion has degraded the parts of a wide tree down since they were built: two measures per inner node,
+/// brought up to date along the paths that edits have touched, and nowhere else.
 ///
 /// * SAH: Σ cost · surface of what hangs below a node, now against then. The node's own surface is no divisor: a part
 ///   whose leaves drift apart grows around them, and rays of the scene meet it more often.
@@ -8,8 +8,8 @@
 ///   relative growth (Lauterbach, Yoon, Tuft, Manocha, "RT-DEFORM: interactive ray tracing of dynamic scenes using
 ///   BVHs", IEEE Symposium on Interactive Ray Tracing 2006).
 ///
-/// Both stay within a layer (wide_layer.hpp): edits of one cannot mend the other. A unit counts in the layer above as
-/// one entry. What is not watched costs nothing.
+/// Both stay within a level (wide levels.hpp): edits of one cannot mend the other. An object counts in the level above
+/// as one entry. What is not tracked costs nothing.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -23,18 +23,18 @@
 namespace dcem {
 
 /// What a wide tree notes while it is edited.
-struct WideWatch {
+struct TrackedMeasures {
   bool sah = false;          ///< Σ cost · surface below each node
   bool deformation = false;  ///< RT-DEFORM's ratios
   bool touched = false;      ///< which nodes edits touch; goes with the others by itself
 
   bool measures() const { return sah || deformation; }
   bool any() const { return measures() || touched; }
-  friend bool operator==(const WideWatch&, const WideWatch&) = default;
+  friend bool operator==(const TrackedMeasures&, const TrackedMeasures&) = default;
 };
 
-/// Of one inner node and what is below it in its layer. Zero where it is not watched.
-struct WideWear {
+/// Of one inner node and what is below it in its level. Zero where it is not tracked.
+struct Degradation {
   double area_m2 = 0.0;              ///< Σ cost · half surface of all that hangs below
   double area_at_build_m2 = -1.0;    ///< the same when the node was built; negative: not yet noted
   double area_ratio_at_build = 1.0;  ///< its surface over that of what hangs in it, when it was built
@@ -42,44 +42,44 @@ struct WideWear {
   std::uint32_t inner_nodes = 0;     ///< itself included
 
   bool is_new() const { return area_at_build_m2 < 0.0; }
-  /// 1 as built, larger when worn, no unit. Infinite where nothing had a surface and now something has.
+  /// 1 as built, larger when degraded, no unit. Infinite where nothing had a surface and now something has.
   double sah_growth() const {
     if (area_at_build_m2 > 0.0) return area_m2 / area_at_build_m2;
     return area_m2 > 0.0 && !is_new() ? std::numeric_limits<double>::infinity() : 1.0;
   }
-  /// 0 as built, larger when worn, no unit.
+  /// 0 as built, larger when degraded, no unit.
   double deformation() const { return inner_nodes > 0 ? ratio_growth_sum / inner_nodes : 0.0; }
 };
 
 namespace detail {
 
 /// Keeps the measures of one tree. Edits say which nodes they touch; nothing is computed before `refresh`.
-class WideWearLog {
+class DegradationLog {
  public:
-  const WideWatch& watched() const { return watched_; }
-  const WideWear& wear(std::uint32_t node) const { return wear_[node]; }
-  std::span<const WideWear> all() const { return wear_; }
+  const TrackedMeasures& tracked() const { return tracked_; }
+  const Degradation& degradation(std::uint32_t node) const { return degradation_[node]; }
+  std::span<const Degradation> all() const { return degradation_; }
   /// The nodes that the last refresh has looked at, children before parents.
   std::span<const std::uint32_t> refreshed() const { return refreshed_; }
 
-  /// From now on; what is watched anew counts as built now.
-  void watch(const WideWatch& watched, const WideArrays& arrays) {
-    if (watched == watched_) return;
-    watched_ = watched;
+  /// From now on; what is tracked anew counts as built now.
+  void watch(const TrackedMeasures& tracked, const WideArrays& arrays) {
+    if (tracked == tracked_) return;
+    tracked_ = tracked;
     renew(arrays);
   }
 
   /// Everything has been built anew.
   void renew(const WideArrays& arrays) {
     touched_.clear();
-    is_touched_.assign(watched_.any() ? arrays.nodes.size() : 0, 0);
-    wear_.clear();
+    is_touched_.assign(tracked_.any() ? arrays.nodes.size() : 0, 0);
+    degradation_.clear();
     refresh(arrays);
   }
 
   /// What hangs in a node has changed, or its box.
   void touch(std::uint32_t node) {
-    if (!watched_.any()) return;
+    if (!tracked_.any()) return;
     if (node >= is_touched_.size()) is_touched_.resize(node + 1, 0);
     if (is_touched_[node] != 0) return;
     is_touched_[node] = 1;
@@ -87,7 +87,7 @@ class WideWearLog {
   }
   /// A node is another one now, or counts as built now.
   void forget(std::uint32_t node) {
-    if (node < wear_.size()) wear_[node] = {};
+    if (node < degradation_.size()) degradation_[node] = {};
   }
 
   /// Marks all nodes that were touched, and those above them.
@@ -98,7 +98,7 @@ class WideWearLog {
       while (is_marked_[node] == 0) {
         is_marked_[node] = 1;
         marked_.push_back(node);
-        if (node != 0) node = arrays.node_place[node].node();
+        if (node != 0) node = arrays.lane_of_node[node].node();
       }
     }
   }
@@ -115,22 +115,22 @@ class WideWearLog {
   /// Brings the measures up to date.
   void refresh(const WideArrays& arrays) {
     refreshed_.clear();
-    if (watched_.measures() && !arrays.nodes.empty()) {
-      wear_.resize(arrays.nodes.size());
+    if (tracked_.measures() && !arrays.nodes.empty()) {
+      degradation_.resize(arrays.nodes.size());
       mark_paths(arrays);
-      if (wear_[0].is_new() || is_marked(0)) refresh_from(arrays, 0);
+      if (degradation_[0].is_new() || is_marked(0)) refresh_from(arrays, 0);
       unmark();
     }
     forget_touches();
   }
 
-  /// After a part has been built anew: that part, and what lies above it in its layer.
+  /// After a part has been built anew: that part, and what lies above it in its level.
   void renew_below(const WideArrays& arrays, std::uint32_t node) {
-    if (!watched_.measures()) return;
-    wear_.resize(arrays.nodes.size());
-    renew_layer(arrays, node);
-    while (!is_layer_root(arrays, node)) {
-      node = arrays.node_place[node].node();
+    if (!tracked_.measures()) return;
+    degradation_.resize(arrays.nodes.size());
+    renew_level(arrays, node);
+    while (!is_level_root(arrays, node)) {
+      node = arrays.lane_of_node[node].node();
       refresh_node(arrays, node);
     }
   }
@@ -138,16 +138,16 @@ class WideWearLog {
  private:
   void refresh_from(const WideArrays& arrays, std::uint32_t node) {
     for (const WideChild child : arrays.nodes[node].child) {
-      if (child.is_none() || child.is_block()) continue;
-      if (is_marked(child.index()) || wear_[child.index()].is_new()) refresh_from(arrays, child.index());
+      if (child.is_none() || child.is_leaf()) continue;
+      if (is_marked(child.index()) || degradation_[child.index()].is_new()) refresh_from(arrays, child.index());
     }
     refresh_node(arrays, node);
     refreshed_.push_back(node);
   }
-  void renew_layer(const WideArrays& arrays, std::uint32_t node) {
-    wear_[node] = {};
+  void renew_level(const WideArrays& arrays, std::uint32_t node) {
+    degradation_[node] = {};
     for (const WideChild child : arrays.nodes[node].child) {
-      if (is_layer_node(arrays, child)) renew_layer(arrays, child.index());
+      if (is_level_node(arrays, child)) renew_level(arrays, child.index());
     }
     refresh_node(arrays, node);
   }
@@ -156,9 +156,9 @@ class WideWearLog {
   void refresh_node(const WideArrays& arrays, std::uint32_t node) {
     const WideNode& held = arrays.nodes[node];
     const std::array<float, simd_lanes> areas_m2 = BoxLanes(held).half_areas();
-    const bool is_new = wear_[node].is_new();
-    WideWear sum;
-    sum.area_ratio_at_build = wear_[node].area_ratio_at_build;
+    const bool is_new = degradation_[node].is_new();
+    Degradation sum;
+    sum.area_ratio_at_build = degradation_[node].area_ratio_at_build;
     sum.inner_nodes = 1;
     double children_m2 = 0.0;
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
@@ -166,32 +166,32 @@ class WideWearLog {
       if (child.is_none()) continue;
       const auto area_m2 = static_cast<double>(areas_m2[lane]);
       children_m2 += area_m2;
-      sum.area_m2 += (child.is_block() ? arrays.costs.block : arrays.costs.node) * area_m2;
-      if (!is_layer_node(arrays, child)) continue;
-      const WideWear& below = wear_[child.index()];
+      sum.area_m2 += (child.is_leaf() ? arrays.costs.leaf : arrays.costs.node) * area_m2;
+      if (!is_level_node(arrays, child)) continue;
+      const Degradation& below = degradation_[child.index()];
       sum.area_m2 += below.area_m2;
       sum.ratio_growth_sum += below.ratio_growth_sum;
       sum.inner_nodes += below.inner_nodes;
     }
-    sum.area_at_build_m2 = is_new ? sum.area_m2 : wear_[node].area_at_build_m2;
-    if (watched_.deformation) {
+    sum.area_at_build_m2 = is_new ? sum.area_m2 : degradation_[node].area_at_build_m2;
+    if (tracked_.deformation) {
       const double ratio = area_ratio(arrays, node, children_m2);
       if (is_new) sum.area_ratio_at_build = ratio > 0.0 ? ratio : 1.0;
       sum.ratio_growth_sum += ratio / sum.area_ratio_at_build - 1.0;
     }
-    wear_[node] = sum;
+    degradation_[node] = sum;
   }
 
   /// Surface of a node over that of what hangs in it; 1 where that has none. Bounded, so that points beside boxes of
   /// 1e15 m overflow no sum.
   static double area_ratio(const WideArrays& arrays, std::uint32_t node, double children_m2) {
     if (!(children_m2 > 0.0)) return 1.0;
-    const Aabb<float> box = node == 0 ? arrays.nodes[0].box() : arrays.box_at(arrays.node_place[node]);
+    const Aabb<float> box = node == 0 ? arrays.nodes[0].box() : arrays.box_at(arrays.lane_of_node[node]);
     return std::min(static_cast<double>(box.half_area()) / children_m2, 1e60);
   }
 
-  WideWatch watched_;
-  std::vector<WideWear> wear_;  ///< per node
+  TrackedMeasures tracked_;
+  std::vector<Degradation> degradation_;  ///< per node
   std::vector<std::uint32_t> touched_, marked_, refreshed_;
   std::vector<char> is_touched_, is_marked_;  ///< per node
 };

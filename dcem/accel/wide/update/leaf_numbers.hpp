@@ -1,5 +1,5 @@
 #pragma once
-/// Computes the numbers of a block of patches, several lanes at once.
+/// Computes the numbers of a leaf of quads, several lanes at once.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -19,31 +19,31 @@
 
 namespace dcem::detail {
 
-/// The patches of a block, one in every lane.
-struct BlockPatches {
-  std::array<const WidePatch*, simd_lanes> in_lane;
-  std::array<WidePatch, simd_lanes> halves;  ///< what is left of pairs that are there in part
+/// The quads of a leaf, one in every lane.
+struct LeafQuads {
+  std::array<const Quad*, simd_lanes> in_lane;
+  std::array<Quad, simd_lanes> halves;  ///< what is left of pairs that are there in part
 };
 
-/// The numbers of a block, from the patches in it.
-class BlockWriter {
+/// The numbers of a leaf, from the quads in it.
+class LeafNumbers {
  public:
-  /// Takes the corners of eight patches, none of them absent. What stands in lanes that do not count must be a patch of
-  /// the block as well: `bounds_m` goes around all.
-  BlockWriter(const std::array<const WidePatch*, simd_lanes>& patches, std::span<const Vec3> vertices_m) {
+  /// Takes the corners of eight quads, none of them absent. What stands in lanes that do not count must be a quad of
+  /// the leaf as well: `bounds_m` goes around all.
+  LeafNumbers(const std::array<const Quad*, simd_lanes>& quads, std::span<const Vec3> vertices_m) {
     for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
-      begin_[0][lane] = patches[lane]->begin[0];
-      begin_[1][lane] = patches[lane]->begin[1];
-      is_pair_[lane] = patches[lane]->is_pair() ? 1 : 0;
+      begin_[0][lane] = quads[lane]->begin[0];
+      begin_[1][lane] = quads[lane]->begin[1];
+      is_pair_[lane] = quads[lane]->is_pair() ? 1 : 0;
     }
     begins_at_a_.fill(true);
     for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
-      if ((patches[lane]->begin[0] | patches[lane]->begin[1]) != 0) begins_at_a_[lane / double_part_lanes] = false;
+      if ((quads[lane]->begin[0] | quads[lane]->begin[1]) != 0) begins_at_a_[lane / double_part_lanes] = false;
     }
     for (std::size_t part = 0; part < parts; ++part) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
         world_m_[part][corner].set([&](std::size_t lane) -> const Vec3& {
-          return vertices_m[patches[part * double_part_lanes + lane]->corner[corner]];
+          return vertices_m[quads[part * double_part_lanes + lane]->corner[corner]];
         });
       }
     }
@@ -68,11 +68,11 @@ class BlockWriter {
 
   /// Writes what there is of each lane; the normals are kept. Corners count from `origin_m` + `centre_m`, which are
   /// subtracted one after the other.
-  void write(const Vec3& origin_m, const Vec3& centre_m, PatchBlock& block) {
+  void write(const Vec3& origin_m, const Vec3& centre_m, QuadLeaf& leaf) {
     bend_m_ = diameter_m_ = DoublePart{};
-    for (std::size_t part = 0; part < parts; ++part) write_part(part, origin_m, centre_m, block);
-    block.bend_m = static_cast<float>(fold_lanes(bend_m_, larger));
-    block.reach_m = static_cast<float>(fold_lanes(diameter_m_, larger) * PatchBlock::edge_error_factor);
+    for (std::size_t part = 0; part < parts; ++part) write_part(part, origin_m, centre_m, leaf);
+    leaf.bend_m = static_cast<float>(fold_lanes(bend_m_, larger));
+    leaf.reach_m = static_cast<float>(fold_lanes(diameter_m_, larger) * QuadLeaf::edge_error_factor);
   }
 
   void write_normal(std::size_t side, std::size_t lane, Vec3& to) const {
@@ -98,18 +98,17 @@ class BlockWriter {
     return result;
   }
 
-  [[gnu::always_inline]] void write_part(std::size_t part, const Vec3& origin_m, const Vec3& centre_m,
-                                         PatchBlock& block) {
+  [[gnu::always_inline]] void write_part(std::size_t part, const Vec3& origin_m, const Vec3& centre_m, QuadLeaf& leaf) {
     const std::size_t first = part * double_part_lanes;
     const LongPart is_pair = codes(is_pair_, part) != 0;
     std::array<VectorPart, 4> corner;
     place_corners(world_m_[part], origin_m, centre_m, is_pair, corner);
-    for (std::size_t index = 0; index < 4; ++index) store(corner[index], block.corner_m[index], first);
+    for (std::size_t index = 0; index < 4; ++index) store(corner[index], leaf.corner_m[index], first);
     Edges edges;
     edges.set(world_m_[part]);
     VectorPart normal, other_normal;
     set_normals(part, edges, normal, other_normal);
-    store(normal, block.normal, first);
+    store(normal, leaf.normal, first);
     DoublePart bend, diameter, sound;
     normal.dot(edges.ad, bend);
     set_diameter(edges, diameter);
@@ -173,8 +172,8 @@ class BlockWriter {
       set_product(codes(begin_[0], part), {world[0], world[1], world[2]}, edges.at_b, normal);
       set_product(codes(begin_[1], part), {world[0], world[2], world[3]}, edges.at_d, other_normal);
     }
-    make_unit(normal);
-    make_unit(other_normal);
+    make_object(normal);
+    make_object(other_normal);
     normal.store(&normal_[0][0][first], &normal_[0][1][first], &normal_[0][2][first]);
     other_normal.store(&normal_[1][0][first], &normal_[1][1][first], &normal_[1][2][first]);
     DoublePart difference;
@@ -184,7 +183,7 @@ class BlockWriter {
   }
 
   /// What points along the normal of a triangle with these corners. `begin`: which of them is its first. (Which of the
-  /// others is the second changes the sign of the product and nothing else.) `towards`: where the patch's own order of
+  /// others is the second changes the sign of the product and nothing else.) `towards`: where the quad's own order of
   /// corners points, and the product itself where the triangle begins with the first.
   [[gnu::always_inline]] static void set_product(const LongPart& begin, const std::array<VectorPart, 3>& corner,
                                                  const VectorPart& towards, VectorPart& result) {
@@ -204,7 +203,7 @@ class BlockWriter {
     result.scale(along < 0.0 ? DoublePart{} - 1.0 : DoublePart{} + 1.0);
   }
 
-  [[gnu::always_inline]] static void make_unit(VectorPart& vector) {
+  [[gnu::always_inline]] static void make_object(VectorPart& vector) {
     DoublePart squared, scale;
     vector.dot(vector, squared);
     set_reciprocal_root(scale, squared, 4);

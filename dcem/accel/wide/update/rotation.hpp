@@ -1,13 +1,13 @@
 #pragma once
-/// Rotations in a `WideTree`; included by wide_tree.hpp.
+/// Rotations in a `WideBvh`; included by wide_tree.hpp.
 ///
 /// Around a node of eight entries, some of them nodes themselves, three changes cost nothing but the surface of those
 /// inner entries (Kopta, Ize, Spjut, Brunvand, Davis, Kensler, "Fast, effective BVH updates for animated scenes", I3D
 /// 2012, for eight children): an entry of a child node comes up into a free lane; it changes places with an entry of
 /// the node; it goes over into a free lane of another child node. The best is taken where Σ cost · surface falls.
 ///
-/// Nothing leaves its layer (wide_layer.hpp), so units stay whole. What goes down are leaves alone, and no deeper than
-/// hanging puts them: so a tree gets no deeper by rotations, however many there are.
+/// Nothing leaves its level (wide levels.hpp), so objects stay whole. What goes down are leaves alone, and no deeper
+/// than hanging puts them: so a tree gets no deeper by rotations, however many there are.
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -38,17 +38,17 @@ class WideRotationSearch {
   /// roundings cannot be taken for gains.
   static constexpr float least_share = 1e-3F;
 
-  WideRotationSearch(const WideArrays& arrays, std::uint32_t node, std::uint32_t level)
+  WideRotationSearch(const WideArrays& arrays, std::uint32_t node, std::uint32_t depth)
       : arrays_(arrays), node_(arrays.nodes[node]), lanes_(node_), areas_m2_(lanes_.half_areas()) {
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
       const WideChild child = node_.child[lane];
       const std::uint32_t bit = 1U << lane;
       if (child.is_none()) {
         free_ |= bit;
-      } else if (is_layer_node(arrays, child)) {
+      } else if (is_level_node(arrays, child)) {
         inner_ |= bit;
         if (arrays.nodes[child.index()].child_count() < simd_lanes) open_ |= bit;
-      } else if (level < wide_edit_levels) {
+      } else if (depth < wide_edit_depth_limit) {
         lowerable_ |= bit;
       }
     }
@@ -121,26 +121,26 @@ class WideRotationSearch {
 
 }  // namespace detail
 
-inline std::size_t WideTree::rotate_touched(std::uint32_t most_per_node) {
+inline std::size_t WideBvh::rotate_touched(std::uint32_t most_per_node) {
   if (arrays_.nodes.empty()) return 0;
-  wear_.mark_paths(arrays_);
-  if (!wear_.watched().measures()) wear_.forget_touches();
-  const std::size_t count = wear_.is_marked(0) ? rotate_below(0, 1, most_per_node) : 0;
-  wear_.unmark();
+  degradation_.mark_paths(arrays_);
+  if (!degradation_.tracked().measures()) degradation_.forget_touches();
+  const std::size_t count = degradation_.is_marked(0) ? rotate_below(0, 1, most_per_node) : 0;
+  degradation_.unmark();
   return count;
 }
 
-/// Children first: what comes up from them may go further up. `level`: of the node, in its layer.
-inline std::size_t WideTree::rotate_below(std::uint32_t node, std::uint32_t level, std::uint32_t most_per_node) {
+/// Children first: what comes up from them may go further up. `depth`: of the node, in its level.
+inline std::size_t WideBvh::rotate_below(std::uint32_t node, std::uint32_t depth, std::uint32_t most_per_node) {
   std::size_t count = 0;
   for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
     const WideChild child = arrays_.nodes[node].child[lane];
-    if (child.is_none() || child.is_block() || !wear_.is_marked(child.index())) continue;
-    const bool same_layer = detail::is_layer_node(arrays_, child);
-    count += rotate_below(child.index(), same_layer ? level + 1 : 1, most_per_node);
+    if (child.is_none() || child.is_leaf() || !degradation_.is_marked(child.index())) continue;
+    const bool same_level = detail::is_level_node(arrays_, child);
+    count += rotate_below(child.index(), same_level ? depth + 1 : 1, most_per_node);
   }
   for (std::uint32_t turn = 0; turn < most_per_node; ++turn) {
-    const detail::WideRotation rotation = detail::WideRotationSearch(arrays_, node, level).best();
+    const detail::WideRotation rotation = detail::WideRotationSearch(arrays_, node, depth).best();
     if (rotation.kind == detail::WideRotation::Kind::none) break;
     carry_out(rotation, node);
     ++count;
@@ -148,38 +148,38 @@ inline std::size_t WideTree::rotate_below(std::uint32_t node, std::uint32_t leve
   return count;
 }
 
-inline void WideTree::carry_out(const detail::WideRotation& rotation, std::uint32_t node) {
+inline void WideBvh::carry_out(const detail::WideRotation& rotation, std::uint32_t node) {
   using Kind = detail::WideRotation::Kind;
   const std::uint32_t giver = arrays_.nodes[node].child[rotation.from].index();
-  const WidePlace from = WidePlace::at(giver, rotation.entry), own = WidePlace::at(node, rotation.other);
+  const NodeLane from = NodeLane::at(giver, rotation.entry), own = NodeLane::at(node, rotation.other);
   const WideChild entry = arrays_.child_at(from), other = arrays_.child_at(own);
   const Aabb<float> entry_box = arrays_.box_at(from), other_box = arrays_.box_at(own);
-  wear_.touch(giver);
+  degradation_.touch(giver);
   if (rotation.kind == Kind::exchange) {
     arrays_.hang(entry, own, entry_box);
     arrays_.hang(other, from, other_box);
     arrays_.tighten_above(giver);
-    remember_hung(other);
+    remember_inserted(other);
   } else if (rotation.kind == Kind::up) {
     arrays_.hang(entry, own, entry_box);
-    take_out(from);
+    detach(from);
   } else {
     const std::uint32_t taker = other.index();
     std::uint32_t lane = 0;
     while (!arrays_.nodes[taker].child[lane].is_none()) ++lane;
-    arrays_.hang(entry, WidePlace::at(taker, lane), entry_box);
+    arrays_.hang(entry, NodeLane::at(taker, lane), entry_box);
     arrays_.tighten_above(taker);
-    take_out(from);
-    wear_.touch(taker);
+    detach(from);
+    degradation_.touch(taker);
   }
-  remember_hung(entry);
+  remember_inserted(entry);
 }
 
-/// Notes for a unit how large the node is in which it hangs now.
-inline void WideTree::remember_hung(WideChild child) {
-  const std::uint32_t unit = arrays_.unit_of(child);
-  if (unit == WideArrays::no_unit) return;
-  area_when_hung_m2_[unit] = arrays_.nodes[arrays_.place_of(child).node()].box().half_area();
+/// Notes for an object how large the node is in which it hangs now.
+inline void WideBvh::remember_inserted(WideChild child) {
+  const std::uint32_t object = arrays_.object_rooted_at(child);
+  if (object == WideArrays::no_object) return;
+  area_when_inserted_m2_[object] = arrays_.nodes[arrays_.place_of(child).node()].box().half_area();
 }
 
 }  // namespace dcem

@@ -1,6 +1,6 @@
 #pragma once
-/// Keeps a wide tree fit while the scene moves: follows what moved, and mends what that has worn, at the least price
-/// that will do.
+/// Keeps a wide tree fit while the scene moves: follows what moved, and mends what that has degraded, at the least
+/// price that will do.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -50,43 +50,44 @@ class WideStepMeter {
   double nodes_per_ray_ = 0.0, base_nodes_ = 0.0, base_rays_ = 0.0, wasted_nodes_ = 0.0;
 };
 
-/// Decides for one `WideTree`, whose groups are the objects of a scene.
+/// Decides for one `WideBvh`, whose objects are the objects of a scene.
 ///
 /// In this order, each only where it is switched on, and only in frames in which something moved:
 /// 1. Refit: always.
-/// 2. Reinsertion of objects whose surroundings have grown (WideTree::reinsert_moved).
-/// 3. Rotations along the paths that were touched (WideTree::rotate_touched).
-/// 4. The two measures of wear along these paths (wide_wear.hpp); a subtree past one of the limits is built anew in
-///    place, the smallest first: what it has mended is no wear of a larger one.
+/// 2. Reinsertion of objects whose surroundings have grown (WideBvh::reinsert_moved).
+/// 3. Rotations along the paths that were touched (WideBvh::rotate_touched).
+/// 4. The two measures of degradation along these paths (wide_wear.hpp); a subtree past one of the limits is built anew
+/// in
+///    place, the smallest first: what it has mended is no degradation of a larger one.
 /// 5. What rays have wasted: once that would have paid for building all nodes anew, they are; with reinsertion, in each
 ///    frame what hangs in one entry of the root. Who rents until the rent has reached the price, and then buys, never
 ///    pays twice as much as who knew before.
 /// 6. All nodes in the same way, too, where that makes them better, once refits have visited them often enough that
 ///    building them anew is small change: neither measure sees a tree that might be better than it ever was. Once, too,
-///    in the first frame in which something moves: a whole build weighs a unit as one patch, and where there are many
-///    its nodes are not the best over the blocks that came out.
-/// 7. The whole tree, blocks included, where the others do not help.
-class WideMaintainer {
+///    in the first frame in which something moves: a whole build weighs an object as one quad, and where there are many
+///    its nodes are not the best over the leaves that came out.
+/// 7. The whole tree, leaves included, where the others do not help.
+class WideUpdater {
  public:
-  explicit WideMaintainer(const UpkeepSettings& settings = {}) : settings_(settings) { validate(settings); }
+  explicit WideUpdater(const TreeUpdateSettings& settings = {}) : settings_(settings) { validate(settings); }
 
-  const UpkeepSettings& settings() const { return settings_; }
+  const TreeUpdateSettings& settings() const { return settings_; }
   const WideStepMeter& steps() const { return steps_; }
 
   /// Tells what rays have spent since the last update. Without it, steps per ray decide nothing.
   void note_rays(const TraversalCounters& spent, std::uint64_t rays) { steps_.add(spent, rays); }
 
-  /// Brings the tree up to date after the triangles in `moved` have got the corners and boxes given here. A unit that
+  /// Brings the tree up to date after the triangles in `moved` have got the corners and boxes given here. An object that
   /// was hung elsewhere counts as one rebuilt subtree of one node.
-  UpkeepReport update(WideTree& tree, std::span<const std::uint32_t> moved, const TriangleView& mesh,
-                      WideTree::Boxes boxes) {
-    UpkeepReport report;
+  TreeUpdateReport update(WideBvh& tree, std::span<const std::uint32_t> moved, const TriangleView& mesh,
+                          WideBvh::Boxes boxes) {
+    TreeUpdateReport report;
     if (settings_.policy == TreePolicy::rebuild_always && !moved.empty()) {
       rebuild(tree, mesh, boxes, report);
     } else {
       tree.watch(watch());
       const WideRefitReport refit = tree.refit(moved, mesh, boxes);
-      report.nodes_refit = refit.blocks_written + refit.nodes_visited;
+      report.nodes_refit = refit.leaves_written + refit.nodes_visited;
       visited_since_renewal_ += static_cast<double>(report.nodes_refit);
       if (settings_.policy == TreePolicy::adaptive && !moved.empty()) mend(tree, mesh, boxes, report);
     }
@@ -98,43 +99,43 @@ class WideMaintainer {
   }
 
   /// Whether a subtree is due by either measure. Where nothing but leaves hangs in a node, it can be built in one way
-  /// only: such a node is never worn.
-  bool is_worn(const WideWear& wear) const {
-    return wear.inner_nodes > 1 &&
-           (wear.sah_growth() > settings_.sah_growth_limit || wear.deformation() > settings_.deformation_limit);
+  /// only: such a node is never degraded.
+  bool is_degraded(const Degradation& degradation) const {
+    return degradation.inner_nodes > 1 && (degradation.sah_growth() > settings_.sah_growth_limit ||
+                                           degradation.deformation() > settings_.deformation_limit);
   }
 
  private:
-  WideWatch watch() const {
+  TrackedMeasures watch() const {
     if (settings_.policy != TreePolicy::adaptive) return {};
-    return {settings_.regrowth && std::isfinite(settings_.sah_growth_limit),
-            settings_.regrowth && std::isfinite(settings_.deformation_limit), settings_.rotations_per_node > 0};
+    return {settings_.subtree_rebuilds && std::isfinite(settings_.sah_growth_limit),
+            settings_.subtree_rebuilds && std::isfinite(settings_.deformation_limit), settings_.rotations_per_node > 0};
   }
 
-  void mend(WideTree& tree, const TriangleView& mesh, WideTree::Boxes boxes, UpkeepReport& report) {
+  void mend(WideBvh& tree, const TriangleView& mesh, WideBvh::Boxes boxes, TreeUpdateReport& report) {
     report.reinserted = tree.reinsert_moved(settings_.reinsertion_growth, settings_.reinsertion_turn);
     report.subtrees_rebuilt = report.nodes_rebuilt = report.reinserted;
-    const bool looks_closer = ++frames_moved_ % settings_.wear_interval == 0;
+    const bool looks_closer = ++frames_moved_ % settings_.check_interval == 0;
     if (looks_closer && settings_.rotations_per_node > 0) {
       report.rotated = tree.rotate_touched(settings_.rotations_per_node);
     }
-    if (settings_.regrowth) {
-      if (looks_closer && tree.watched().measures()) regrow_worn(tree, report);
+    if (settings_.subtree_rebuilds) {
+      if (looks_closer && tree.tracked().measures()) rebuild_degraded(tree, report);
       renew_where_due(tree, report);
     }
-    const double limit = settings_.regrowth ? settings_.rebuild_growth_limit : settings_.sah_growth_limit;
+    const double limit = settings_.subtree_rebuilds ? settings_.rebuild_growth_limit : settings_.sah_growth_limit;
     if (tree.quality().ratio() > limit) rebuild(tree, mesh, boxes, report);
   }
 
-  void renew_where_due(WideTree& tree, UpkeepReport& report) {
+  void renew_where_due(WideBvh& tree, TreeUpdateReport& report) {
     if (parts_.empty()) begin_renewal_where_due(tree);
     if (!parts_.empty()) renew_next_part(tree, report);
   }
 
-  void begin_renewal_where_due(const WideTree& tree) {
-    const auto blocks = static_cast<double>(tree.arrays().blocks.size());
+  void begin_renewal_where_due(const WideBvh& tree) {
+    const auto leaves = static_cast<double>(tree.arrays().leaves.size());
     const auto all = static_cast<double>(nodes_in_use(tree));
-    if (steps_.wasted_nodes() > settings_.regrowth_price * blocks) {
+    if (steps_.wasted_nodes() > settings_.subtree_rebuild_price * leaves) {
       begin_renewal(tree, infinity);
     } else if (std::isfinite(settings_.renewal_ratio) && visited_since_renewal_ > settings_.renewal_ratio * all) {
       begin_renewal(tree, worth_writing);
@@ -144,10 +145,10 @@ class WideMaintainer {
   /// Not all at once, which would make one frame ten times as dear as the others, but what hangs in an entry of the
   /// root, and the next one in the next frame. That needs objects to be hung elsewhere, or those that have driven away
   /// stay in the entry that they were in.
-  void begin_renewal(const WideTree& tree, double wanted_share) {
+  void begin_renewal(const WideBvh& tree, double wanted_share) {
     if (std::isfinite(settings_.reinsertion_growth)) {
       for (const WideChild child : tree.arrays().nodes[0].child) {
-        if (detail::is_layer_node(tree.arrays(), child)) parts_.push_back(child.index());
+        if (detail::is_level_node(tree.arrays(), child)) parts_.push_back(child.index());
       }
     }
     if (parts_.empty()) parts_.push_back(0);
@@ -155,38 +156,38 @@ class WideMaintainer {
     visited_since_renewal_ = 0.0;
   }
 
-  void renew_next_part(WideTree& tree, UpkeepReport& report) {
+  void renew_next_part(WideBvh& tree, TreeUpdateReport& report) {
     const std::uint32_t node = parts_.back();
     parts_.pop_back();
     // Another edit may have given it up.
     if (detail::is_used_node(tree.arrays(), node)) {
-      is_renewed_ = regrow(tree, node, wanted_of_parts_, report) || is_renewed_;
+      is_renewed_ = rebuild_subtree(tree, node, wanted_of_parts_, report) || is_renewed_;
     }
     if (!parts_.empty() || !is_renewed_) return;
     note_new_root(report);
     is_renewed_ = false;
   }
 
-  void regrow_worn(WideTree& tree, UpkeepReport& report) {
+  void rebuild_degraded(WideBvh& tree, TreeUpdateReport& report) {
     const std::span<const std::uint32_t> measured = tree.measure();
-    worn_.assign(measured.begin(), measured.end());
-    for (const std::uint32_t node : worn_) {
-      // One that was regrown from further above than was asked for may have taken others with it.
-      if (detail::is_used_node(tree.arrays(), node) && is_worn(tree.wear()[node]))
-        regrow(tree, node, worth_writing, report);
+    degraded_.assign(measured.begin(), measured.end());
+    for (const std::uint32_t node : degraded_) {
+      // One that was rebuilt_in_place from further above than was asked for may have taken others with it.
+      if (detail::is_used_node(tree.arrays(), node) && is_degraded(tree.degradation()[node]))
+        rebuild_subtree(tree, node, worth_writing, report);
     }
   }
 
   /// Whether it changed anything.
-  bool regrow(WideTree& tree, std::uint32_t node, double wanted_share, UpkeepReport& report) {
-    const std::size_t written = tree.regrow(node, wanted_share);
+  bool rebuild_subtree(WideBvh& tree, std::uint32_t node, double wanted_share, TreeUpdateReport& report) {
+    const std::size_t written = tree.rebuild_subtree(node, wanted_share);
     report.nodes_rebuilt += written;
     report.subtrees_rebuilt += written > 0 ? 1U : 0U;
-    report.regrown += written > 0 ? 1U : 0U;
+    report.rebuilt_in_place += written > 0 ? 1U : 0U;
     return written > 0;
   }
 
-  void rebuild(WideTree& tree, const TriangleView& mesh, WideTree::Boxes boxes, UpkeepReport& report) {
+  void rebuild(WideBvh& tree, const TriangleView& mesh, WideBvh::Boxes boxes, TreeUpdateReport& report) {
     tree.rebuild(mesh, boxes);
     report.nodes_refit = 0;
     report.nodes_rebuilt = nodes_in_use(tree);
@@ -196,35 +197,35 @@ class WideMaintainer {
     parts_.clear();
     is_renewed_ = false;
   }
-  void note_new_root(UpkeepReport& report) {
+  void note_new_root(TreeUpdateReport& report) {
     report.root_rebuilt = true;
     steps_.restart();
   }
-  static std::uint64_t nodes_in_use(const WideTree& tree) {
+  static std::uint64_t nodes_in_use(const WideBvh& tree) {
     const WideArrays& arrays = tree.arrays();
-    return arrays.nodes.size() - arrays.free_nodes.size() + arrays.blocks.size();
+    return arrays.nodes.size() - arrays.free_nodes.size() + arrays.leaves.size();
   }
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  /// To this share Σ cost · surface must fall where a measure asks for a new plan: units hung one by one by what rays
+  /// To this share Σ cost · surface must fall where a measure asks for a new plan: objects hung one by one by what rays
   /// cost are as good as a plan that says it gains less.
   static constexpr double worth_writing = 0.97;
 
-  UpkeepSettings settings_;
+  TreeUpdateSettings settings_;
   WideStepMeter steps_;
   std::uint64_t frames_moved_ = 0;           ///< frames in which something moved
-  double visited_since_renewal_ = infinity;  ///< nodes and blocks, by refits; infinite after a whole build
-  std::vector<std::uint32_t> worn_;          ///< candidates
+  double visited_since_renewal_ = infinity;  ///< nodes and leaves, by refits; infinite after a whole build
+  std::vector<std::uint32_t> degraded_;      ///< candidates
   std::vector<std::uint32_t> parts_;         ///< nodes whose turn is still to come in a renewal
-  double wanted_of_parts_ = infinity;        ///< as WideTree::regrow has it
+  double wanted_of_parts_ = infinity;        ///< as WideBvh::rebuild_subtree has it
   bool is_renewed_ = false;                  ///< whether one of them has changed anything
 };
 
 namespace detail {
 
 template <>
-struct MaintainerOf<WideTree> {
-  using type = WideMaintainer;
+struct UpdaterOf<WideBvh> {
+  using type = WideUpdater;
 };
 
 }  // namespace detail

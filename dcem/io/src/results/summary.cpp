@@ -81,7 +81,7 @@ Json work_json(const WorkCounters& work) {
           {"primitives_tested", work.primitives_tested}};
 }
 
-Json tree_json(const UpkeepReport& tree) {
+Json tree_json(const TreeUpdateReport& tree) {
   return {{"nodes_kept", tree.nodes_kept},
           {"nodes_refit", tree.nodes_refit},
           {"nodes_rebuilt", tree.nodes_rebuilt},

@@ -127,7 +127,7 @@ nlohmann::ordered_json settings_json(const RunFacts& facts) {
   return {{"frequency_hz", settings.frequency_hz},
           {"itu", {{"revision", settings.itu.revision}, {"allow_extrapolation", settings.itu.allow_extrapolation}}},
           {"threads", resolve_thread_count(settings.threads)},
-          {"tree_policy", policy_name(settings.upkeep.policy)},
+          {"tree_policy", policy_name(settings.tree_update.policy)},
           {"time", {{"start_s", facts.time.start_s}, {"step_s", facts.time.step_s}, {"frames", facts.time.frames}}},
           {"propagation", propagation_json(facts)},
           {"defaults_of_this_version",

@@ -41,7 +41,7 @@ double half_area_of(std::span<const WideItem> items) {
   return box.half_area();
 }
 
-/// Walks the whole tree and checks each promise. Returns the number of levels.
+/// Walks the whole tree and checks each promise. Returns the number of depths.
 std::uint32_t check_below(std::span<const WideSplit> nodes, std::span<const WideItem> items, std::uint32_t slot,
                           std::uint32_t leaf_limit, std::vector<int>& seen) {
   const WideSplit& node = nodes[slot];
@@ -82,7 +82,7 @@ TEST_CASE("every item is in one leaf, leaves share a kind, no tree is deeper tha
         std::vector<WideItem> items = items_of(dcem_test::random_boxes<double>(count, count + kinds), kinds);
         const auto nodes = WideBinner().build(items, leaf_limit, 1);
         std::vector<int> seen(count, 0);
-        CHECK(check_below(nodes, items, 0, leaf_limit, seen) <= WideBinner::levels);
+        CHECK(check_below(nodes, items, 0, leaf_limit, seen) <= WideBinner::depths);
         CHECK(std::ranges::all_of(seen, [](int times) { return times == 1; }));
       }
     }
@@ -103,18 +103,18 @@ TEST_CASE("places that no plane divides are halved: equal boxes, a geometric row
     std::vector<WideItem> items = items_of(boxes, 0);
     const auto nodes = WideBinner().build(items, 1, 1);
     std::uint32_t deepest = 0;
-    std::vector<std::uint32_t> level(nodes.size(), 1);
+    std::vector<std::uint32_t> depth(nodes.size(), 1);
     std::size_t leaves = 0;
     for (std::size_t slot = 0; slot < nodes.size(); ++slot) {
-      deepest = std::max(deepest, level[slot]);
+      deepest = std::max(deepest, depth[slot]);
       if (nodes[slot].is_leaf()) {
         ++leaves;
         continue;
       }
-      level[nodes[slot].left] = level[nodes[slot].right] = level[slot] + 1;
+      depth[nodes[slot].left] = depth[nodes[slot].right] = depth[slot] + 1;
     }
     CHECK(leaves == boxes.size());
-    CHECK(deepest <= WideBinner::levels);
+    CHECK(deepest <= WideBinner::depths);
   }
 }
 

@@ -29,7 +29,7 @@ struct Binary {
     SahSettings settings;
     settings.leaf_limit = settings.leaf_maximum = 1;
     nodes = SahBuilder<double>(settings).build(items);
-    // Kinds in regions, so that blocks of one kind can form.
+    // Kinds in regions, so that leaves of one kind can form.
     for (const BuildItem<double>& item : items) {
       const auto region = static_cast<std::uint32_t>(std::floor(std::abs(item.center.x)));
       const bool alone = kind_count > 1 && random.uniform() < 0.1;
@@ -67,8 +67,8 @@ struct Binary {
     leaves_below(nodes[slot].left(), positions);
     leaves_below(nodes[slot].right(), positions);
   }
-  /// Whether what is below may be one block.
-  bool fits_block(std::uint32_t slot) const {
+  /// Whether what is below may be one leaf.
+  bool fits_leaf(std::uint32_t slot) const {
     std::vector<std::uint32_t> positions;
     leaves_below(slot, positions);
     if (positions.size() == 1) return true;
@@ -80,12 +80,12 @@ struct Binary {
 /// What the tree that the plan describes costs, its promises checked on the way.
 double cost_of_plan(const Binary& binary, const WideCollapse& plan, const WideCosts& costs, std::uint32_t slot,
                     std::multiset<std::uint32_t>& found) {
-  if (plan.is_block(slot)) {
-    REQUIRE(binary.fits_block(slot));
+  if (plan.is_leaf(slot)) {
+    REQUIRE(binary.fits_leaf(slot));
     std::vector<std::uint32_t> positions;
     binary.leaves_below(slot, positions);
     found.insert(positions.begin(), positions.end());
-    return costs.block * binary.area(slot);
+    return costs.leaf * binary.area(slot);
   }
   double sum = costs.node * binary.area(slot);
   std::vector<std::uint32_t> entries;
@@ -99,14 +99,14 @@ double cost_of_plan(const Binary& binary, const WideCollapse& plan, const WideCo
   return sum;
 }
 
-/// The usual way: open the largest entry until there are eight; what fits into a block is one.
+/// The usual way: open the largest entry until there are eight; what fits into a leaf is one.
 double cost_of_greedy(const Binary& binary, const WideCosts& costs, std::uint32_t slot) {
-  if (binary.fits_block(slot)) return costs.block * binary.area(slot);
+  if (binary.fits_leaf(slot)) return costs.leaf * binary.area(slot);
   std::vector<std::uint32_t> entries{binary.nodes[slot].left(), binary.nodes[slot].right()};
   while (entries.size() < 8) {
     std::uint32_t* largest = nullptr;
     for (std::uint32_t& entry : entries) {
-      if (binary.fits_block(entry)) continue;
+      if (binary.fits_leaf(entry)) continue;
       if (largest == nullptr || binary.area(entry) > binary.area(*largest)) largest = &entry;
     }
     if (largest == nullptr) break;
@@ -132,7 +132,7 @@ double least_cost(const Binary& binary, const WideCosts& costs, std::uint32_t sl
     return best;
   };
   double best = std::numeric_limits<double>::infinity();
-  if (binary.fits_block(slot)) best = costs.block * binary.area(slot);
+  if (binary.fits_leaf(slot)) best = costs.leaf * binary.area(slot);
   if (binary.nodes[slot].is_leaf()) return best;
   for (std::uint32_t parts = 2; parts <= 8; ++parts) {
     best = std::min(best, costs.node * binary.area(slot) + forest(slot, parts));
@@ -142,7 +142,7 @@ double least_cost(const Binary& binary, const WideCosts& costs, std::uint32_t sl
 
 }  // namespace
 
-TEST_CASE("at most eight entries, blocks of one kind, every item once; no dearer than the greedy way") {
+TEST_CASE("at most eight entries, leaves of one kind, every item once; no dearer than the greedy way") {
   std::uint64_t seed = 0;
   for (const std::size_t count : {1U, 2U, 8U, 9U, 17U, 100U, 3000U}) {
     for (const std::uint32_t kinds : {1U, 3U}) {
@@ -175,7 +175,7 @@ TEST_CASE("the plan of a small tree is the cheapest there is") {
   }
 }
 
-TEST_CASE("items by themselves never share a block, and what has no size still has at most eight entries") {
+TEST_CASE("items by themselves never share a leaf, and what has no size still has at most eight entries") {
   std::vector<BuildItem<double>> items;
   for (std::uint32_t index = 0; index < 100; ++index) {
     items.emplace_back(index < 50 ? Aabb<double>{} : Aabb<double>{Vec3(1), Vec3(1)}, index);

@@ -14,36 +14,35 @@ using dcem_test::WideMesh;
 
 namespace {
 
-std::vector<WidePatch> patches_of(const WideMesh& mesh, double flatness = 1e-3) {
-  std::vector<WidePatch> patches;
+std::vector<Quad> quads_of(const WideMesh& mesh, double flatness = 1e-3) {
+  std::vector<Quad> quads;
   const TriangleView view = mesh.view();
-  detail::PatchBuilder(view, flatness).append(0, static_cast<std::uint32_t>(mesh.triangles.size()), patches);
-  return patches;
+  detail::QuadBuilder(view, flatness).append(0, static_cast<std::uint32_t>(mesh.triangles.size()), quads);
+  return quads;
 }
 
-std::size_t pair_count(const std::vector<WidePatch>& patches) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(patches, [](const WidePatch& patch) { return patch.is_pair(); }));
+std::size_t pair_count(const std::vector<Quad>& quads) {
+  return static_cast<std::size_t>(std::ranges::count_if(quads, [](const Quad& quad) { return quad.is_pair(); }));
 }
 
-/// Everything a list of patches promises of the mesh it was made from.
-void check_promises(const WideMesh& mesh, const std::vector<WidePatch>& patches, double flatness) {
+/// Everything a list of quads promises of the mesh it was made from.
+void check_promises(const WideMesh& mesh, const std::vector<Quad>& quads, double flatness) {
   std::vector<int> times(mesh.triangles.size(), 0);
-  for (const WidePatch& patch : patches) {
-    REQUIRE(!patch.is_none());
-    for (const std::uint32_t triangle : patch.triangles()) ++times[triangle];
+  for (const Quad& quad : quads) {
+    REQUIRE(!quad.is_none());
+    for (const std::uint32_t triangle : quad.triangles()) ++times[triangle];
     // a, b, c are the first triangle's corners in its own order, from some corner on.
-    const std::array<std::uint32_t, 3>& own = mesh.triangles[patch.triangle[0]];
+    const std::array<std::uint32_t, 3>& own = mesh.triangles[quad.triangle[0]];
     for (std::size_t corner = 0; corner < 3; ++corner)
-      REQUIRE(patch.corner[(patch.begin[0] + corner) % 3] == own[corner]);
-    REQUIRE(patch.first_vertex(0) == own[0]);
-    if (!patch.is_pair()) continue;
-    REQUIRE(patch.first_vertex(1) == mesh.triangles[patch.triangle[1]][0]);
-    REQUIRE(mesh.view().same_surface(patch.triangle[0], patch.triangle[1]));
+      REQUIRE(quad.corner[(quad.begin[0] + corner) % 3] == own[corner]);
+    REQUIRE(quad.first_vertex(0) == own[0]);
+    if (!quad.is_pair()) continue;
+    REQUIRE(quad.first_vertex(1) == mesh.triangles[quad.triangle[1]][0]);
+    REQUIRE(mesh.view().same_surface(quad.triangle[0], quad.triangle[1]));
     // The second triangle is c, a, d in some order.
-    std::multiset<std::uint32_t> second(mesh.triangles[patch.triangle[1]].begin(),
-                                        mesh.triangles[patch.triangle[1]].end());
-    const auto& [a, b, c, d] = patch.corner;
+    std::multiset<std::uint32_t> second(mesh.triangles[quad.triangle[1]].begin(),
+                                        mesh.triangles[quad.triangle[1]].end());
+    const auto& [a, b, c, d] = quad.corner;
     REQUIRE(second == std::multiset<std::uint32_t>{a, c, d});
     REQUIRE(a != c);
     const std::array<Vec3, 4> at{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], mesh.vertices[d]};
@@ -66,24 +65,24 @@ void check_promises(const WideMesh& mesh, const std::vector<WidePatch>& patches,
 
 }  // namespace
 
-TEST_CASE("pairs share an edge, are flat and convex; every triangle is in one patch") {
+TEST_CASE("pairs share an edge, are flat and convex; every triangle is in one quad") {
   std::uint64_t seed = 0;
   for (const double flatness : {1e-3, 1e-6, 0.1}) {
     for (const WideMesh& mesh : {dcem_test::boxes_mesh(40, ++seed), dcem_test::ball(Vec3(1), 2.0, 9),
                                  dcem_test::dirty_mesh(60, ++seed), dcem_test::bent_ground(12, 0.3 * flatness, ++seed),
                                  dcem_test::bent_ground(12, 3 * flatness, ++seed), dcem_test::soup(50, ++seed)}) {
-      check_promises(mesh, patches_of(mesh, flatness), flatness);
+      check_promises(mesh, quads_of(mesh, flatness), flatness);
     }
   }
 }
 
 TEST_CASE("a box is six quadrilaterals; a soup has no pairs; a negative limit makes none") {
   const WideMesh box = dcem_test::box_mesh(Vec3(0), Vec3(1, 2, 3));
-  CHECK(patches_of(box).size() == 6);
-  CHECK(pair_count(patches_of(box)) == 6);
-  CHECK(pair_count(patches_of(dcem_test::soup(100, 1))) == 0);
-  CHECK(pair_count(patches_of(box, -1.0)) == 0);
-  check_promises(box, patches_of(box, -1.0), 0.0);
+  CHECK(quads_of(box).size() == 6);
+  CHECK(pair_count(quads_of(box)) == 6);
+  CHECK(pair_count(quads_of(dcem_test::soup(100, 1))) == 0);
+  CHECK(pair_count(quads_of(box, -1.0)) == 0);
+  check_promises(box, quads_of(box, -1.0), 0.0);
 }
 
 TEST_CASE("flat within the limit, and not beyond it") {
@@ -95,7 +94,7 @@ TEST_CASE("flat within the limit, and not beyond it") {
     mesh.add(0, 1, 2);
     mesh.add(2, 3, 0);
     // The shared edge is 2 m long.
-    CHECK(pair_count(patches_of(mesh)) == (height < 1e-3 ? 1U : 0U));
+    CHECK(pair_count(quads_of(mesh)) == (height < 1e-3 ? 1U : 0U));
   }
 }
 
@@ -105,7 +104,7 @@ TEST_CASE("concave and overlapping neighbours stay apart") {
     for (const Vec3& vertex : {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(1, 2, 0), fourth}) mesh.add_vertex(vertex);
     mesh.add(0, 1, 2);
     mesh.add(1, 0, 3);
-    return pair_count(patches_of(mesh));
+    return pair_count(quads_of(mesh));
   };
   CHECK(pairs_with(Vec3(2, -2, 0)) == 1);
   CHECK(pairs_with(Vec3(-3, -2, 0)) == 0);  // reflex at the first vertex
@@ -119,20 +118,20 @@ TEST_CASE("concave and overlapping neighbours stay apart") {
 TEST_CASE("triangles of different surfaces stay apart") {
   WideMesh mesh = dcem_test::box_mesh(Vec3(0), Vec3(1, 2, 3));
   for (std::uint32_t triangle = 0; triangle < 12; ++triangle) mesh.surface.push_back(triangle);
-  CHECK(pair_count(patches_of(mesh)) == 0);
+  CHECK(pair_count(quads_of(mesh)) == 0);
   for (std::uint32_t triangle = 0; triangle < 12; ++triangle) mesh.surface[triangle] = triangle / 2;
-  CHECK(pair_count(patches_of(mesh)) == 6);
+  CHECK(pair_count(quads_of(mesh)) == 6);
 }
 
 TEST_CASE("winding, vertex numbers and what stands elsewhere in the mesh do not change the pairs") {
   const WideMesh mesh = dcem_test::bent_ground(9, 1e-4, 7);
   const auto pairs_of = [](const WideMesh& given, std::uint32_t first, std::uint32_t last) {
-    std::vector<WidePatch> patches;
+    std::vector<Quad> quads;
     const TriangleView view = given.view();
-    detail::PatchBuilder(view, 1e-3).append(first, last, patches);
+    detail::QuadBuilder(view, 1e-3).append(first, last, quads);
     std::set<std::set<std::uint32_t>> pairs;
-    for (const WidePatch& patch : patches) {
-      if (patch.is_pair()) pairs.insert({patch.triangle[0] - first, patch.triangle[1] - first});
+    for (const Quad& quad : quads) {
+      if (quad.is_pair()) pairs.insert({quad.triangle[0] - first, quad.triangle[1] - first});
     }
     return pairs;
   };
@@ -158,16 +157,16 @@ TEST_CASE("winding, vertex numbers and what stands elsewhere in the mesh do not 
   CHECK(pairs_of(later, 13, 13 + count) == expected);
 }
 
-TEST_CASE("a group is paired within itself only") {
+TEST_CASE("an object is paired within itself only") {
   WideMesh mesh;
   for (const Vec3& vertex : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) mesh.add_vertex(vertex);
   mesh.add(0, 1, 2);
   mesh.add(0, 2, 3);
-  std::vector<WidePatch> patches;
+  std::vector<Quad> quads;
   const TriangleView view = mesh.view();
-  detail::PatchBuilder pairing(view, 1e-3);
-  pairing.append(0, 1, patches);
-  pairing.append(1, 2, patches);
-  CHECK(patches.size() == 2);
-  check_promises(mesh, patches, 1e-3);
+  detail::QuadBuilder pairing(view, 1e-3);
+  pairing.append(0, 1, quads);
+  pairing.append(1, 2, quads);
+  CHECK(quads.size() == 2);
+  check_promises(mesh, quads, 1e-3);
 }

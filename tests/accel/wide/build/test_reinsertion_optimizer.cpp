@@ -31,7 +31,7 @@ struct Binary {
     for (const WideSplit& split : splits) sum += split.is_leaf() ? 0.0 : static_cast<double>(split.half_area_m2);
     return sum;
   }
-  std::uint32_t levels() const { return detail::level_count(splits); }
+  std::uint32_t depths() const { return detail::depth_of_tree(splits); }
 };
 
 WideItem item_at(const Vec3& low, const Vec3& high, std::uint32_t index, std::uint32_t kind) {
@@ -108,7 +108,7 @@ void check_tree(const Binary& binary, std::size_t count, std::uint32_t leaf_limi
     REQUIRE(right.first == split.first + left.count);
     REQUIRE(left.count + right.count == split.count);
   }
-  REQUIRE(binary.levels() <= WideBinner::levels);
+  REQUIRE(binary.depths() <= WideBinner::depths);
 }
 
 bool is_same(const Binary& one, const Binary& other) {
@@ -120,7 +120,7 @@ bool is_same(const Binary& one, const Binary& other) {
          std::ranges::equal(one.items, other.items, {}, &WideItem::index, &WideItem::index);
 }
 
-/// A row of 64 small things and a wrong tree over them: at every level its halves hold every other one.
+/// A row of 64 small things and a wrong tree over them: at every depth its halves hold every other one.
 Binary interleaved() {
   constexpr std::uint32_t count = 64;
   std::vector<WideItem> items;
@@ -159,7 +159,7 @@ const std::vector<std::string> hard_ones{
 
 }  // namespace
 
-TEST_CASE("reinsertion keeps every item once, children behind parents, tight areas, and the bound on levels") {
+TEST_CASE("reinsertion keeps every item once, children behind parents, tight areas, and the bound on depths") {
   for (const std::uint32_t count : {1U, 2U, 3U, 4U, 7U, 60U, 3'000U}) {
     for (const std::uint32_t kinds : {0U, 1U, 3U}) {
       for (const std::uint32_t leaf_limit : {1U, 8U}) {
@@ -167,7 +167,7 @@ TEST_CASE("reinsertion keeps every item once, children behind parents, tight are
         CAPTURE(kinds);
         Binary binary(random_items(count, kinds, count + kinds), leaf_limit);
         const double before = binary.sum_m2();
-        WideOptimizer::optimize(binary.splits, binary.items, 1);
+        ReinsertionOptimizer::optimize(binary.splits, binary.items, 1);
         check_tree(binary, count, leaf_limit);
         CHECK(binary.sum_m2() <= before * (1.0 + 1e-6));
         if (count == 3'000U && kinds == 0) CHECK(binary.sum_m2() < 0.97 * before);
@@ -179,16 +179,16 @@ TEST_CASE("reinsertion keeps every item once, children behind parents, tight are
 TEST_CASE("regrouping keeps every item once, kinds apart, and never makes the wide tree dearer") {
   for (const std::uint32_t count : {1U, 2U, 9U, 60U, 3'000U}) {
     for (const std::uint32_t kinds : {0U, 1U, 3U}) {
-      for (const double block : {0.3, 1.0, 4.0}) {
+      for (const double leaf : {0.3, 1.0, 4.0}) {
         CAPTURE(count);
         CAPTURE(kinds);
-        const WideCosts costs{1.0, block};
+        const WideCosts costs{1.0, leaf};
         Binary binary(random_items(count, kinds, 7 * count + kinds), 8);
         const double before = binary.cost_m2(costs);
-        WideRegroup::optimize(binary.splits, binary.items, costs, 10);
+        LeafOptimizer::optimize(binary.splits, binary.items, costs, 10);
         check_tree(binary, count, simd_lanes);
         CHECK(binary.cost_m2(costs) <= before * (1.0 + 1e-6));
-        if (count == 3'000U && kinds == 1 && block == 1.0) CHECK(binary.cost_m2(costs) < 0.98 * before);
+        if (count == 3'000U && kinds == 1 && leaf == 1.0) CHECK(binary.cost_m2(costs) < 0.98 * before);
       }
     }
   }
@@ -198,12 +198,12 @@ TEST_CASE("reinsertion finds its way out of a tree that puts neighbours far apar
   Binary binary = interleaved();
   const Binary best(binary.items, 1);
   REQUIRE(binary.sum_m2() > 2.0 * best.sum_m2());
-  WideOptimizer::optimize(binary.splits, binary.items, 1);
+  ReinsertionOptimizer::optimize(binary.splits, binary.items, 1);
   check_tree(binary, 64, 1);
   CHECK(binary.sum_m2() < 1.15 * best.sum_m2());
 }
 
-TEST_CASE("two half empty blocks side by side in two branches become one") {
+TEST_CASE("two half empty leaves side by side in two branches become one") {
   // A row of eight of one kind: every other one lies in the left branch, the rest in the right one. All else is by
   // itself and far away.
   std::vector<WideItem> items;
@@ -240,12 +240,12 @@ TEST_CASE("two half empty blocks side by side in two branches become one") {
   chain_below(6, 24);
   check_tree(binary, 40, 4);
   const double before = binary.cost_m2();
-  WideRegroup::optimize(binary.splits, binary.items, {}, 10);
+  LeafOptimizer::optimize(binary.splits, binary.items, {}, 10);
   check_tree(binary, 40, 8);
   CHECK(binary.cost_m2() < before);
-  const bool is_one_block =
+  const bool is_one_leaf =
       std::ranges::any_of(binary.splits, [](const WideSplit& split) { return split.is_leaf() && split.count == 8; });
-  CHECK(is_one_block);
+  CHECK(is_one_leaf);
 }
 
 TEST_CASE("hard boxes: no tree is deeper than walks allow, nothing is lost, nothing gets dearer") {
@@ -255,11 +255,11 @@ TEST_CASE("hard boxes: no tree is deeper than walks allow, nothing is lost, noth
       CAPTURE(count);
       Binary binary(hard_items(what, count), 8);
       const double sum = binary.sum_m2(), cost = binary.cost_m2();
-      WideOptimizer::optimize(binary.splits, binary.items, 1);
+      ReinsertionOptimizer::optimize(binary.splits, binary.items, 1);
       check_tree(binary, count, 8);
       if (std::isfinite(sum)) CHECK(binary.sum_m2() <= sum * (1.0 + 1e-6));
       const double between = binary.cost_m2();
-      WideRegroup::optimize(binary.splits, binary.items, {}, 10);
+      LeafOptimizer::optimize(binary.splits, binary.items, {}, 10);
       check_tree(binary, count, 8);
       if (std::isfinite(cost)) CHECK(binary.cost_m2() <= between * (1.0 + 1e-6));
     }
@@ -275,10 +275,10 @@ TEST_CASE("reinsertion gives a deep tree back rather than make it deeper than al
     items.push_back(item_at(low, low + Vec3(0.3 * size), index, WideItem::no_kind));
   }
   Binary binary(items, 1);
-  REQUIRE(binary.levels() > 20);
+  REQUIRE(binary.depths() > 20);
   const double before = binary.sum_m2();
   for (int turn = 0; turn < 6; ++turn) {
-    WideOptimizer::optimize(binary.splits, binary.items, 1);
+    ReinsertionOptimizer::optimize(binary.splits, binary.items, 1);
     check_tree(binary, 400, 1);
   }
   CHECK(binary.sum_m2() <= before * (1.0 + 1e-6));
@@ -288,11 +288,11 @@ TEST_CASE("the better tree is the same for any number of threads") {
   for (const std::uint32_t kinds : {0U, 2U}) {
     Binary one(random_items(6'000, kinds, 5), 8);
     Binary other = one;
-    WideOptimizer::optimize(one.splits, one.items, 1);
-    WideOptimizer::optimize(other.splits, other.items, 3);
+    ReinsertionOptimizer::optimize(one.splits, one.items, 1);
+    ReinsertionOptimizer::optimize(other.splits, other.items, 3);
     CHECK(is_same(one, other));
-    WideRegroup::optimize(one.splits, one.items, {}, 3);
-    WideRegroup::optimize(other.splits, other.items, {}, 3);
+    LeafOptimizer::optimize(one.splits, one.items, {}, 3);
+    LeafOptimizer::optimize(other.splits, other.items, {}, 3);
     CHECK(is_same(one, other));
   }
 }
@@ -302,7 +302,7 @@ TEST_CASE("a tree of high quality answers as the fast one does, to the last bit,
                                      soup(1, 5),     soup(2, 6),         ball(Vec3(3, 1, 2), 5.0, 16)};
   for (const WideMesh& mesh : meshes) {
     const std::vector<Aabb<double>> boxes = mesh.boxes();
-    WideTree fast, high;
+    WideBvh fast, high;
     fast.build(mesh.view(), boxes, with_quality(WideQuality::fast));
     high.build(mesh.view(), boxes, with_quality(WideQuality::high));
     REQUIRE(fast.validate(boxes) == "");
@@ -312,28 +312,28 @@ TEST_CASE("a tree of high quality answers as the fast one does, to the last bit,
     RandomStream random(9);
     for (int ray_index = 0; ray_index < 3'000; ++ray_index) {
       const Ray<double> ray = any_ray(random, mesh, fast.bounds());
-      const auto one = fast.nearest(ray), other = high.nearest(ray);
+      const auto one = fast.closest_hit(ray), other = high.closest_hit(ray);
       REQUIRE(one.has_value() == other.has_value());
       if (one) REQUIRE((one->t == other->t && one->triangle == other->triangle));
-      REQUIRE(fast.blocked(ray) == high.blocked(ray));
-      if (ray_index % 10 == 0) REQUIRE(fault_of_nearest(hits_on_line(mesh, ray), ray, other) == "");
+      REQUIRE(fast.occluded(ray) == high.occluded(ray));
+      if (ray_index % 10 == 0) REQUIRE(fault_of_closest(hits_on_line(mesh, ray), ray, other) == "");
     }
   }
 }
 
-TEST_CASE("units, absent triangles and threads: a tree of high quality keeps its promises, also when built anew") {
+TEST_CASE("objects, absent triangles and threads: a tree of high quality keeps its promises, also when built anew") {
   WideMesh mesh = boxes_mesh(60, 12);  // 12 triangles each
   mesh.absent.assign(mesh.triangles.size(), false);
   for (std::size_t triangle = 0; triangle < mesh.triangles.size(); triangle += 7) mesh.absent[triangle] = true;
-  const std::vector<std::uint32_t> group_first{0, 360, 372, 384, 400, 600};
+  const std::vector<std::uint32_t> object_first{0, 360, 372, 384, 400, 600};
   const std::vector<Aabb<double>> boxes = mesh.boxes();
   std::vector<double> costs;
   for (const unsigned threads : {1U, 2U, 5U}) {
     WideSettings settings = with_quality(WideQuality::high);
     settings.threads = threads;
-    settings.unit_limit = 100;
-    WideTree tree;
-    tree.build_grouped(mesh.view(), boxes, group_first, settings);
+    settings.object_subtree_limit = 100;
+    WideBvh tree;
+    tree.build_objects(mesh.view(), boxes, object_first, settings);
     REQUIRE(tree.validate(boxes) == "");
     tree.rebuild(mesh.view(), boxes);
     REQUIRE(tree.validate(boxes) == "");

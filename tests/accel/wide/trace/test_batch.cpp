@@ -55,7 +55,7 @@ double mean_step(std::span<const std::uint32_t> order, Distance&& distance) {
   return sum / static_cast<double>(order.size() - 1);
 }
 
-std::uint64_t bits(const std::optional<WideHit>& hit) {
+std::uint64_t bits(const std::optional<TriangleHit>& hit) {
   return hit ? std::bit_cast<std::uint64_t>(hit->t) : 1;
 }
 
@@ -63,7 +63,7 @@ std::uint64_t bits(const std::optional<WideHit>& hit) {
 
 TEST_CASE("a batch answers what single queries answer, to the last bit, for any number of threads") {
   const dcem_test::WideMesh mesh = dcem_test::boxes_mesh(200, 3);
-  WideTree tree;
+  WideBvh tree;
   tree.build(mesh.view(), mesh.boxes());
   const auto odd_ones = [](std::uint32_t triangle) { return triangle % 2 == 1; };
   std::size_t met = 0;
@@ -71,19 +71,19 @@ TEST_CASE("a batch answers what single queries answer, to the last bit, for any 
     const std::vector<Ray<double>> rays = drawn_rays(count, count);
     for (const unsigned threads : {1U, 2U, 5U}) {
       WideBatch batch(threads);
-      std::vector<std::optional<WideHit>> hits(count), odd_hits(count);
-      std::vector<std::uint8_t> blocked(count, 7);
+      std::vector<std::optional<TriangleHit>> hits(count), odd_hits(count);
+      std::vector<std::uint8_t> occluded(count, 7);
       TraversalCounters together, one_by_one;
-      batch.nearest(tree, rays, hits, {}, &together);
-      batch.nearest(tree, rays, odd_hits, odd_ones, &together);
-      batch.blocked(tree, rays, blocked, {}, &together);
+      batch.closest_hit(tree, rays, hits, {}, &together);
+      batch.closest_hit(tree, rays, odd_hits, odd_ones, &together);
+      batch.occluded(tree, rays, occluded, {}, &together);
       for (std::size_t index = 0; index < count; ++index) {
-        const auto hit = tree.nearest(rays[index], &one_by_one);
-        const auto odd_hit = tree.nearest(rays[index], odd_ones, &one_by_one);
+        const auto hit = tree.closest_hit(rays[index], &one_by_one);
+        const auto odd_hit = tree.closest_hit(rays[index], odd_ones, &one_by_one);
         REQUIRE(bits(hits[index]) == bits(hit));
         REQUIRE(bits(odd_hits[index]) == bits(odd_hit));
         if (hit) REQUIRE(hits[index]->triangle == hit->triangle);
-        REQUIRE(blocked[index] == (tree.blocked(rays[index], &one_by_one) ? 1 : 0));
+        REQUIRE(occluded[index] == (tree.occluded(rays[index], &one_by_one) ? 1 : 0));
         met += hit ? 1U : 0U;
       }
       CHECK(together.nodes_visited == one_by_one.nodes_visited);
@@ -145,11 +145,11 @@ TEST_CASE("rays from one point are sorted by direction") {
 }
 
 TEST_CASE("a batch without a place for each answer is refused") {
-  WideTree tree;
+  WideBvh tree;
   WideBatch batch;
   const std::vector<Ray<double>> rays(3, Ray<double>{Vec3(0.0), Vec3(1, 0, 0)});
-  std::vector<std::optional<WideHit>> hits(2);
-  std::vector<std::uint8_t> blocked(4);
-  CHECK_THROWS_AS(batch.nearest(tree, rays, hits), std::invalid_argument);
-  CHECK_THROWS_AS(batch.blocked(tree, rays, blocked), std::invalid_argument);
+  std::vector<std::optional<TriangleHit>> hits(2);
+  std::vector<std::uint8_t> occluded(4);
+  CHECK_THROWS_AS(batch.closest_hit(tree, rays, hits), std::invalid_argument);
+  CHECK_THROWS_AS(batch.occluded(tree, rays, occluded), std::invalid_argument);
 }

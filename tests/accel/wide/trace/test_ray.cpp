@@ -20,7 +20,7 @@ using dcem_test::WideMesh;
 
 namespace {
 
-/// How one kind of patch is made and aimed at.
+/// How one kind of quad is made and aimed at.
 struct Kind {
   double size_m;
   double thinness;       ///< height over length
@@ -33,12 +33,12 @@ double exponent_between(RandomStream& random, double low, double high) {
   return std::pow(10.0, between(random, low, high));
 }
 
-/// Up to eight patches near one point, as pairs or as single triangles.
-WideMesh patches_of(RandomStream& random, const Kind& kind) {
+/// Up to eight quads near one point, as pairs or as single triangles.
+WideMesh quads_of(RandomStream& random, const Kind& kind) {
   WideMesh mesh;
   const Vec3 shift = kind.shift_m * random_direction(random);
   const double spread = random.uniform() < 0.5 ? kind.size_m : 30 * kind.size_m;
-  for (int patch = 0; patch < 4; ++patch) {
+  for (int quad = 0; quad < 4; ++quad) {
     const Vec3 along = random_direction(random);
     const Vec3 across = glm::normalize(glm::cross(along, random_direction(random)));
     const Vec3 normal = glm::cross(along, across);
@@ -53,7 +53,7 @@ WideMesh patches_of(RandomStream& random, const Kind& kind) {
     const Vec3 beyond = height * between(random, 0.2, 1.0) * across + fold * normal;
     mesh.add(a, c, mesh.add_vertex(at + length * between(random, 0.3, 0.7) * along + beyond));
   }
-  // One more far behind: the tree's origin is then far from the patches, in the middle.
+  // One more far behind: the tree's origin is then far from the quads, in the middle.
   if (kind.shift_m > 0.0) mesh.add(-shift, -shift + Vec3(1, 0, 0), -shift + Vec3(0, 1, 0));
   return mesh;
 }
@@ -85,23 +85,23 @@ struct Tally {
   std::uint64_t lanes = 0, refused = 0, certain = 0, asked = 0, sides = 0;
 };
 
-/// What the filter says of every lane of every block, against double precision.
-void check_blocks(const WideTree& tree, const WideMesh& mesh, const Ray<double>& ray, Tally& tally) {
+/// What the filter says of every lane of every leaf, against double precision.
+void check_leaves(const WideBvh& tree, const WideMesh& mesh, const Ray<double>& ray, Tally& tally) {
   const WideArrays& arrays = tree.arrays();
   const WideRay wide(ray, arrays.origin_m, arrays.extent_m);
   if (!wide.usable()) return;
   const WatertightRay exact(ray);
-  for (std::uint32_t block = 0; block < arrays.blocks.size(); ++block) {
-    WideRay::PatchHits hits;
+  for (std::uint32_t leaf = 0; leaf < arrays.leaves.size(); ++leaf) {
+    WideRay::QuadHits hits;
     hits.certain = 0;
-    const std::uint32_t met = wide.meets(arrays.blocks[block], WideRay::padded(ray.t_max), hits);
+    const std::uint32_t met = wide.meets(arrays.leaves[leaf], WideRay::padded(ray.t_max), hits);
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-      const WidePatch& patch = arrays.patches[block * simd_lanes + lane];
-      if (patch.is_none()) continue;
+      const Quad& quad = arrays.quads[leaf * simd_lanes + lane];
+      if (quad.is_none()) continue;
       bool on_line = false;
       bool in_range = false;
       bool is_in_bounds = true;
-      for (const std::uint32_t triangle : patch.triangles()) {
+      for (const std::uint32_t triangle : quad.triangles()) {
         const auto t = exact.intersect(mesh.corners(triangle));
         if (!t) continue;
         on_line = true;
@@ -118,11 +118,11 @@ void check_blocks(const WideTree& tree, const WideMesh& mesh, const Ray<double>&
       tally.refused += is_met ? 0U : 1U;
       tally.certain += is_certain ? 1U : 0U;
       tally.asked += is_met && !is_certain ? 1U : 0U;
-      const PatchKnowledge known = is_certain ? hits.known(lane) : PatchKnowledge::nothing;
-      const bool is_side = known == PatchKnowledge::first || known == PatchKnowledge::second;
-      const std::uint32_t side = known == PatchKnowledge::second ? 1 : 0;
+      const QuadKnowledge known = is_certain ? hits.known(lane) : QuadKnowledge::nothing;
+      const bool is_side = known == QuadKnowledge::first || known == QuadKnowledge::second;
+      const std::uint32_t side = known == QuadKnowledge::second ? 1 : 0;
       tally.sides += is_side ? 1U : 0U;
-      const bool is_side_right = !is_side || exact.intersect(mesh.corners(patch.triangle[side])).has_value();
+      const bool is_side_right = !is_side || exact.intersect(mesh.corners(quad.triangle[side])).has_value();
       if ((in_range && !is_met) || (is_certain && !on_line) || !is_in_bounds || !is_side_right) {
         INFO(text_of(ray));
         CAPTURE(on_line);
@@ -142,18 +142,18 @@ Tally check_kind(const Kind& kind, int meshes, int rays, std::uint64_t seed) {
   RandomStream random(seed);
   Tally tally;
   for (int trial = 0; trial < meshes; ++trial) {
-    const WideMesh mesh = patches_of(random, kind);
-    WideTree tree;
+    const WideMesh mesh = quads_of(random, kind);
+    WideBvh tree;
     tree.build(mesh.view(), mesh.boxes());
     for (int shot = 0; shot < rays; ++shot) {
       Ray<double> ray = aimed(random, mesh, kind);
-      check_blocks(tree, mesh, ray, tally);
+      check_leaves(tree, mesh, ray, tally);
       // Ends of the ray close to the surface, from either side.
       const double t = kind.distance_m * random.uniform() / glm::length(ray.direction);
       ray.t_max = t;
-      check_blocks(tree, mesh, ray, tally);
+      check_leaves(tree, mesh, ray, tally);
       ray.t_min = t, ray.t_max = infinity;
-      check_blocks(tree, mesh, ray, tally);
+      check_leaves(tree, mesh, ray, tally);
     }
   }
   return tally;
@@ -161,7 +161,7 @@ Tally check_kind(const Kind& kind, int meshes, int rays, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("of a patch, single precision never says what double precision denies") {
+TEST_CASE("of a quad, single precision never says what double precision denies") {
   std::uint64_t seed = 0;
   for (const double size_m : {1e-3, 0.1, 3.0, 100.0}) {
     for (const double distance_m : {1e-2, 1.0, 100.0, 3e4}) {
@@ -179,15 +179,15 @@ TEST_CASE("of a patch, single precision never says what double precision denies"
   }
 }
 
-TEST_CASE("an everyday patch is decided by single precision, nearly always") {
+TEST_CASE("an everyday quad is decided by single precision, nearly always") {
   RandomStream random(5);
   const WideMesh mesh = dcem_test::boxes_mesh(3, 6);
-  WideTree tree;
+  WideBvh tree;
   tree.build(mesh.view(), mesh.boxes());
   Tally tally;
   for (int trial = 0; trial < 20000; ++trial) {
     const Vec3 from = random_in_cube(random, 30.0);
-    check_blocks(tree, mesh, segment_between(from, random_in_cube(random, 12.0)), tally);
+    check_leaves(tree, mesh, segment_between(from, random_in_cube(random, 12.0)), tally);
   }
   CHECK(tally.certain > 100);
   CHECK(tally.asked < tally.certain / 4);
@@ -205,26 +205,26 @@ TEST_CASE("a needle aimed at a ray that passes far away is not surely met") {
     const Vec3 across = glm::normalize(glm::cross(along, random_direction(random)));
     const double length = exponent_between(random, -5, 0), width = length * exponent_between(random, -6, -1);
     mesh.add(Vec3(0), length * along, 0.5 * length * along + width * across);
-    // A second triangle makes the block large enough to be looked at.
+    // A second triangle makes the leaf large enough to be looked at.
     mesh.add(Vec3(200, 0, 0), Vec3(200, 1, 0), Vec3(200, 0, 1));
-    WideTree tree;
+    WideBvh tree;
     tree.build(mesh.view(), mesh.boxes());
     const double far_m = exponent_between(random, -1, 2.3);
     const Vec3 origin = far_m * random_direction(random);
     // The ray passes a point on the needle's own line.
     const Vec3 passes = exponent_between(random, -1, 2.3) * (random.uniform() < 0.5 ? along : -along);
-    check_blocks(tree, mesh, {origin, passes - origin}, tally);
+    check_leaves(tree, mesh, {origin, passes - origin}, tally);
   }
   CHECK(tally.lanes > 100000);
 }
 
-TEST_CASE("of patches whose vertices have moved in any way, single precision says nothing false") {
+TEST_CASE("of quads whose vertices have moved in any way, single precision says nothing false") {
   RandomStream random(21);
   Tally tally;
   for (int trial = 0; trial < 2000; ++trial) {
     Kind kind{1.0, 1.0, 0.0, 10.0};
-    WideMesh mesh = patches_of(random, kind);
-    WideTree tree;
+    WideMesh mesh = quads_of(random, kind);
+    WideBvh tree;
     tree.build(mesh.view(), mesh.boxes());
     const Vec3 flat = random_direction(random);
     for (Vec3& vertex : mesh.vertices) {
@@ -235,7 +235,7 @@ TEST_CASE("of patches whose vertices have moved in any way, single precision say
     std::vector<std::uint32_t> all;
     for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) all.push_back(triangle);
     tree.refit(all, mesh.view(), mesh.boxes());
-    for (int shot = 0; shot < 30; ++shot) check_blocks(tree, mesh, aimed(random, mesh, kind), tally);
+    for (int shot = 0; shot < 30; ++shot) check_leaves(tree, mesh, aimed(random, mesh, kind), tally);
   }
   CHECK(tally.certain > 0);
 }

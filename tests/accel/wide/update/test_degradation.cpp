@@ -19,7 +19,7 @@ namespace {
 /// The measures of a node, counted from the arrays alone, in double precision.
 struct Counted {
   double area_m2 = 0.0, ratio = 1.0;
-  std::vector<std::uint32_t> inner;  ///< nodes of the layer from this one on
+  std::vector<std::uint32_t> inner;  ///< nodes of the level from this one on
 };
 
 double half_area(const Aabb<float>& box) {
@@ -28,7 +28,7 @@ double half_area(const Aabb<float>& box) {
   return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-Counted count(const WideTree& tree, std::uint32_t node) {
+Counted count(const WideBvh& tree, std::uint32_t node) {
   const WideArrays& arrays = tree.arrays();
   const WideNode& held = arrays.nodes[node];
   Counted result;
@@ -39,8 +39,8 @@ Counted count(const WideTree& tree, std::uint32_t node) {
     if (child.is_none()) continue;
     const double area_m2 = half_area(held.box(lane));
     children_m2 += area_m2;
-    result.area_m2 += area_m2 * (child.is_block() ? arrays.costs.block : arrays.costs.node);
-    if (child.is_block() || arrays.node_unit[child.index()] != WideArrays::no_unit) continue;
+    result.area_m2 += area_m2 * (child.is_leaf() ? arrays.costs.leaf : arrays.costs.node);
+    if (child.is_leaf() || arrays.object_rooted_at_node[child.index()] != WideArrays::no_object) continue;
     const Counted below = count(tree, child.index());
     result.area_m2 += below.area_m2;
     result.inner.insert(result.inner.end(), below.inner.begin(), below.inner.end());
@@ -52,23 +52,23 @@ Counted count(const WideTree& tree, std::uint32_t node) {
 /// Single-precision surfaces: three products and two sums, each to 2^-24.
 constexpr double rounding = 1e-6;
 
-void check_sums(const WideTree& tree) {
+void check_sums(const WideBvh& tree) {
   for (const std::uint32_t node : nodes_of(tree.arrays())) {
     const Counted expected = count(tree, node);
-    const WideWear& wear = tree.wear()[node];
-    REQUIRE(wear.inner_nodes == expected.inner.size());
-    REQUIRE(wear.area_m2 == doctest::Approx(expected.area_m2).epsilon(rounding));
+    const Degradation& degradation = tree.degradation()[node];
+    REQUIRE(degradation.inner_nodes == expected.inner.size());
+    REQUIRE(degradation.area_m2 == doctest::Approx(expected.area_m2).epsilon(rounding));
     double growth = 0.0, scale = 0.0;
     for (const std::uint32_t inner : expected.inner) {
-      const double relative = count(tree, inner).ratio / tree.wear()[inner].area_ratio_at_build;
+      const double relative = count(tree, inner).ratio / tree.degradation()[inner].area_ratio_at_build;
       growth += relative - 1.0;
       scale += relative;
     }
-    REQUIRE(std::abs(wear.ratio_growth_sum - growth) <= 4 * rounding * scale);
+    REQUIRE(std::abs(degradation.ratio_growth_sum - growth) <= 4 * rounding * scale);
   }
 }
 
-WideWatch both() {
+TrackedMeasures both() {
   return {true, true, false};
 }
 
@@ -77,13 +77,13 @@ WideWatch both() {
 TEST_CASE("refits alone: both measures are those counted from the arrays, against the build") {
   for (const bool deforms : {false, true}) {
     WideTraffic traffic({100, 20.0, deforms, true, true}, 1);
-    WideTree tree = traffic.built();
+    WideBvh tree = traffic.built();
     tree.watch(both());
     std::map<std::uint32_t, Counted> at_build;
     for (const std::uint32_t node : nodes_of(tree.arrays())) {
       at_build[node] = count(tree, node);
-      CHECK(tree.wear()[node].sah_growth() == 1.0);
-      CHECK(tree.wear()[node].deformation() == 0.0);
+      CHECK(tree.degradation()[node].sah_growth() == 1.0);
+      CHECK(tree.degradation()[node].deformation() == 0.0);
     }
     double worst = 1.0;
     for (int frame = 0; frame < 25; ++frame) {
@@ -95,22 +95,24 @@ TEST_CASE("refits alone: both measures are those counted from the arrays, agains
       for (const auto& [node, built] : at_build) {
         const Counted now = count(tree, node);
         if (built.area_m2 > 0.0) {
-          REQUIRE(tree.wear()[node].sah_growth() == doctest::Approx(now.area_m2 / built.area_m2).epsilon(4 * rounding));
+          REQUIRE(tree.degradation()[node].sah_growth() ==
+                  doctest::Approx(now.area_m2 / built.area_m2).epsilon(4 * rounding));
         }
         double growth = 0.0;
         for (const std::uint32_t inner : now.inner) growth += count(tree, inner).ratio / at_build[inner].ratio - 1.0;
         const double mean = growth / static_cast<double>(now.inner.size());
-        REQUIRE(tree.wear()[node].deformation() == doctest::Approx(mean).epsilon(1e-4).scale(1.0));
-        worst = std::max(worst, tree.wear()[node].sah_growth());
+        REQUIRE(tree.degradation()[node].deformation() == doctest::Approx(mean).epsilon(1e-4).scale(1.0));
+        worst = std::max(worst, tree.degradation()[node].sah_growth());
       }
     }
     CHECK(worst > 1.5);
   }
 }
 
-TEST_CASE("reinsertions, rotations and regrown parts: sums stay those of the arrays, what is new is not worn") {
+TEST_CASE(
+    "reinsertions, rotations and rebuilt_in_place parts: sums stay those of the arrays, what is new is not degraded") {
   WideTraffic traffic({100, 20.0, true, true, true}, 2);
-  WideTree tree = traffic.built();
+  WideBvh tree = traffic.built();
   tree.watch({true, true, true});
   RandomStream random(3);
   std::size_t reinserted = 0, rotated = 0;
@@ -124,23 +126,23 @@ TEST_CASE("reinsertions, rotations and regrown parts: sums stay those of the arr
     check_sums(tree);
     const std::vector<std::uint32_t> nodes = nodes_of(tree.arrays());
     const std::uint32_t node = nodes[random.next() % nodes.size()];
-    tree.regrow(node);
+    tree.rebuild_subtree(node);
     check_sums(tree);
     for (const std::uint32_t inner : count(tree, node).inner) {
-      REQUIRE(tree.wear()[inner].sah_growth() == 1.0);
-      REQUIRE(tree.wear()[inner].deformation() == 0.0);
+      REQUIRE(tree.degradation()[inner].sah_growth() == 1.0);
+      REQUIRE(tree.degradation()[inner].deformation() == 0.0);
     }
   }
   CHECK(reinserted > 50);
   CHECK(rotated > 20);
   tree.rebuild(traffic.mesh.view(), traffic.boxes);
   check_sums(tree);
-  for (const std::uint32_t node : nodes_of(tree.arrays())) CHECK(tree.wear()[node].sah_growth() == 1.0);
+  for (const std::uint32_t node : nodes_of(tree.arrays())) CHECK(tree.degradation()[node].sah_growth() == 1.0);
 }
 
 TEST_CASE("a node that reinsertion makes is new, whatever its number stood for before") {
   WideTraffic traffic({100, 20.0, false, false, true}, 7);
-  WideTree tree = traffic.built();
+  WideBvh tree = traffic.built();
   tree.watch(both());
   std::size_t made = 0;
   for (int frame = 0; frame < 100; ++frame) {
@@ -151,9 +153,9 @@ TEST_CASE("a node that reinsertion makes is new, whatever its number stood for b
     tree.reinsert_moved(1.0);
     tree.measure();
     for (const std::uint32_t node : free) {
-      if (tree.arrays().node_place[node].is_none()) continue;
+      if (tree.arrays().lane_of_node[node].is_none()) continue;
       ++made;
-      CHECK(tree.wear()[node].sah_growth() == 1.0);
+      CHECK(tree.degradation()[node].sah_growth() == 1.0);
     }
   }
   CHECK(made > 10);
@@ -161,22 +163,22 @@ TEST_CASE("a node that reinsertion makes is new, whatever its number stood for b
 
 TEST_CASE("measured are the nodes on touched paths, children before parents, and nobody else") {
   WideTraffic traffic({300, 60.0, false, false, true}, 4);
-  WideTree tree = traffic.built();
+  WideBvh tree = traffic.built();
   tree.watch(both());
   CHECK(tree.measure().empty());
   // One car moves by more than its box is rounded by.
-  const std::uint32_t car = 10, first = traffic.group_first[car];
-  for (std::uint32_t triangle = first; triangle < traffic.group_first[car + 1]; ++triangle) {
+  const std::uint32_t car = 10, first = traffic.object_first[car];
+  for (std::uint32_t triangle = first; triangle < traffic.object_first[car + 1]; ++triangle) {
     for (const std::uint32_t vertex : traffic.mesh.triangles[triangle]) traffic.mesh.vertices[vertex].z += 0.01;
   }
   traffic.boxes = traffic.mesh.boxes();
   std::vector<std::uint32_t> moved;
-  for (std::uint32_t triangle = first; triangle < traffic.group_first[car + 1]; ++triangle) moved.push_back(triangle);
+  for (std::uint32_t triangle = first; triangle < traffic.object_first[car + 1]; ++triangle) moved.push_back(triangle);
   tree.refit(moved, traffic.mesh.view(), traffic.boxes);
   const WideArrays& arrays = tree.arrays();
   std::vector<std::uint32_t> path;
-  for (WidePlace place = arrays.place_of(arrays.unit_root[car]); !place.is_none();
-       place = arrays.node_place[place.node()]) {
+  for (NodeLane place = arrays.place_of(arrays.object_root[car]); !place.is_none();
+       place = arrays.lane_of_node[place.node()]) {
     path.push_back(place.node());
   }
   const std::span<const std::uint32_t> measured = tree.measure();
@@ -185,9 +187,9 @@ TEST_CASE("measured are the nodes on touched paths, children before parents, and
   CHECK(tree.measure().empty());
 }
 
-TEST_CASE("what is not watched is not noted; what is watched anew counts as built now") {
+TEST_CASE("what is not tracked is not noted; what is tracked anew counts as built now") {
   WideTraffic traffic({100, 20.0, false, false, true}, 5);
-  WideTree tree = traffic.built();
+  WideBvh tree = traffic.built();
   const auto drive = [&] {
     for (int frame = 0; frame < 10; ++frame) {
       traffic.step();
@@ -196,31 +198,31 @@ TEST_CASE("what is not watched is not noted; what is watched anew counts as buil
     return !tree.measure().empty();
   };
   CHECK(!drive());
-  CHECK(tree.wear().empty());
+  CHECK(tree.degradation().empty());
   tree.watch(both());
-  CHECK(tree.wear()[0].sah_growth() == 1.0);
+  CHECK(tree.degradation()[0].sah_growth() == 1.0);
   CHECK(drive());
-  CHECK(tree.wear()[0].sah_growth() > 1.01);
+  CHECK(tree.degradation()[0].sah_growth() > 1.01);
   tree.watch(both());  // nothing new
-  CHECK(tree.wear()[0].sah_growth() > 1.01);
+  CHECK(tree.degradation()[0].sah_growth() > 1.01);
   tree.watch({true, false, false});
   CHECK(drive());
-  CHECK(tree.wear()[0].deformation() == 0.0);
+  CHECK(tree.degradation()[0].deformation() == 0.0);
   tree.watch({});
   CHECK(!drive());
-  CHECK(tree.wear().empty());
+  CHECK(tree.degradation().empty());
 }
 
 TEST_CASE("from nothing to something the growth is infinite, from nothing to nothing it is none") {
-  WideWear wear;
-  CHECK(wear.sah_growth() == 1.0);
-  wear.area_at_build_m2 = 0.0;
-  CHECK(wear.sah_growth() == 1.0);
-  wear.area_m2 = 1.0;
-  CHECK(wear.sah_growth() == std::numeric_limits<double>::infinity());
+  Degradation degradation;
+  CHECK(degradation.sah_growth() == 1.0);
+  degradation.area_at_build_m2 = 0.0;
+  CHECK(degradation.sah_growth() == 1.0);
+  degradation.area_m2 = 1.0;
+  CHECK(degradation.sah_growth() == std::numeric_limits<double>::infinity());
   WideTraffic traffic({50, 10.0, false, false, false}, 6);
   traffic.set_absent(true);
-  WideTree tree = traffic.built();
+  WideBvh tree = traffic.built();
   tree.watch(both());
   for (const bool absent : {false, true, false}) {
     traffic.set_absent(absent);
@@ -228,8 +230,8 @@ TEST_CASE("from nothing to something the growth is infinite, from nothing to not
     tree.measure();
     check_sums(tree);
     for (const std::uint32_t node : nodes_of(tree.arrays())) {
-      CHECK(std::isfinite(tree.wear()[node].deformation()));
-      CHECK(!std::isnan(tree.wear()[node].sah_growth()));
+      CHECK(std::isfinite(tree.degradation()[node].deformation()));
+      CHECK(!std::isnan(tree.degradation()[node].sah_growth()));
     }
   }
 }

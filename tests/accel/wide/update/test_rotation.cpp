@@ -17,7 +17,7 @@ using Kind = detail::WideRotation::Kind;
 
 namespace {
 
-WideWatch touched() {
+TrackedMeasures touched() {
   return {false, false, true};
 }
 
@@ -28,7 +28,7 @@ Aabb<float> joined(const std::vector<Aabb<float>>& boxes) {
 }
 
 bool is_inner(const WideArrays& arrays, WideChild child) {
-  return !child.is_none() && !child.is_block() && arrays.node_unit[child.index()] == WideArrays::no_unit;
+  return !child.is_none() && !child.is_leaf() && arrays.object_rooted_at_node[child.index()] == WideArrays::no_object;
 }
 
 std::vector<Aabb<float>> boxes_in(const WideNode& node) {
@@ -75,32 +75,32 @@ double best_gain(const WideArrays& arrays, std::uint32_t index, bool may_lower) 
   return best;
 }
 
-std::vector<std::vector<std::uint32_t>> blocks_of_units(const WideArrays& arrays) {
-  std::vector<std::vector<std::uint32_t>> blocks(arrays.unit_root.size());
+std::vector<std::vector<std::uint32_t>> leaves_of_objects(const WideArrays& arrays) {
+  std::vector<std::vector<std::uint32_t>> leaves(arrays.object_root.size());
   const auto collect = [&](WideChild child, std::vector<std::uint32_t>& found, const auto& self) -> void {
     if (child.is_none()) return;
-    if (child.is_block()) {
+    if (child.is_leaf()) {
       found.push_back(child.index());
       return;
     }
     for (const WideChild below : arrays.nodes[child.index()].child) self(below, found, self);
   };
-  for (std::size_t unit = 0; unit < blocks.size(); ++unit) {
-    collect(arrays.unit_root[unit], blocks[unit], collect);
-    std::sort(blocks[unit].begin(), blocks[unit].end());
+  for (std::size_t object = 0; object < leaves.size(); ++object) {
+    collect(arrays.object_root[object], leaves[object], collect);
+    std::sort(leaves[object].begin(), leaves[object].end());
   }
-  return blocks;
+  return leaves;
 }
 
 }  // namespace
 
-TEST_CASE("rotated in every frame of a drive: all promises, whole units, a smaller sum, the same bits") {
+TEST_CASE("rotated in every frame of a drive: all promises, whole objects, a smaller sum, the same bits") {
   for (const bool deforms : {false, true}) {
     for (const std::uint32_t most : {1U, 5U}) {
       WideTraffic traffic({80, 14.0, deforms, true, true}, most);
-      WideTree tree = traffic.built();
+      WideBvh tree = traffic.built();
       tree.watch(touched());
-      const auto units = blocks_of_units(tree.arrays());
+      const auto objects = leaves_of_objects(tree.arrays());
       RandomStream random(2);
       std::size_t rotated = 0;
       for (int frame = 0; frame < 60; ++frame) {
@@ -111,7 +111,7 @@ TEST_CASE("rotated in every frame of a drive: all promises, whole units, a small
         const std::size_t count = tree.rotate_touched(most);
         rotated += count;
         CHECK((count > 0 ? tree.arrays().weighted_area_m2 < before_m2 : tree.arrays().weighted_area_m2 == before_m2));
-        REQUIRE(blocks_of_units(tree.arrays()) == units);
+        REQUIRE(leaves_of_objects(tree.arrays()) == objects);
         check_answers(tree, traffic, 10, random);
       }
       CHECK(rotated > 30);
@@ -121,17 +121,17 @@ TEST_CASE("rotated in every frame of a drive: all promises, whole units, a small
 
 TEST_CASE("the change that is chosen is the best there is, and gains what it says") {
   WideTraffic traffic({150, 25.0, true, true, true}, 3);
-  WideTree tree = traffic.built();
+  WideBvh tree = traffic.built();
   tree.watch(touched());
   std::size_t kinds[4] = {0, 0, 0, 0}, alone = 0;
   for (int frame = 0; frame < 40; ++frame) {
     traffic.step();
-    // One group alone moves: where one change is carried out, the sum falls by what one of the nodes promises.
-    WideTree before = tree;
+    // One object alone moves: where one change is carried out, the sum falls by what one of the nodes promises.
+    WideBvh before = tree;
     before.rotate_touched(1);  // nothing waits any more
     const std::span<const std::uint32_t> first = std::span(traffic.moved).first(12);
     before.refit(first, traffic.mesh.view(), traffic.boxes);
-    WideTree after = before;
+    WideBvh after = before;
     if (after.rotate_touched(1) == 1) {
       const double fall_m2 = before.arrays().weighted_area_m2 - after.arrays().weighted_area_m2;
       const auto nodes = nodes_of(before.arrays());
@@ -143,9 +143,9 @@ TEST_CASE("the change that is chosen is the best there is, and gains what it say
     traffic.refit(tree);
     const WideArrays& arrays = tree.arrays();
     for (const std::uint32_t node : nodes_of(arrays)) {
-      for (const std::uint32_t level : {1U, detail::wide_edit_levels}) {
-        const detail::WideRotation found = detail::WideRotationSearch(arrays, node, level).best();
-        const double expected = best_gain(arrays, node, level < detail::wide_edit_levels);
+      for (const std::uint32_t depth : {1U, detail::wide_edit_depth_limit}) {
+        const detail::WideRotation found = detail::WideRotationSearch(arrays, node, depth).best();
+        const double expected = best_gain(arrays, node, depth < detail::wide_edit_depth_limit);
         const double least = 1e-3 * static_cast<double>(arrays.nodes[node].box().half_area());
         ++kinds[static_cast<std::size_t>(found.kind)];
         // Differences of surfaces in single precision.
@@ -169,7 +169,7 @@ TEST_CASE("the change that is chosen is the best there is, and gains what it say
 
 TEST_CASE("rotations mend: refit with them stays far below refit alone") {
   WideTraffic traffic({300, 60.0, false, false, true}, 4);
-  WideTree refitted = traffic.built(), rotated = traffic.built();
+  WideBvh refitted = traffic.built(), rotated = traffic.built();
   rotated.watch(touched());
   for (int frame = 0; frame < 60; ++frame) {
     traffic.step();
@@ -184,7 +184,7 @@ TEST_CASE("rotations mend: refit with them stays far below refit alone") {
 
 TEST_CASE("rotations come to an end, and where nothing was touched there are none") {
   WideTraffic traffic({200, 30.0, false, false, true}, 5);
-  WideTree tree = traffic.built();
+  WideBvh tree = traffic.built();
   CHECK(tree.rotate_touched(8) == 0);
   traffic.step();
   traffic.refit(tree);
@@ -203,7 +203,7 @@ TEST_CASE("rotations come to an end, and where nothing was touched there are non
 
 TEST_CASE("2,000 frames of rotations and reinsertions: no deeper, no more nodes") {
   WideTraffic traffic({100, 25.0, true, true, true}, 6);
-  WideTree tree = traffic.built();
+  WideBvh tree = traffic.built();
   tree.watch(touched());
   const std::uint32_t depth = depth_below(tree.arrays());
   std::size_t most_early = 0;
@@ -220,12 +220,12 @@ TEST_CASE("2,000 frames of rotations and reinsertions: no deeper, no more nodes"
   CHECK(tree.validate(traffic.boxes) == "");
 }
 
-TEST_CASE("units at one point, without size, absent, or by the thousand can be rotated") {
+TEST_CASE("objects at one point, without size, absent, or by the thousand can be rotated") {
   RandomStream random(7);
-  for (const std::uint32_t groups : {0U, 1U, 9U, 3000U}) {
-    CAPTURE(groups);
-    WideTraffic traffic({groups, 12.0, false, false, groups != 9}, 8);
-    WideTree tree = traffic.built();
+  for (const std::uint32_t objects : {0U, 1U, 9U, 3000U}) {
+    CAPTURE(objects);
+    WideTraffic traffic({objects, 12.0, false, false, objects != 9}, 8);
+    WideBvh tree = traffic.built();
     tree.watch(touched());
     const auto follow = [&] {
       traffic.refit(tree);
@@ -236,12 +236,12 @@ TEST_CASE("units at one point, without size, absent, or by the thousand can be r
     follow();
     traffic.set_absent(true);
     follow();
-    traffic.place_all([](std::uint32_t group) { return Vec3(group % 50, group / 50, 0.0); });
+    traffic.place_all([](std::uint32_t object) { return Vec3(object % 50, object / 50, 0.0); });
     traffic.set_absent(false);
     follow();
-    if (groups < 100) check_answers(tree, traffic, 5, random);
+    if (objects < 100) check_answers(tree, traffic, 5, random);
   }
-  WideTree empty;
+  WideBvh empty;
   empty.watch(touched());
   CHECK(empty.rotate_touched(1) == 0);
 }

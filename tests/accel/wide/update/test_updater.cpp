@@ -16,12 +16,12 @@ using dcem_test::WideMesh;
 
 namespace {
 
-/// Cubes that drive over a plain, one group each, and the trees over them.
+/// Cubes that drive over a plain, one object each, and the trees over them.
 class Traffic {
  public:
   Traffic(std::size_t cars, std::uint64_t seed) : random_(seed) {
     for (std::size_t car = 0; car < cars; ++car) {
-      group_first.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
+      object_first.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
       const Vec3 low(dcem_test::between(random_, 0, 500), dcem_test::between(random_, 0, 500), 0);
       mesh.append(dcem_test::box_mesh(low, low + Vec3(4, 2, 1.5)));
       speed_.push_back({dcem_test::between(random_, -2, 2), dcem_test::between(random_, -2, 2), 0});
@@ -39,25 +39,25 @@ class Traffic {
     }
     boxes = mesh.boxes();
   }
-  WideTree built() const {
-    WideTree tree;
-    tree.build_grouped(mesh.view(), boxes, group_first);
+  WideBvh built() const {
+    WideBvh tree;
+    tree.build_objects(mesh.view(), boxes, object_first);
     return tree;
   }
-  UpkeepReport follow(WideTree& tree, WideMaintainer& maintainer) const {
-    const UpkeepReport report = maintainer.update(tree, moved, mesh.view(), boxes);
+  TreeUpdateReport follow(WideBvh& tree, WideUpdater& updater) const {
+    const TreeUpdateReport report = updater.update(tree, moved, mesh.view(), boxes);
     REQUIRE(tree.validate(boxes) == "");
     REQUIRE(report.sah_cost == tree.sah_cost());
-    REQUIRE(report.subtrees_rebuilt >= report.regrown);
+    REQUIRE(report.subtrees_rebuilt >= report.rebuilt_in_place);
     return report;
   }
-  UpkeepReport follow(WideTree& tree, const UpkeepSettings& settings) const {
-    WideMaintainer maintainer(settings);
-    return follow(tree, maintainer);
+  TreeUpdateReport follow(WideBvh& tree, const TreeUpdateSettings& settings) const {
+    WideUpdater updater(settings);
+    return follow(tree, updater);
   }
 
   WideMesh mesh;
-  std::vector<std::uint32_t> group_first, moved;
+  std::vector<std::uint32_t> object_first, moved;
   std::vector<Aabb<double>> boxes;
 
  private:
@@ -65,19 +65,19 @@ class Traffic {
   std::vector<Vec3> speed_;
 };
 
-UpkeepSettings with(TreePolicy policy) {
-  UpkeepSettings settings;
+TreeUpdateSettings with(TreePolicy policy) {
+  TreeUpdateSettings settings;
   settings.policy = policy;
   return settings;
 }
 
 /// Adaptive, with everything switched off that can be.
-UpkeepSettings nothing_mends() {
-  UpkeepSettings settings;
+TreeUpdateSettings nothing_mends() {
+  TreeUpdateSettings settings;
   settings.sah_growth_limit = settings.deformation_limit = settings.renewal_ratio = infinity;
-  settings.reinsertion_growth = settings.regrowth_price = settings.rebuild_growth_limit = infinity;
+  settings.reinsertion_growth = settings.subtree_rebuild_price = settings.rebuild_growth_limit = infinity;
   settings.reinsertion_turn = settings.rotations_per_node = 0;
-  settings.wear_interval = 1;
+  settings.check_interval = 1;
   return settings;
 }
 
@@ -86,35 +86,35 @@ UpkeepSettings nothing_mends() {
 TEST_CASE("nothing moved: nothing is touched, whatever the policy") {
   const Traffic traffic(50, 1);
   for (const TreePolicy policy : {TreePolicy::rebuild_always, TreePolicy::refit_only, TreePolicy::adaptive}) {
-    WideTree tree = traffic.built();
+    WideBvh tree = traffic.built();
     const double sah = tree.sah_cost();
-    const UpkeepReport report = WideMaintainer(with(policy)).update(tree, {}, traffic.mesh.view(), traffic.boxes);
+    const TreeUpdateReport report = WideUpdater(with(policy)).update(tree, {}, traffic.mesh.view(), traffic.boxes);
     CHECK(report.nodes_refit + report.nodes_rebuilt + report.subtrees_rebuilt == 0);
-    CHECK(report.nodes_kept > 50);  // a block for each car, and the nodes above
+    CHECK(report.nodes_kept > 50);  // a leaf for each car, and the nodes above
     CHECK(std::bit_cast<std::uint64_t>(tree.sah_cost()) == std::bit_cast<std::uint64_t>(sah));
   }
 }
 
-TEST_CASE("a drive: refit alone wears out, reinsertion stays near a new tree, and all hit the same bits") {
+TEST_CASE("a drive: refit alone degrades out, reinsertion stays near a new tree, and all hit the same bits") {
   Traffic traffic(200, 2);
-  WideTree refitted = traffic.built(), adaptive = traffic.built();
-  UpkeepSettings never_anew = nothing_mends();  // but by reinsertion
-  never_anew.reinsertion_growth = UpkeepSettings{}.reinsertion_growth;
-  never_anew.reinsertion_turn = UpkeepSettings{}.reinsertion_turn;
+  WideBvh refitted = traffic.built(), adaptive = traffic.built();
+  TreeUpdateSettings never_anew = nothing_mends();  // but by reinsertion
+  never_anew.reinsertion_growth = TreeUpdateSettings{}.reinsertion_growth;
+  never_anew.reinsertion_turn = TreeUpdateSettings{}.reinsertion_turn;
   RandomStream random(3);
-  std::uint64_t hung_elsewhere = 0;
+  std::uint64_t reinserted = 0;
   for (int frame = 0; frame < 200; ++frame) {
     traffic.step();
     traffic.follow(refitted, with(TreePolicy::refit_only));
-    const UpkeepReport report = traffic.follow(adaptive, never_anew);
-    hung_elsewhere += report.subtrees_rebuilt;
+    const TreeUpdateReport report = traffic.follow(adaptive, never_anew);
+    reinserted += report.subtrees_rebuilt;
     CHECK(!report.root_rebuilt);
-    const WideTree fresh = traffic.built();
+    const WideBvh fresh = traffic.built();
     for (int trial = 0; trial < 20; ++trial) {
       const Ray<double> ray = dcem_test::any_ray(random, traffic.mesh, fresh.bounds());
-      const auto expected = fresh.nearest(ray);
-      for (const WideTree* tree : {&refitted, &adaptive}) {
-        const auto found = tree->nearest(ray);
+      const auto expected = fresh.closest_hit(ray);
+      for (const WideBvh* tree : {&refitted, &adaptive}) {
+        const auto found = tree->closest_hit(ray);
         REQUIRE(found.has_value() == expected.has_value());
         if (!found) continue;
         REQUIRE(std::bit_cast<std::uint64_t>(found->t) == std::bit_cast<std::uint64_t>(expected->t));
@@ -125,7 +125,7 @@ TEST_CASE("a drive: refit alone wears out, reinsertion stays near a new tree, an
   const double fresh_sah = traffic.built().sah_cost();
   MESSAGE("SAH over a new tree's: refit " << refitted.sah_cost() / fresh_sah << ", reinsertion "
                                           << adaptive.sah_cost() / fresh_sah);
-  CHECK(hung_elsewhere > 200);
+  CHECK(reinserted > 200);
   // Every car has crossed half of the plain: neighbours at the start are strangers now.
   CHECK(refitted.sah_cost() > 2.0 * fresh_sah);
   CHECK(adaptive.sah_cost() < 1.2 * fresh_sah);
@@ -133,73 +133,73 @@ TEST_CASE("a drive: refit alone wears out, reinsertion stays near a new tree, an
 
 TEST_CASE("every trick has a switch: all off, adaptive is refit") {
   Traffic traffic(100, 4);
-  WideTree refitted = traffic.built(), switched_off = traffic.built(), off_and_whole = traffic.built();
-  UpkeepSettings whole = nothing_mends();
-  whole.regrowth = false;
+  WideBvh refitted = traffic.built(), switched_off = traffic.built(), off_and_whole = traffic.built();
+  TreeUpdateSettings whole = nothing_mends();
+  whole.subtree_rebuilds = false;
   for (int frame = 0; frame < 50; ++frame) {
     traffic.step();
-    const UpkeepReport expected = traffic.follow(refitted, with(TreePolicy::refit_only));
+    const TreeUpdateReport expected = traffic.follow(refitted, with(TreePolicy::refit_only));
     CHECK(traffic.follow(switched_off, nothing_mends()) == expected);
     CHECK(traffic.follow(off_and_whole, whole) == expected);
     CHECK(expected.nodes_rebuilt == 0);
-    CHECK(!switched_off.watched().any());
+    CHECK(!switched_off.tracked().any());
   }
 }
 
-TEST_CASE("each trick by itself mends what refit wears, and says what it did") {
-  using Change = void (*)(UpkeepSettings&);
-  const std::vector<Change> changes{[](UpkeepSettings& settings) { settings.rotations_per_node = 1; },
-                                    [](UpkeepSettings& settings) { settings.sah_growth_limit = 1.2; },
-                                    [](UpkeepSettings& settings) { settings.deformation_limit = 0.4; },
-                                    [](UpkeepSettings& settings) { settings.renewal_ratio = 16.0; },
-                                    [](UpkeepSettings& settings) { settings.rebuild_growth_limit = 1.2; }};
+TEST_CASE("each trick by itself mends what refit degrades, and says what it did") {
+  using Change = void (*)(TreeUpdateSettings&);
+  const std::vector<Change> changes{[](TreeUpdateSettings& settings) { settings.rotations_per_node = 1; },
+                                    [](TreeUpdateSettings& settings) { settings.sah_growth_limit = 1.2; },
+                                    [](TreeUpdateSettings& settings) { settings.deformation_limit = 0.4; },
+                                    [](TreeUpdateSettings& settings) { settings.renewal_ratio = 16.0; },
+                                    [](TreeUpdateSettings& settings) { settings.rebuild_growth_limit = 1.2; }};
   for (std::size_t index = 0; index < changes.size(); ++index) {
     CAPTURE(index);
     Traffic traffic(200, 6);
-    WideTree refitted = traffic.built(), mended = traffic.built();
-    UpkeepSettings settings = nothing_mends();
+    WideBvh refitted = traffic.built(), mended = traffic.built();
+    TreeUpdateSettings settings = nothing_mends();
     changes[index](settings);
-    WideMaintainer maintainer(settings);
-    UpkeepReport sum;
-    bool part_regrown = false;
+    WideUpdater updater(settings);
+    TreeUpdateReport sum;
+    bool part_rebuilt = false;
     for (int frame = 0; frame < 100; ++frame) {
       traffic.step();
       traffic.follow(refitted, with(TreePolicy::refit_only));
-      const UpkeepReport report = traffic.follow(mended, maintainer);
+      const TreeUpdateReport report = traffic.follow(mended, updater);
       sum.rotated += report.rotated;
-      sum.regrown += report.regrown;
-      part_regrown = part_regrown || (report.regrown > 0 && !report.root_rebuilt);
+      sum.rebuilt_in_place += report.rebuilt_in_place;
+      part_rebuilt = part_rebuilt || (report.rebuilt_in_place > 0 && !report.root_rebuilt);
       sum.reinserted += report.reinserted;
       sum.root_rebuilt = sum.root_rebuilt || report.root_rebuilt;
-      CHECK(report.nodes_rebuilt >= report.regrown);
+      CHECK(report.nodes_rebuilt >= report.rebuilt_in_place);
     }
     CHECK(mended.sah_cost() < 0.9 * refitted.sah_cost());
     CHECK((sum.rotated > 0) == (index == 0));
-    CHECK((sum.regrown > 0) == (index == 1 || index == 2 || index == 3));
+    CHECK((sum.rebuilt_in_place > 0) == (index == 1 || index == 2 || index == 3));
     CHECK(sum.reinserted == 0);
-    CHECK(part_regrown == (index == 1 || index == 2));
+    CHECK(part_rebuilt == (index == 1 || index == 2));
     if (index == 3 || index == 4) CHECK(sum.root_rebuilt);
   }
 }
 
-TEST_CASE("no subtree stays worn: past a limit it is regrown in the frame that looks") {
+TEST_CASE("no subtree stays degraded: past a limit it is rebuilt_in_place in the frame that looks") {
   for (const bool by_sah : {true, false}) {
     Traffic traffic(300, 7);
-    WideTree tree = traffic.built();
-    UpkeepSettings settings = nothing_mends();
+    WideBvh tree = traffic.built();
+    TreeUpdateSettings settings = nothing_mends();
     (by_sah ? settings.sah_growth_limit : settings.deformation_limit) = by_sah ? 1.1 : 0.1;
-    settings.wear_interval = 3;
-    WideMaintainer maintainer(settings);
+    settings.check_interval = 3;
+    WideUpdater updater(settings);
     for (int frame = 1; frame <= 60; ++frame) {
       traffic.step();
-      const UpkeepReport report = traffic.follow(tree, maintainer);
+      const TreeUpdateReport report = traffic.follow(tree, updater);
       if (frame % 3 != 0) {
-        CHECK(report.regrown == 0);
+        CHECK(report.rebuilt_in_place == 0);
         continue;
       }
       for (const std::uint32_t node : dcem_test::nodes_of(tree.arrays())) {
         // Where a new plan is no better the old part stays, and counts as built now at the next look.
-        CHECK((tree.wear()[node].is_new() || !maintainer.is_worn(tree.wear()[node])));
+        CHECK((tree.degradation()[node].is_new() || !updater.is_degraded(tree.degradation()[node])));
       }
     }
   }
@@ -207,38 +207,38 @@ TEST_CASE("no subtree stays worn: past a limit it is regrown in the frame that l
 
 TEST_CASE("renewal: at once, and then once for so many visited nodes") {
   Traffic traffic(200, 14);
-  WideTree tree = traffic.built();
-  UpkeepSettings settings = nothing_mends();
+  WideBvh tree = traffic.built();
+  TreeUpdateSettings settings = nothing_mends();
   settings.renewal_ratio = 16.0;
-  WideMaintainer maintainer(settings);
+  WideUpdater updater(settings);
   double visited = infinity;
   std::uint64_t renewed = 0;
   for (int frame = 0; frame < 100; ++frame) {
     const WideArrays& arrays = tree.arrays();
-    const auto all = static_cast<double>(arrays.nodes.size() - arrays.free_nodes.size() + arrays.blocks.size());
+    const auto all = static_cast<double>(arrays.nodes.size() - arrays.free_nodes.size() + arrays.leaves.size());
     traffic.step();
-    const UpkeepReport report = traffic.follow(tree, maintainer);
+    const TreeUpdateReport report = traffic.follow(tree, updater);
     visited += static_cast<double>(report.nodes_refit);
     const bool due = visited > 16.0 * all;
     CHECK((due || !report.root_rebuilt));
     if (due) visited = 0.0;
-    renewed += report.regrown;
+    renewed += report.rebuilt_in_place;
   }
   CHECK(renewed > 3);
 }
 
 TEST_CASE("with reinsertion all nodes are built anew in turns, what hangs in an entry of the root a frame") {
   Traffic traffic(200, 15);
-  WideTree tree = traffic.built();
-  UpkeepSettings settings = nothing_mends();
+  WideBvh tree = traffic.built();
+  TreeUpdateSettings settings = nothing_mends();
   settings.renewal_ratio = 16.0;
   settings.reinsertion_growth = 1.1;
-  WideMaintainer maintainer(settings);
+  WideUpdater updater(settings);
   int renewed = 0, longest = 0, frames = 0;
   for (int frame = 0; frame < 200; ++frame) {
     traffic.step();
-    const UpkeepReport report = traffic.follow(tree, maintainer);
-    CHECK(report.regrown <= 1);
+    const TreeUpdateReport report = traffic.follow(tree, updater);
+    CHECK(report.rebuilt_in_place <= 1);
     ++frames;
     if (!report.root_rebuilt) continue;
     ++renewed;
@@ -253,16 +253,16 @@ TEST_CASE("with reinsertion all nodes are built anew in turns, what hangs in an 
   CHECK(tree.validate(traffic.boxes) == "");
 }
 
-TEST_CASE("what a node holds can be arranged in one way only where all of it are leaves: it is not worn") {
-  WideWear wear;
-  wear.area_at_build_m2 = 1.0;
-  wear.area_m2 = 100.0;
-  wear.ratio_growth_sum = 100.0;
-  wear.inner_nodes = 1;
-  const WideMaintainer maintainer;
-  CHECK(!maintainer.is_worn(wear));
-  wear.inner_nodes = 2;
-  CHECK(maintainer.is_worn(wear));
+TEST_CASE("what a node holds can be arranged in one way only where all of it are leaves: it is not degraded") {
+  Degradation degradation;
+  degradation.area_at_build_m2 = 1.0;
+  degradation.area_m2 = 100.0;
+  degradation.ratio_growth_sum = 100.0;
+  degradation.inner_nodes = 1;
+  const WideUpdater updater;
+  CHECK(!updater.is_degraded(degradation));
+  degradation.inner_nodes = 2;
+  CHECK(updater.is_degraded(degradation));
 }
 
 TEST_CASE("the meter of steps: the base from the first 10,000 rays, then what is wasted, never less than nothing") {
@@ -288,96 +288,96 @@ TEST_CASE("the meter of steps: the base from the first 10,000 rays, then what is
 
 TEST_CASE("steps per ray: the nodes are built anew in the frame after rays have wasted the price, not before") {
   Traffic traffic(300, 8);
-  WideTree tree = traffic.built();
-  UpkeepSettings settings = nothing_mends();
-  settings.regrowth_price = 20.0;
-  WideMaintainer maintainer(settings);
-  const double price = 20.0 * static_cast<double>(tree.arrays().blocks.size());
-  maintainer.note_rays({100'000, 0}, 10'000);
+  WideBvh tree = traffic.built();
+  TreeUpdateSettings settings = nothing_mends();
+  settings.subtree_rebuild_price = 20.0;
+  WideUpdater updater(settings);
+  const double price = 20.0 * static_cast<double>(tree.arrays().leaves.size());
+  updater.note_rays({100'000, 0}, 10'000);
   const auto spent = static_cast<std::uint64_t>(price);
-  maintainer.note_rays({spent + 100, 0}, 10);  // 100 is what they should have taken: exactly the price
+  updater.note_rays({spent + 100, 0}, 10);  // 100 is what they should have taken: exactly the price
   traffic.step();
-  CHECK(traffic.follow(tree, maintainer).regrown == 0);
-  maintainer.note_rays({11, 0}, 1);
+  CHECK(traffic.follow(tree, updater).rebuilt_in_place == 0);
+  updater.note_rays({11, 0}, 1);
   traffic.step();
-  const UpkeepReport report = traffic.follow(tree, maintainer);
-  CHECK(report.regrown == 1);
+  const TreeUpdateReport report = traffic.follow(tree, updater);
+  CHECK(report.rebuilt_in_place == 1);
   CHECK(report.root_rebuilt);
-  CHECK(maintainer.steps().steps_at_build() == 0.0);  // counted anew
+  CHECK(updater.steps().steps_at_build() == 0.0);  // counted anew
   traffic.step();
-  CHECK(traffic.follow(tree, maintainer).regrown == 0);
+  CHECK(traffic.follow(tree, updater).rebuilt_in_place == 0);
 }
 
-TEST_CASE("real rays in a worn tree waste what its steps say, and building the nodes anew brings them down") {
+TEST_CASE("real rays in a degraded tree waste what its steps say, and building the nodes anew brings them down") {
   Traffic traffic(300, 9);
-  WideTree tree = traffic.built(), refitted = traffic.built();
-  UpkeepSettings settings = nothing_mends();
-  settings.regrowth_price = 12.0;
-  WideMaintainer maintainer(settings);
+  WideBvh tree = traffic.built(), refitted = traffic.built();
+  TreeUpdateSettings settings = nothing_mends();
+  settings.subtree_rebuild_price = 12.0;
+  WideUpdater updater(settings);
   RandomStream random(10);
-  const auto steps_of = [&](const WideTree& asked, std::size_t rays) {
+  const auto steps_of = [&](const WideBvh& asked, std::size_t rays) {
     TraversalCounters spent;
     for (std::size_t ray = 0; ray < rays; ++ray) {
-      asked.nearest(dcem_test::any_ray(random, traffic.mesh, asked.bounds()), &spent);
+      asked.closest_hit(dcem_test::any_ray(random, traffic.mesh, asked.bounds()), &spent);
     }
     return spent;
   };
-  std::uint64_t regrown = 0;
+  std::uint64_t rebuilt_in_place = 0;
   for (int frame = 0; frame < 150; ++frame) {
     traffic.step();
     traffic.follow(refitted, with(TreePolicy::refit_only));
-    regrown += traffic.follow(tree, maintainer).regrown;
-    maintainer.note_rays(steps_of(tree, 1000), 1000);
+    rebuilt_in_place += traffic.follow(tree, updater).rebuilt_in_place;
+    updater.note_rays(steps_of(tree, 1000), 1000);
   }
-  CHECK(regrown >= 1);
-  CHECK(regrown < 30);
+  CHECK(rebuilt_in_place >= 1);
+  CHECK(rebuilt_in_place < 30);
   CHECK(steps_of(tree, 5000).nodes_visited < 0.8 * static_cast<double>(steps_of(refitted, 5000).nodes_visited));
 }
 
 TEST_CASE(
-    "groups that drive, bend, vanish and return: whatever is switched on, the oracle's answers and the same bits") {
-  using Change = void (*)(UpkeepSettings&);
-  const std::vector<Change> changes{[](UpkeepSettings&) {},
-                                    [](UpkeepSettings& settings) { settings.rotations_per_node = 2; },
-                                    [](UpkeepSettings& settings) { settings.sah_growth_limit = 1.02; },
-                                    [](UpkeepSettings& settings) { settings.deformation_limit = 0.02; },
-                                    [](UpkeepSettings& settings) { settings.regrowth_price = 0.01; },
-                                    [](UpkeepSettings& settings) { settings.regrowth = false; },
-                                    [](UpkeepSettings& settings) { settings.rebuild_growth_limit = 1.01; }};
+    "objects that drive, bend, vanish and return: whatever is switched on, the oracle's answers and the same bits") {
+  using Change = void (*)(TreeUpdateSettings&);
+  const std::vector<Change> changes{[](TreeUpdateSettings&) {},
+                                    [](TreeUpdateSettings& settings) { settings.rotations_per_node = 2; },
+                                    [](TreeUpdateSettings& settings) { settings.sah_growth_limit = 1.02; },
+                                    [](TreeUpdateSettings& settings) { settings.deformation_limit = 0.02; },
+                                    [](TreeUpdateSettings& settings) { settings.subtree_rebuild_price = 0.01; },
+                                    [](TreeUpdateSettings& settings) { settings.subtree_rebuilds = false; },
+                                    [](TreeUpdateSettings& settings) { settings.rebuild_growth_limit = 1.01; }};
   for (std::size_t index = 0; index < changes.size(); ++index) {
     CAPTURE(index);
     dcem_test::WideTraffic traffic({60, 12.0, true, true, true}, 20 + index);
-    WideTree tree = traffic.built();
-    UpkeepSettings settings;
-    settings.wear_interval = index % 2 == 0 ? 1 : 3;
+    WideBvh tree = traffic.built();
+    TreeUpdateSettings settings;
+    settings.check_interval = index % 2 == 0 ? 1 : 3;
     changes[index](settings);
-    WideMaintainer maintainer(settings);
+    WideUpdater updater(settings);
     RandomStream random(30);
-    UpkeepReport sum;
+    TreeUpdateReport sum;
     for (int frame = 0; frame < 150; ++frame) {
       CAPTURE(frame);
       traffic.step();
-      const UpkeepReport report = maintainer.update(tree, traffic.moved, traffic.mesh.view(), traffic.boxes);
-      maintainer.note_rays({static_cast<std::uint64_t>(60'000 + 100 * frame), 0}, 5000);
-      sum.regrown += report.regrown;
+      const TreeUpdateReport report = updater.update(tree, traffic.moved, traffic.mesh.view(), traffic.boxes);
+      updater.note_rays({static_cast<std::uint64_t>(60'000 + 100 * frame), 0}, 5000);
+      sum.rebuilt_in_place += report.rebuilt_in_place;
       sum.rotated += report.rotated;
       dcem_test::check_answers(tree, traffic, frame % 10 == 0 ? 20 : 2, random);
     }
     // Plans differ in their number of nodes; what is freed is used again.
     CHECK(tree.arrays().nodes.size() <= 2 * traffic.built().arrays().nodes.size());
-    if (index >= 2 && index <= 4) CHECK(sum.regrown > 10);
+    if (index >= 2 && index <= 4) CHECK(sum.rebuilt_in_place > 10);
     CHECK((sum.rotated > 0) == (index == 1));
   }
 }
 
 TEST_CASE("by default no frame of a drive builds the whole tree anew, and none ends worse than a new tree") {
   Traffic traffic(300, 11);
-  WideTree tree = traffic.built();
-  WideMaintainer maintainer;
+  WideBvh tree = traffic.built();
+  WideUpdater updater;
   const double sah_at_build = tree.quality().sah_at_build;
   for (int frame = 0; frame < 300; ++frame) {
     traffic.step();
-    traffic.follow(tree, maintainer);
+    traffic.follow(tree, updater);
     REQUIRE(tree.quality().sah_at_build == sah_at_build);
   }
   CHECK(tree.sah_cost() < 1.15 * traffic.built().sah_cost());
@@ -388,35 +388,35 @@ TEST_CASE("objects that were away and come all at once: the tree is as good as n
   traffic.mesh.absent.assign(traffic.mesh.triangles.size(), true);
   traffic.mesh.absent[0] = traffic.mesh.absent[1] = false;  // something is there, so that the tree has a size
   traffic.boxes = traffic.mesh.boxes();
-  WideTree whole = traffic.built(), grown = traffic.built();
+  WideBvh whole = traffic.built(), grown = traffic.built();
   traffic.mesh.absent.assign(traffic.mesh.triangles.size(), false);
   traffic.boxes = traffic.mesh.boxes();
-  UpkeepReport report = traffic.follow(whole, with(TreePolicy::adaptive));
+  TreeUpdateReport report = traffic.follow(whole, with(TreePolicy::adaptive));
   CHECK(report.root_rebuilt);
   CHECK(report.sah_cost < 1.02 * traffic.built().sah_cost());
   // What the whole build is not needed for.
-  UpkeepSettings settings = nothing_mends();
+  TreeUpdateSettings settings = nothing_mends();
   settings.sah_growth_limit = 1.2;
   report = traffic.follow(grown, settings);
-  CHECK(report.regrown > 0);
+  CHECK(report.rebuilt_in_place > 0);
   CHECK(report.sah_cost < 1.02 * traffic.built().sah_cost());
 }
 
-TEST_CASE("a large group whose triangles drift apart: its blocks are built anew where nothing else mends them") {
+TEST_CASE("a large object whose triangles drift apart: its leaves are built anew where nothing else mends them") {
   RandomStream random(12);
-  dcem_test::WideMesh mesh = dcem_test::bent_ground(30, 0.0, 13);  // more patches than a unit has
+  dcem_test::WideMesh mesh = dcem_test::bent_ground(30, 0.0, 13);  // more quads than an object has
   const std::vector<Vec3> at_rest = mesh.vertices;
   std::vector<std::uint32_t> all(mesh.triangles.size());
   std::iota(all.begin(), all.end(), 0U);
-  WideTree tree;
+  WideBvh tree;
   tree.build(mesh.view(), mesh.boxes());
-  WideMaintainer maintainer;
+  WideUpdater updater;
   // Rows and columns change places: neighbours are far apart.
   for (std::size_t vertex = 0; vertex < at_rest.size(); ++vertex) {
     mesh.vertices[vertex] = at_rest[(vertex * 7) % at_rest.size()] + dcem_test::random_in_cube(random, 0.1);
   }
-  const UpkeepReport report = maintainer.update(tree, all, mesh.view(), mesh.boxes());
-  WideTree fresh;
+  const TreeUpdateReport report = updater.update(tree, all, mesh.view(), mesh.boxes());
+  WideBvh fresh;
   fresh.build(mesh.view(), mesh.boxes());
   CHECK(report.root_rebuilt);
   CHECK(report.sah_cost < 1.05 * fresh.sah_cost());
@@ -425,15 +425,15 @@ TEST_CASE("a large group whose triangles drift apart: its blocks are built anew 
 
 TEST_CASE("limits that are no limits are refused") {
   const auto refuses = [](auto&& change) {
-    UpkeepSettings settings;
+    TreeUpdateSettings settings;
     change(settings);
-    CHECK_THROWS_AS(WideMaintainer{settings}, std::invalid_argument);
+    CHECK_THROWS_AS(WideUpdater{settings}, std::invalid_argument);
   };
   for (const double growth : {0.9, 0.0, -1.0, dcem_test::not_a_number}) {
-    refuses([&](UpkeepSettings& settings) { settings.reinsertion_growth = growth; });
-    refuses([&](UpkeepSettings& settings) { settings.rebuild_growth_limit = growth; });
-    if (growth != 0.9) refuses([&](UpkeepSettings& settings) { settings.regrowth_price = growth; });
+    refuses([&](TreeUpdateSettings& settings) { settings.reinsertion_growth = growth; });
+    refuses([&](TreeUpdateSettings& settings) { settings.rebuild_growth_limit = growth; });
+    if (growth != 0.9) refuses([&](TreeUpdateSettings& settings) { settings.subtree_rebuild_price = growth; });
   }
-  refuses([](UpkeepSettings& settings) { settings.rebuild_growth_limit = 1.0; });
-  refuses([](UpkeepSettings& settings) { settings.wear_interval = 0; });
+  refuses([](TreeUpdateSettings& settings) { settings.rebuild_growth_limit = 1.0; });
+  refuses([](TreeUpdateSettings& settings) { settings.check_interval = 0; });
 }
