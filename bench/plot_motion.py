@@ -18,7 +18,7 @@ import sys
 POLICIES = ["rebuild", "refit", "adaptive"]  # of the wide tree
 BREAK_EVENS = [("refit", "rebuild"), ("adaptive", "rebuild"), ("refit", "adaptive")]  # (cheaper update, cheaper rays)
 STYLES = {"rebuild": ("#0072B2", "-"), "refit": ("#D55E00", "--"), "adaptive": ("#009E73", "-.")}
-NUMBERS = ["update_ms", "closest_ns_per_ray", "occluded_ns_per_ray", "sah_cost", "reinserted", "rotated", "regrown"]
+NUMBERS = ["update_ms", "closest_ns_per_ray", "occluded_ns_per_ray", "sah_cost", "reinserted", "rotated", "rebuilt_in_place"]
 RESAMPLES = 1000
 
 
@@ -129,15 +129,15 @@ def break_evens(series):
 
 def deeds(frames):
     """What was done beyond refitting: {what: [frame numbers]}; a frame may stand in several."""
-    done = {"refit only": [], "cars reinserted": [], "subtree regrown": [], "all nodes regrown": [],
+    done = {"refit only": [], "cars reinserted": [], "subtree rebuilt_in_place": [], "all nodes rebuilt_in_place": [],
             "tree rebuilt": []}
     for frame in frames:
         # All nodes, or their last part, count as a subtree, too.
-        in_place = frame["regrown"] - (frame["rebuilt"] == "nodes")
-        for what, happened in [("cars reinserted", frame["reinserted"]), ("subtree regrown", in_place > 0),
-                               ("all nodes regrown", frame["rebuilt"] == "nodes"),
+        in_place = frame["rebuilt_in_place"] - (frame["rebuilt"] == "nodes")
+        for what, happened in [("cars reinserted", frame["reinserted"]), ("subtree rebuilt_in_place", in_place > 0),
+                               ("all nodes rebuilt_in_place", frame["rebuilt"] == "nodes"),
                                ("tree rebuilt", frame["rebuilt"] == "tree"),
-                               ("refit only", not (frame["reinserted"] or frame["rotated"] or frame["regrown"] or
+                               ("refit only", not (frame["reinserted"] or frame["rotated"] or frame["rebuilt_in_place"] or
                                                    frame["rebuilt"]))]:
             if happened:
                 done[what].append(frame["frame"])

@@ -9,8 +9,8 @@ namespace dcem::io {
 
 /// Gives the frames of a scenario. Copies what it needs: the scene may be moved out of the scenario meanwhile.
 ///
-/// With a trace it reads that file as it goes. A vehicle takes a free place of its type when it enters, and keeps it
-/// until it leaves. Those that enter in a frame take the lowest free places in ascending order of their ids; a place
+/// With a trace it reads that file as it goes. A vehicle takes a free slot of its type when it enters, and keeps it
+/// until it leaves. Those that enter in a frame take the lowest free slots in ascending order of their ids; a slot
 /// that was left in this very frame is taken last. So a frame depends on the scenario and its number alone.
 ///
 /// An instant within 1e-6 s of a step of the trace is that step. Between two steps positions and speeds are linear and

@@ -12,11 +12,11 @@ namespace dcem::io {
 
 /// What loading a scenario keeps of its trace. The size does not grow with the number of vehicles that pass.
 struct Traffic {
-  /// Vehicles of one shape, and their places in the scene: bodies [first_body, first_body + places).
+  /// Vehicles of one shape, and their slots in the scene: bodies [first_body, first_body + slots).
   struct Type {
     std::string name;
-    Vec3 size_m{0.0};        ///< length, width, height
-    std::size_t places = 0;  ///< the largest number of them at a time
+    Vec3 size_m{0.0};       ///< length, width, height
+    std::size_t slots = 0;  ///< the largest number of them at a time
     std::size_t first_body = 0;
   };
   /// Instants from a first step to a last one, with all between.

@@ -25,12 +25,12 @@
 
 namespace dcem {
 
-/// The standing scenery, an object, or a place that objects of one shape take in turn.
+/// The standing scenery, an object, or a slot of a body pool, which objects of one shape take in turn.
 struct Body {
-  std::string id;    ///< empty for the scenery and for places
+  std::string id;    ///< empty for the scenery and for slots
   Motion motion;     ///< of an object
   SurfaceMesh mesh;  ///< in local coordinates
-  bool is_place = false;
+  bool is_slot = false;
 };
 
 /// A device at an instant.
@@ -60,18 +60,18 @@ class Scene {
   void set_scenery(const TriangleMesh& mesh);
   /// A rigid object in its own coordinates; its id must be new. Its materials must have been added.
   BodyId add_object(std::string id, const TriangleMesh& mesh, Motion motion);
-  /// Places for objects that come and go and all look like this mesh: each frame says which object stands where, by
+  /// Slots for objects that come and go and all look like this mesh: each frame says which object is in which slot, by
   /// `BodyState::occupant`. So a day of traffic needs as many bodies as are on the road at a time. Empty until then.
-  void add_places(std::size_t count, const TriangleMesh& mesh);
+  void add_body_pool(std::size_t count, const TriangleMesh& mesh);
   void add_transmitter(Device device);
   void add_receiver(Device device);
 
   // Time.
 
-  /// Poses and velocities of all bodies at `time_s`, from their motions. Places are empty.
+  /// Poses and velocities of all bodies at `time_s`, from their motions. Slots are empty.
   Frame frame_at(double time_s, std::size_t index = 0) const;
   /// Moves the bodies to where the frame says. Throws std::invalid_argument, having changed nothing, where a pose is
-  /// not finite or the name of an object at a place is no good.
+  /// not finite or the name of an object in a slot is empty, has a slash, or is there twice.
   ChangeSet apply(const Frame& frame);
   /// Where a device is in a frame, and how its antenna is turned.
   DeviceState device_state(const Device& device, const Frame& frame) const;
@@ -84,11 +84,11 @@ class Scene {
   std::optional<MaterialId> find_material(const std::string& name) const;
   std::span<const Body> bodies() const { return bodies_; }
   const Body& body(BodyId id) const { return bodies_[id.value]; }
-  /// An object by its id; an object at a place while it stands there in the current frame.
+  /// An object by its id; an object in a slot while it is there in the current frame.
   std::optional<BodyId> find_body(const std::string& id) const;
-  /// The id of an object, or of the object that stands at a place in the current frame; empty for the scenery.
-  const std::string& body_name(BodyId id) const { return body(id).is_place ? body_state(id).occupant : body(id).id; }
-  std::size_t place_count() const { return place_count_; }
+  /// The id of an object, or of the object that is in a slot in the current frame; empty for the scenery.
+  const std::string& body_name(BodyId id) const { return body(id).is_slot ? body_state(id).occupant : body(id).id; }
+  std::size_t slot_count() const { return slot_count_; }
   const BodyState& body_state(BodyId id) const { return states_[id.value]; }
   std::span<const Device> transmitters() const { return transmitters_; }
   std::span<const Device> receivers() const { return receivers_; }
@@ -146,7 +146,7 @@ class Scene {
   std::vector<Device> transmitters_, receivers_;
   std::unordered_set<std::string> transmitter_ids_, receiver_ids_;
   std::unordered_map<std::string, BodyId> body_by_id_;
-  std::size_t place_count_ = 0;
+  std::size_t slot_count_ = 0;
   WorldGeometry world_;
 };
 
@@ -215,11 +215,11 @@ inline BodyId Scene::add_object(std::string id, const TriangleMesh& mesh, Motion
   return BodyId(bodies_.size() - 1);
 }
 
-inline void Scene::add_places(std::size_t count, const TriangleMesh& mesh) {
+inline void Scene::add_body_pool(std::size_t count, const TriangleMesh& mesh) {
   Body body{"", LinearMotion{}, build_surface_mesh(mesh, settings_), true};
   resolve_materials(body.mesh);
   for (std::size_t index = 0; index < count; ++index) append(body);
-  place_count_ += count;
+  slot_count_ += count;
 }
 
 inline std::vector<SurfaceMaterial> Scene::resolve_materials(const SurfaceMesh& mesh) const {
@@ -253,7 +253,7 @@ inline void Scene::check_foliage_is_closed(const SurfaceMesh& mesh, std::span<co
 }
 
 inline void Scene::append(Body body) {
-  const BodyState state{!body.is_place, placement_at(body.motion, 0.0)};
+  const BodyState state{!body.is_slot, placement_at(body.motion, 0.0)};
   world_.append(body.mesh, resolve_materials(body.mesh), state);
   states_.push_back(state);
   bodies_.push_back(std::move(body));
@@ -267,7 +267,7 @@ inline void Scene::check_device(const Device& device, const std::unordered_set<s
   if (!std::isfinite(device.power_dbm)) throw std::invalid_argument(name + "power_dbm is not finite");
   if (!device.attachment) {
     detail::naming("device '" + device.id + "'", [&] { validate(device.motion); });
-  } else if (!find_body(device.attachment->object) && place_count_ == 0) {
+  } else if (!find_body(device.attachment->object) && slot_count_ == 0) {
     throw std::invalid_argument(name + "rides on '" + device.attachment->object + "', which is no object of the scene");
   } else if (!is_finite(device.attachment->offset_m)) {
     throw std::invalid_argument(name + "offset_m is not finite");

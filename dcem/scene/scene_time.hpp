@@ -7,7 +7,7 @@ namespace dcem {
 inline Frame Scene::frame_at(double time_s, std::size_t index) const {
   if (!std::isfinite(time_s)) throw std::invalid_argument("frame: its time is not finite");
   Frame frame{index, time_s, {}};
-  for (const Body& body : bodies_) frame.bodies.push_back({!body.is_place, placement_at(body.motion, time_s)});
+  for (const Body& body : bodies_) frame.bodies.push_back({!body.is_slot, placement_at(body.motion, time_s)});
   return frame;
 }
 
@@ -17,7 +17,7 @@ inline ChangeSet Scene::apply(const Frame& frame) {
   for (std::size_t index = 1; index < bodies_.size(); ++index) {  // the scenery stands
     if (frame.bodies[index] != states_[index]) take_over(BodyId(index), frame.bodies[index], changes);
   }
-  for (const BodyId id : changes.replaced) {  // after all have left their places: objects may change places
+  for (const BodyId id : changes.replaced) {  // after all have left their slots: objects may change slots
     if (body_state(id).present) body_by_id_[body_state(id).occupant] = id;
   }
   return changes;
@@ -45,10 +45,10 @@ inline void Scene::check_frame(const Frame& frame) const {
   for (std::size_t index = 1; index < bodies_.size(); ++index) {
     const BodyState& state = frame.bodies[index];
     if (state == states_[index]) continue;
-    const std::string& name = bodies_[index].is_place ? state.occupant : bodies_[index].id;
+    const std::string& name = bodies_[index].is_slot ? state.occupant : bodies_[index].id;
     detail::naming("object '" + name + "'", [&] { validate(state.placement); });
-    if (state.occupant.empty() == (bodies_[index].is_place && state.present)) {
-      throw std::invalid_argument("frame: expected a name for each object at a place, and for nothing else");
+    if (state.occupant.empty() == (bodies_[index].is_slot && state.present)) {
+      throw std::invalid_argument("frame: expected an object name for each slot in use, and for nothing else");
     }
     occupants_changed = occupants_changed || state.occupant != states_[index].occupant;
   }
@@ -59,7 +59,7 @@ inline void Scene::check_frame(const Frame& frame) const {
 inline void Scene::check_occupants(const Frame& frame) const {
   std::unordered_set<std::string> names;
   for (std::size_t index = 1; index < bodies_.size(); ++index) {
-    const std::string& name = bodies_[index].is_place ? frame.bodies[index].occupant : bodies_[index].id;
+    const std::string& name = bodies_[index].is_slot ? frame.bodies[index].occupant : bodies_[index].id;
     if (name.empty()) continue;
     if (name.find('/') != std::string::npos || !names.insert(name).second) {
       throw std::invalid_argument("object '" + name + "': expected an id without slash that is there once");
@@ -70,11 +70,11 @@ inline void Scene::check_occupants(const Frame& frame) const {
 /// The body that has a name in a frame, which need not be the current one.
 inline std::optional<BodyId> Scene::find_in(const Frame& frame, const std::string& id) const {
   const auto is_it = [&](BodyId body) {
-    return !bodies_[body.value].is_place || frame.bodies[body.value].occupant == id;
+    return !bodies_[body.value].is_slot || frame.bodies[body.value].occupant == id;
   };
   if (const std::optional<BodyId> now = find_body(id); now && is_it(*now)) return now;
   for (std::size_t index = 1; index < bodies_.size(); ++index) {
-    if (bodies_[index].is_place && frame.bodies[index].occupant == id) return BodyId(index);
+    if (bodies_[index].is_slot && frame.bodies[index].occupant == id) return BodyId(index);
   }
   return std::nullopt;
 }
@@ -88,7 +88,7 @@ inline DeviceState Scene::device_state(const Device& device, const Frame& frame)
   }
   DCEM_ASSERT(frame.bodies.size() == bodies_.size());
   const std::optional<BodyId> body = find_in(frame, device.attachment->object);
-  DCEM_ASSERT(body.has_value() || place_count_ > 0);
+  DCEM_ASSERT(body.has_value() || slot_count_ > 0);
   if (!body) return {Vec3(0.0), Vec3(0.0), std::nullopt, false, mounting};
   const BodyState& state = frame.bodies[body->value];
   const Pose& pose = state.placement.pose;

@@ -56,7 +56,7 @@ struct FrameResult {
   double time_s = 0.0;
   std::vector<LinkResult> links;  ///< by transmitter, then receiver; links of absent devices are left out
   WorkCounters work;
-  TreeUpdateReport tree;           ///< how the tree followed the frame
+  TreeUpdateReport tree;       ///< how the tree followed the frame
   CacheCounters cache;         ///< what became of the remembered sequences; zero where the cache is off
   double update_time_s = 0.0;  ///< wall-clock time to move the scene and the tree
   double solve_time_s = 0.0;   ///< wall-clock time to find paths and compute fields

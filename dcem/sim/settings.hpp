@@ -77,8 +77,8 @@ struct SimulationSettings {
   double frequency_hz = 30e9;
   ItuSettings itu{};  ///< revision of the material tables, and whether they may be extrapolated
   PropagationSettings propagation{};
-  TreeUpdateSettings tree_update{};     ///< how the tree is kept while the scene moves. Never changes a result
-  unsigned threads = 0;        ///< 0: all cores. Never changes a result
+  TreeUpdateSettings tree_update{};  ///< how the tree is kept while the scene moves. Never changes a result
+  unsigned threads = 0;              ///< 0: all cores. Never changes a result
   bool share_map_work = true;  ///< work that is the same at all points of a map is done once. Never changes a result
 };
 

@@ -80,7 +80,7 @@ class Simulator {
     std::vector<RadioEnd> radio;
     std::vector<ReachedEdges> reached;  ///< the edges within reach; empty lists where no diffraction is wanted
     std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
-    std::vector<char> covered;          ///< edges that no path can use; empty where nobody has looked
+    std::vector<char> embedded;         ///< edges that no path can use; empty where nobody has looked
     WorkCounters work;                  ///< what finding them took
   };
 
@@ -110,15 +110,15 @@ class Simulator {
   Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters,
                    std::span<PathCache> caches) const;
   /// With `reach`, which has an entry per transmitter, edges that were within reach in frames before count, too.
-  /// `covered` as in `EdgeRules`.
-  TransmitterEnds transmitter_ends(std::span<EdgeReach> reach, std::vector<char> covered = {}) const;
+  /// `embedded` as in `EdgeRules`.
+  TransmitterEnds transmitter_ends(std::span<EdgeReach> reach, std::vector<char> embedded = {}) const;
   void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
   Evaluator evaluator() const {
     const PropagationSettings& propagation = settings_.propagation;
     return Evaluator(scene_, surface_, propagation.path_loss, settings_.frequency_hz,
                      {propagation.diffraction.lossy_wedge, propagation.max_transmissions}, medium_);
   }
-  PathSearchSettings search_settings(std::span<const char> covered_edges = {}) const;
+  PathSearchSettings search_settings(std::span<const char> embedded_edges = {}) const;
   std::span<const std::optional<LinkEnd>> ends_beside(const Device& receiver, const TransmitterEnds& transmitters,
                                                       std::vector<std::optional<LinkEnd>>& others) const;
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.

@@ -13,7 +13,7 @@ namespace dcem {
 struct BodyState {
   bool present = true;
   Placement placement;
-  std::string occupant = {};  ///< of a place: the object that stands there in this frame; otherwise empty
+  std::string occupant = {};  ///< of a slot: the object that is there in this frame; otherwise empty
 
   friend bool operator==(const BodyState&, const BodyState&) = default;
 };
@@ -28,7 +28,7 @@ struct Frame {
 /// What `Scene::apply` changed. Updaters read this and look at nothing else.
 struct ChangeSet {
   std::vector<BodyId> moved;     ///< bodies whose pose or presence changed, ascending
-  std::vector<BodyId> replaced;  ///< places where another object stands than before, ascending
+  std::vector<BodyId> replaced;  ///< slots in which another object is than before, ascending
 };
 
 }  // namespace dcem

@@ -20,7 +20,7 @@ FRAMES = 30
 # Of the last tenth, three frames: (update in ms, closest and occluded in ns per ray). Rays cost 100, 250 and 130 ns.
 END = {"rebuild": (10.0, 120.0, 80.0), "refit": (1.0, 300.0, 200.0), "adaptive": (1.5, 150.0, 110.0)}
 COLUMNS = ("cars,frame,tree,policy,update_ms,closest_ns_per_ray,occluded_ns_per_ray,closest_steps,occluded_steps,"
-           "sah_cost,blocks_written,nodes_visited,reinserted,rotated,regrown,rebuilt").split(",")
+           "sah_cost,leaves_written,nodes_visited,reinserted,rotated,rebuilt_in_place,rebuilt").split(",")
 
 
 def python_with_matplotlib():
@@ -115,14 +115,14 @@ class Arithmetic(Folder):
         self.assertEqual(plot_motion.running_median([3, 1, 2], 1), [3, 1, 2])
 
     def test_deeds_tell_a_subtree_from_all_nodes_and_from_the_tree(self):
-        def frame(number, reinserted=0, regrown=0, rebuilt=""):
-            return {"frame": number, "reinserted": reinserted, "rotated": 0, "regrown": regrown, "rebuilt": rebuilt}
+        def frame(number, reinserted=0, rebuilt_in_place=0, rebuilt=""):
+            return {"frame": number, "reinserted": reinserted, "rotated": 0, "rebuilt_in_place": rebuilt_in_place, "rebuilt": rebuilt}
 
-        frames = [frame(1), frame(2, reinserted=3), frame(3, regrown=2), frame(4, 1, 1, "nodes"),
+        frames = [frame(1), frame(2, reinserted=3), frame(3, rebuilt_in_place=2), frame(4, 1, 1, "nodes"),
                   frame(5, 0, 2, "nodes"), frame(6, rebuilt="tree")]
         self.assertEqual(plot_motion.deeds(frames),
-                         {"refit only": [1], "cars reinserted": [2, 4], "subtree regrown": [3, 5],
-                          "all nodes regrown": [4, 5], "tree rebuilt": [6]})
+                         {"refit only": [1], "cars reinserted": [2, 4], "subtree rebuilt_in_place": [3, 5],
+                          "all nodes rebuilt_in_place": [4, 5], "tree rebuilt": [6]})
         self.assertEqual(plot_motion.runs([1, 2, 3, 7, 9, 10]), [(1, 3), (7, 1), (9, 2)])
 
 
@@ -136,8 +136,8 @@ class Files(Folder):
 
     def test_file_that_cannot_be_used_is_refused_in_one_line(self):
         self.check_refused("series.csv")  # not there
-        write_series(self.file, rows_by_hand(), [name for name in COLUMNS if name != "regrown"])
-        self.check_refused("regrown")
+        write_series(self.file, rows_by_hand(), [name for name in COLUMNS if name != "rebuilt_in_place"])
+        self.check_refused("rebuilt_in_place")
         write_series(self.file, [row for row in rows_by_hand() if row["policy"] != "refit"])
         self.check_refused("not every policy")
         write_series(self.file, [])

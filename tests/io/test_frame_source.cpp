@@ -199,7 +199,7 @@ TEST_CASE("between steps only those are there that both steps have, as the same 
   const auto between = places_of(frames[1]);
   CHECK(between.size() == 1);
   CHECK(between.contains("stays"));
-  // The first body behind the scenery is the place of the one bus, then come those of three cars.
+  // The first body behind the scenery is the slot of the one bus, then come those of three cars.
   const auto after = places_of(frames[2]);
   CHECK(after.size() == 3);
   CHECK(after.at("turns") == 1);
@@ -215,7 +215,7 @@ TEST_CASE("a vehicle that stands does not move by a bit, on a step or between") 
   for (const Frame& frame : frames) CHECK(frame.bodies == frames[0].bodies);
 }
 
-TEST_CASE("there are as many places as vehicles of a type at a time, however many pass") {
+TEST_CASE("there are as many slots as vehicles of a type at a time, however many pass") {
   TrafficCase files;
   for (int index = 0; index < 20; ++index) {
     files.trace_lines += step(std::to_string(index),
@@ -226,16 +226,16 @@ TEST_CASE("there are as many places as vehicles of a type at a time, however man
   REQUIRE(scenario.traffic);
   REQUIRE(scenario.traffic->types.size() == 2);
   CHECK(scenario.traffic->types[0].name == "bus");
-  CHECK(scenario.traffic->types[0].places == 1);
-  CHECK(scenario.traffic->types[1].places == 2);
-  CHECK(scenario.scene.place_count() == 3);
+  CHECK(scenario.traffic->types[0].slots == 1);
+  CHECK(scenario.traffic->types[1].slots == 2);
+  CHECK(scenario.scene.slot_count() == 3);
   const std::vector<Frame> frames = all_frames(scenario);
   CHECK(places_of(frames[0]) == std::map<std::string, std::size_t>{{"car0", 2}, {"car1", 3}});
   CHECK(places_of(frames[1]) == std::map<std::string, std::size_t>{{"car1", 3}, {"car2", 2}});
   CHECK(places_of(frames[20]) == std::map<std::string, std::size_t>{{"bus1", 1}});
 }
 
-TEST_CASE("those who enter take the lowest free places by their ids, but a place just left rests if it can") {
+TEST_CASE("those who enter take the lowest free slots by their ids, but a slot just left rests if it can") {
   TrafficCase files;
   files.trace_lines = step("0", car_at("c", 0) + car_at("a", 10) + car_at("b", 20)) +  // a 1, b 2, c 3
                       step("1", car_at("a", 10) + car_at("b", 20)) +                   // 3 left
@@ -402,7 +402,7 @@ TEST_CASE("a compressed trace gives the frames of the plain one") {
   for (std::size_t index = 0; index < plain.size(); ++index) CHECK(packed[index].bodies == plain[index].bodies);
 }
 
-TEST_CASE("the reference trace drives: places for those at a time, boxes where the description puts them") {
+TEST_CASE("the reference trace drives: slots for those at a time, boxes where the description puts them") {
   DCEM_NEEDS_SHARED();
   TrafficCase files;
   const std::string trace_file = test::shared_path("badhersfeld/fcd_600-660s_0.1s.xml.gz");
@@ -411,7 +411,7 @@ TEST_CASE("the reference trace drives: places for those at a time, boxes where t
   io::Scenario scenario = files.load();
   CHECK(scenario.time.frames == 600);
   // Counted in the file with another XML reader: bus 14, car 129, motorcycle 12, truck 26, van 20.
-  CHECK(scenario.scene.place_count() == 201);
+  CHECK(scenario.scene.slot_count() == 201);
   io::FrameSource source(scenario);
   std::size_t rows = 0;
   for (std::size_t index = 0; index < 600; ++index) {

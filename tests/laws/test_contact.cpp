@@ -89,7 +89,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("overlap: in paths of several bounces every touched twin gives way, and only one path is left") {
+TEST_CASE(
+    "overlap: in paths of several bounces every touched coplanar duplicate gives way, and only one path is left") {
   for (const Discovery discovery : both_discoveries) {
     for (const Mat3& turn : turns()) {
       const auto map = [&](const Vec3& p) { return turn * p; };

@@ -31,7 +31,7 @@ Scene office() {
                       {3.0, {Vec3(6, 2, 0.05), 1.9, 0, 0}},
                       {6.0, {Vec3(7, 3, 0.05), 0.2, 0, 0}}};
   scene.add_object("trolley", make_box(Vec3(1, 0.6, 0.9), "metal"), motion);
-  scene.add_places(2, make_box(Vec3(0.8, 0.8, 1.1), "metal"));
+  scene.add_body_pool(2, make_box(Vec3(0.8, 0.8, 1.1), "metal"));
   return scene;
 }
 

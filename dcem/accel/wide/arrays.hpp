@@ -23,8 +23,8 @@ namespace dcem {
 
 /// Plain arrays; `WideBvh` keeps their promises and `find_wide_defect` checks them.
 ///
-/// Node 0 is the root. Nodes and leaves never move; what an edit gives up is used again. An object is an object that owns
-/// a subtree: one entry of the tree leads to it, and edits above take it as a whole.
+/// Node 0 is the root. Nodes and leaves never move; what an edit gives up is used again. An object is an object that
+/// owns a subtree: one entry of the tree leads to it, and edits above take it as a whole.
 struct WideArrays {
   /// Vertices that follow one another, and all are corners of one leaf; none where its corners lie scattered.
   struct VertexRun {

@@ -82,7 +82,7 @@ class ExactSearch {
     if (reach_ == nullptr || sequence_.size() > most_mirrors_) return;
     for (std::uint32_t index = 0; index < scene_.wedges().size(); ++index) {
       const WorldWedge& wedge = scene_.wedges()[index];
-      if (!diffracts(wedge, *rules_) || wedge.body == ignored_body_ || is_covered(WedgeId(index), *rules_)) continue;
+      if (!diffracts(wedge, *rules_) || wedge.body == ignored_body_ || is_embedded(WedgeId(index), *rules_)) continue;
       const std::array<Vec3, 2> ends_m{wedge.edge.start_m, wedge.edge.end_m};
       if (beam == nullptr || beam->clip(ends_m, inside_m_)) reach_->append(sequence_, WedgeId(index));
     }

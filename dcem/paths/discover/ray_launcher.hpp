@@ -84,7 +84,7 @@ class RayLauncher {
 
   void note_edges_of(FacetId facet) {
     for (const WedgeId edge : tracer_.scene().wedges_of_facet(facet)) {
-      if (diffracts(tracer_.scene().wedge(edge), *rules_) && !is_covered(edge, *rules_)) reach_->add(sequence_, edge);
+      if (diffracts(tracer_.scene().wedge(edge), *rules_) && !is_embedded(edge, *rules_)) reach_->add(sequence_, edge);
     }
   }
 

@@ -18,9 +18,9 @@ namespace detail {
 
 /// Whether triangles, taken together, are within `reach_m` of every point of an edge. The distance from a convex set is
 /// convex along the edge, so of two places that are within reach of the same triangle all those between them are, too.
-class EdgeCover {
+class EdgeEmbedding {
  public:
-  EdgeCover(const Scene& scene, const Wedge& edge, std::span<const std::uint32_t> triangles, double reach_m)
+  EdgeEmbedding(const Scene& scene, const Wedge& edge, std::span<const std::uint32_t> triangles, double reach_m)
       : scene_(scene), edge_(edge), triangles_(triangles), reach_m_(reach_m) {}
 
   bool is_complete() const {
@@ -78,7 +78,7 @@ std::vector<std::uint32_t> third_triangles(const Scene& scene, const Tree& tree,
 }
 
 template <typename Tree>
-bool is_covered_all_along(const Scene& scene, const Tree& tree, const WorldWedge& wedge) {
+bool is_embedded_all_along(const Scene& scene, const Tree& tree, const WorldWedge& wedge) {
   const double reach_m = 0.999 * (scene.settings().weld_tolerance_m + wedge.edge.stray_m);
   // Most edges are free in the middle, and touch others at their ends alone.
   const Vec3 middle_m = 0.5 * (wedge.edge.start_m + wedge.edge.end_m);
@@ -86,7 +86,7 @@ bool is_covered_all_along(const Scene& scene, const Tree& tree, const WorldWedge
   Aabb<double> box{wedge.edge.start_m, wedge.edge.start_m};
   box.extend(wedge.edge.end_m);
   const std::vector<std::uint32_t> triangles = third_triangles(scene, tree, wedge, inflated(box, reach_m));
-  return EdgeCover(scene, wedge.edge, triangles, reach_m).is_complete();
+  return EdgeEmbedding(scene, wedge.edge, triangles, reach_m).is_complete();
 }
 
 }  // namespace detail
@@ -95,11 +95,11 @@ bool is_covered_all_along(const Scene& scene, const Tree& tree, const WorldWedge
 /// rule: within the weld tolerance and the edge's own dirt, less a thousandth for rounding. (A link for which the facet
 /// does not exist, because a device rides on that body, then has no such edge either.)
 template <typename Tree>
-std::vector<char> covered_edges(const Scene& scene, const Tree& tree, unsigned threads) {
+std::vector<char> embedded_edges(const Scene& scene, const Tree& tree, unsigned threads) {
   std::vector<char> covered(scene.wedges().size());
   parallel_for(scene.wedges().size(), threads, [&](std::size_t index, unsigned) {
     const WorldWedge& wedge = scene.wedges()[index];
-    covered[index] = wedge.present && detail::is_covered_all_along(scene, tree, wedge) ? 1 : 0;
+    covered[index] = wedge.present && detail::is_embedded_all_along(scene, tree, wedge) ? 1 : 0;
   });
   return covered;
 }

@@ -29,7 +29,8 @@ struct Crossing {
 };
 
 /// What a leg ignores at one of its ends: the facets it starts or ends on, and what lies along the reflecting one
-/// within the weld tolerance (coplanar twins, dirt). A wall that stands on that facet is not ignored, however close.
+/// within the weld tolerance (coplanar duplicates, dirt). A wall that stands on that facet is not ignored, however
+/// close.
 struct LegEnd {
   std::span<const FacetId> facets;
   std::array<const Plane*, 2> planes{};  ///< of the reflecting facet or of a wedge's two faces; null at a device

@@ -12,12 +12,12 @@ struct EdgeRules {
   bool free_edges = false;                                    ///< the rims of open sheets diffract as half planes
   bool shadow_only = false;  ///< only where the wedge itself hides one neighbour from the other
   /// By edge: not 0 where it is known that no path can use it. Empty: nothing is known. Changes no result.
-  std::span<const char> covered{};
+  std::span<const char> embedded{};
 };
 
 /// Whether it is known that no path can use an edge.
-inline bool is_covered(WedgeId edge, const EdgeRules& rules) {
-  return !rules.covered.empty() && rules.covered[edge.value] != 0;
+inline bool is_embedded(WedgeId edge, const EdgeRules& rules) {
+  return !rules.embedded.empty() && rules.embedded[edge.value] != 0;
 }
 
 inline bool diffracts(const WorldWedge& wedge, const EdgeRules& rules) {

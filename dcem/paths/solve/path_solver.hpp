@@ -65,7 +65,8 @@ class PathSolver {
     std::optional<Path> path = solve_as_given(transmitter, receiver, sequence, images_m);
     if (!path || sequence.empty()) return path;
     Sequence chosen = sequence;
-    while (std::optional<std::pair<Sequence, Path>> better = preferred_twin(transmitter, receiver, chosen, *path)) {
+    while (std::optional<std::pair<Sequence, Path>> better =
+               preferred_duplicate(transmitter, receiver, chosen, *path)) {
       std::tie(chosen, *path) = std::move(*better);
     }
     return path;
@@ -220,8 +221,8 @@ class PathSolver {
 
   /// The first valid sequence, before this one in order of precedence, over facets that lie on top of the path's own
   /// ones at its reflection points.
-  std::optional<std::pair<Sequence, Path>> preferred_twin(const LinkEnd& transmitter, const LinkEnd& receiver,
-                                                          const Sequence& sequence, const Path& path) {
+  std::optional<std::pair<Sequence, Path>> preferred_duplicate(const LinkEnd& transmitter, const LinkEnd& receiver,
+                                                               const Sequence& sequence, const Path& path) {
     const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
     std::vector<std::vector<SequenceElement>> choices(sequence.size());
     bool any = false;

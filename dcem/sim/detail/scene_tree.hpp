@@ -28,7 +28,7 @@ void build_tree(Tree& tree, const Scene& scene) {
 /// Brings the tree up to date with the scene, in which the triangles in `moved` have moved.
 template <typename Tree>
 TreeUpdateReport update_tree(UpdaterOf<Tree>& updater, Tree& tree, std::span<const std::uint32_t> moved,
-                         const Scene& scene) {
+                             const Scene& scene) {
   if constexpr (std::same_as<Tree, WideBvh>) {
     return updater.update(tree, moved, triangle_view(scene), scene.triangle_boxes());
   } else {

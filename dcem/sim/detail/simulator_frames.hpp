@@ -77,9 +77,9 @@ void Simulator<Surface, Tree>::forget_replaced(const ChangeSet& changes, CacheCo
 
 template <SurfaceModel Surface, typename Tree>
 typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::transmitter_ends(
-    std::span<EdgeReach> reach, std::vector<char> covered) const {
+    std::span<EdgeReach> reach, std::vector<char> embedded) const {
   TransmitterEnds ends;
-  ends.covered = std::move(covered);
+  ends.embedded = std::move(embedded);
   for (const Device& device : scene_.transmitters()) {
     const DeviceState state = scene_.device_state(device, frame_);
     TraversalCounters counters;
@@ -94,7 +94,7 @@ typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::tra
 template <SurfaceModel Surface, typename Tree>
 void Simulator<Surface, Tree>::find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const {
   const Tracer tracer(scene_, tree_);
-  const PathSearchSettings search = search_settings(ends.covered);
+  const PathSearchSettings search = search_settings(ends.embedded);
   if (reach.empty()) {
     ends.own_reach.resize(ends.link.size());
     reach = ends.own_reach;
@@ -112,7 +112,7 @@ void Simulator<Surface, Tree>::find_transmitter_reach(TransmitterEnds& ends, std
 }
 
 template <SurfaceModel Surface, typename Tree>
-PathSearchSettings Simulator<Surface, Tree>::search_settings(std::span<const char> covered_edges) const {
+PathSearchSettings Simulator<Surface, Tree>::search_settings(std::span<const char> embedded_edges) const {
   const PropagationSettings& propagation = settings_.propagation;
   return {discovery_ == Discovery::exact,
           reflection_order(propagation),
@@ -123,7 +123,7 @@ PathSearchSettings Simulator<Surface, Tree>::search_settings(std::span<const cha
           diffraction_order(propagation),
           interaction_order(propagation),
           {degrees_to_radians(propagation.diffraction.min_exterior_angle_deg), propagation.diffraction.free_edges,
-           propagation.diffraction.region == DiffractionRegion::shadow, covered_edges}};
+           propagation.diffraction.region == DiffractionRegion::shadow, embedded_edges}};
 }
 
 }  // namespace dcem

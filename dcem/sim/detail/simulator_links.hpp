@@ -63,7 +63,7 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiv
   }
   SearchCounters counters;
   const LinkEnd end = link_end(state, counters.solver.traversal);
-  const PathSearchSettings search = search_settings(transmitters.covered);
+  const PathSearchSettings search = search_settings(transmitters.embedded);
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
   std::vector<LinkPaths> found =

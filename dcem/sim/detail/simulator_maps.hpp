@@ -22,10 +22,10 @@ std::vector<RadioMap> Simulator<Surface, Tree>::radio_maps(const ReceiverGrid& g
                                                            const std::function<void(std::size_t)>& progress,
                                                            WorkCounters* work) const {
   // Looking at an edge costs several microseconds; in a city it saves about a tenth of a millisecond per point.
-  const bool looks_for_covered = settings_.share_map_work && diffraction_order(settings_.propagation) > 0 &&
-                                 grid.size() >= scene_.wedges().size() / 10;
+  const bool looks_for_embedded = settings_.share_map_work && diffraction_order(settings_.propagation) > 0 &&
+                                  grid.size() >= scene_.wedges().size() / 10;
   TransmitterEnds transmitters =
-      transmitter_ends({}, looks_for_covered ? covered_edges(scene_, tree_, settings_.threads) : std::vector<char>{});
+      transmitter_ends({}, looks_for_embedded ? embedded_edges(scene_, tree_, settings_.threads) : std::vector<char>{});
   // Maps hold no channel between elements, and their powers are those of one: none is computed.
   for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
   ReceiverGrid single = grid;

@@ -185,7 +185,8 @@ TEST_CASE("what is remembered is solved again and adds to what rays find; every 
   CHECK(grown > 60.0);  // memory is worth more than a path per frame here
 }
 
-TEST_CASE("a remembered sequence that gives way to a twin, and one that is proposed again, are one path") {
+TEST_CASE(
+    "a remembered sequence that gives way to a coplanar duplicate, and one that is proposed again, are one path") {
   TriangleMesh mesh;
   add_sheet(mesh, Vec3(0, 0, 0), Vec3(5, 0, 0), Vec3(0, 5, 0), "opaque");
   add_sheet(mesh, Vec3(3, 0, 0), Vec3(2, 0, 0), Vec3(0, 5, 0), "alpha");  // stands for the opaque one where x > 1

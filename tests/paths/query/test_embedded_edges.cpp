@@ -42,7 +42,7 @@ Covered covered_in(Scene scene) {
   WideBvh tree;
   build_tree(tree, scene);
   Covered result;
-  const std::vector<char> covered = covered_edges(scene, tree, 1);
+  const std::vector<char> covered = embedded_edges(scene, tree, 1);
   REQUIRE(covered.size() == scene.wedges().size());
   for (std::size_t index = 0; index < covered.size(); ++index) {
     if (covered[index] == 0) continue;

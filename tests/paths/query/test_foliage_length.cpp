@@ -875,7 +875,7 @@ TEST_CASE("memory from frame to frame holds no foliage: a run gives what each fr
 
 TEST_CASE("a place of foliage is there while somebody stands in it") {
   Scene scene = scene_with_foliage();
-  scene.add_places(2, make_box(Vec3(2, 2, 2), "leaves"));
+  scene.add_body_pool(2, make_box(Vec3(2, 2, 2), "leaves"));
   const Vec3 from_m(-20, 0.25, 0.75), to_m(20, 0.25, 0.75);
   CHECK(inside_m(scene, from_m, to_m) == 0.0);
   const auto put = [&](bool first, bool second) {

@@ -106,7 +106,7 @@ TEST_CASE("a leg within a sheet's own plane does not cross it") {
   CHECK(follow(traced, Vec3(1, -9, 0.5), Vec3(1, 9, 0.5), 0).free);
 }
 
-TEST_CASE("a leg ignores the facet it starts or ends on and its coplanar twin, from one end only") {
+TEST_CASE("a leg ignores the facet it starts or ends on and its coplanar duplicate, from one end only") {
   TracedScene<> traced(scene_of(sheets_across_x({{1, "opaque"}, {1.00005, "metal"}, {2, "opaque"}})));
   const FacetId own = traced.facet_at(Vec3(1, 1, 0), "opaque");
   const LegEnd on_mirror{{&own, 1}, &traced.scene.facet(own).plane};
@@ -118,7 +118,7 @@ TEST_CASE("a leg ignores the facet it starts or ends on and its coplanar twin, f
   }
   CHECK_FALSE(follow(traced, on_m, behind_m, 0, on_mirror).free);
   CHECK_FALSE(follow(traced, behind_m, on_m, 0, {}, on_mirror).free);
-  // A device knows its facets by name; it has no plane, so the twin 0.05 mm behind still blocks.
+  // A device knows its facets by name; it has no plane, so the duplicate 0.05 mm behind still blocks.
   const LegEnd mounted{{&own, 1}, nullptr};
   CHECK(follow(traced, on_m, before_m, 0, mounted).free);
   CHECK_FALSE(follow(traced, on_m, between_m, 0, mounted).free);
@@ -168,7 +168,7 @@ TEST_CASE("the first facet along a ray: nearest, then smallest id, never what th
   CHECK(hit->t == doctest::Approx(2.0).epsilon(1e-15));
   const FacetId wall = traced.facet_at(Vec3(1, 1, 0), "wall"), alpha = traced.facet_at(Vec3(1, 1, 0), "alpha");
   CHECK(hit->facet == std::min(wall, alpha));
-  const LegEnd on_both{{&wall, 1}, &traced.scene.facet(wall).plane};  // the twin is coplanar
+  const LegEnd on_both{{&wall, 1}, &traced.scene.facet(wall).plane};  // the duplicate is coplanar
   const auto next = traced.tracer.closest_hit({ray.at(2.0), ray.direction}, on_both, {}, traced.counters);
   REQUIRE(next.has_value());
   CHECK(next->facet == traced.facet_at(Vec3(2, 1, 0), "glass"));

@@ -319,7 +319,7 @@ TEST_CASE("scatter solver: an absent object neither scatters nor blocks") {
   Scene scene = rough_scene(one_wall());
   TriangleMesh screen;
   add_sheet_across_x(screen, 0.0, 3.0, "rough");
-  scene.add_places(1, screen);
+  scene.add_body_pool(1, screen);
   TracedScene<> world(std::move(scene));
   const Vec3 from_m(0, -4, 0), to_m(0, 4, 0), point_m(10, 0, 0);
   CHECK(scattered(world, {from_m, to_m, point_m}));

@@ -77,8 +77,8 @@ class WideUpdater {
   /// Tells what rays have spent since the last update. Without it, steps per ray decide nothing.
   void note_rays(const TraversalCounters& spent, std::uint64_t rays) { steps_.add(spent, rays); }
 
-  /// Brings the tree up to date after the triangles in `moved` have got the corners and boxes given here. An object that
-  /// was hung elsewhere counts as one rebuilt subtree of one node.
+  /// Brings the tree up to date after the triangles in `moved` have got the corners and boxes given here. An object
+  /// that was hung elsewhere counts as one rebuilt subtree of one node.
   TreeUpdateReport update(WideBvh& tree, std::span<const std::uint32_t> moved, const TriangleView& mesh,
                           WideBvh::Boxes boxes) {
     TreeUpdateReport report;

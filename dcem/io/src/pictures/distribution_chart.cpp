@@ -9,7 +9,7 @@ namespace dcem::io {
 namespace {
 
 constexpr double most_bins = 60.0;
-constexpr std::size_t cumulated_places = 400;
+constexpr std::size_t cumulated_slots = 400;
 
 struct Bins {
   double low = 0.0, width = 1.0;
@@ -78,8 +78,8 @@ LineChart::Series histogram(const Sorted& part, const Bins& bins) {
 LineChart::Series cumulated(const Sorted& part, const Bins& bins) {
   LineChart::Series line{part.name};
   const double without_value = part.members - static_cast<double>(part.values.size());
-  const double step = (bins.edge(bins.count) - bins.low) / static_cast<double>(cumulated_places);
-  for (std::size_t place = 0; place <= cumulated_places; ++place) {
+  const double step = (bins.edge(bins.count) - bins.low) / static_cast<double>(cumulated_slots);
+  for (std::size_t place = 0; place <= cumulated_slots; ++place) {
     const double x = bins.low + static_cast<double>(place) * step;
     const auto below = std::upper_bound(part.values.begin(), part.values.end(), x) - part.values.begin();
     line.x.push_back(x);

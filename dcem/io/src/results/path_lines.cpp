@@ -174,7 +174,7 @@ void PathLines::append_tile(std::string& text, const LinkResult& link, const Dif
 }
 
 std::string PathLines::object_json(BodyId id) const {
-  return scene_.body(id).is_place ? json_string(scene_.body_name(id)) : bodies_[id.value];
+  return scene_.body(id).is_slot ? json_string(scene_.body_name(id)) : bodies_[id.value];
 }
 
 }  // namespace dcem::io

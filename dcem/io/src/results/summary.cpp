@@ -37,7 +37,7 @@ Json box_json(const Scene& scene) {
 SurfaceReport joint_report(const Scene& scene) {
   SurfaceReport sum;
   for (const Body& body : scene.bodies()) {
-    if (body.is_place) continue;  // made by the program, with nothing to mend
+    if (body.is_slot) continue;  // made by the program, with nothing to mend
     const SurfaceReport& part = body.mesh.report;
     sum.vertices_read += part.vertices_read;
     sum.vertices_welded += part.vertices_welded;
@@ -60,8 +60,8 @@ Json scene_json(const Scene& scene, std::size_t receivers) {
   for (const Material& material : scene.materials()) materials[material.name] = material_json(material);
   return {{"triangles", scene.triangles().size()},
           {"facets", scene.facets().size()},
-          {"objects", scene.bodies().size() - 1 - scene.place_count()},
-          {"vehicle_places", scene.place_count()},
+          {"objects", scene.bodies().size() - 1 - scene.slot_count()},
+          {"vehicle_slots", scene.slot_count()},
           {"transmitters", scene.transmitters().size()},
           {"receivers", receivers},
           {"bounding_box", box_json(scene)},

@@ -89,7 +89,7 @@ void BodyLoader::add_traffic() {
   const std::string material = mobility.member("material").line();
   for (Traffic::Type& type : result_.traffic->types) {
     type.first_body = result_.scene.bodies().size();
-    reported_at(mobility, [&] { result_.scene.add_places(type.places, make_box(type.size_m, material)); });
+    reported_at(mobility, [&] { result_.scene.add_body_pool(type.slots, make_box(type.size_m, material)); });
   }
 }
 

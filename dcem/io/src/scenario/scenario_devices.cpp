@@ -132,7 +132,7 @@ class DeviceReader {
   void fail_unknown_object(const JsonValue& target) const {
     std::vector<std::string> ids;
     for (const Body& body : result_.scene.bodies().subspan(1)) {
-      if (!body.is_place) ids.push_back(body.id);
+      if (!body.is_slot) ids.push_back(body.id);
     }
     const bool traffic = result_.traffic.has_value();
     const std::string none = traffic ? "a vehicle of the trace" : "an entry in objects";

@@ -107,7 +107,7 @@ void read_devices(const JsonObject& scenario, MotionReader& motions, AntennaRead
 // scenario_bodies.cpp
 
 /// Meshes and materials: reads the scenery and the objects and adds them to the scene with the materials they use, and
-/// the places for the traffic that `read_mobility` found.
+/// the body pools of the traffic that `read_mobility` found.
 class BodyLoader {
  public:
   BodyLoader(const JsonObject& scenario, std::filesystem::path folder, MotionReader& motions, Scenario& result)

@@ -7,7 +7,7 @@
 #include "dcem/core/error.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/text/text_input.hpp"
-#include "dcem/io/src/traffic/place_keeper.hpp"
+#include "dcem/io/src/traffic/slot_keeper.hpp"
 #include "dcem/io/src/traffic/trace_motion.hpp"
 
 namespace dcem::io {
@@ -57,7 +57,7 @@ class FrameSource::Player {
  private:
   std::string file_;
   TraceMotion motion_;
-  PlaceKeeper keeper_;
+  SlotKeeper keeper_;
   std::size_t next_index_ = 0;
   const std::vector<DrivingVehicle>* vehicles_ = nullptr;  ///< in `motion_`
   std::vector<std::size_t> bodies_;                        ///< one per vehicle

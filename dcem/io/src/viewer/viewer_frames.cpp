@@ -30,7 +30,7 @@ std::vector<ViewedPose> poses_of(const Scene& scene, const Frame& frame) {
   for (std::size_t body = 1; body < frame.bodies.size(); ++body) {
     const BodyState& state = frame.bodies[body];
     ViewedPose pose{body, state.present, {}, {}};
-    if (state.present) pose.name = scene.body(BodyId(body)).is_place ? state.occupant : scene.body(BodyId(body)).id;
+    if (state.present) pose.name = scene.body(BodyId(body)).is_slot ? state.occupant : scene.body(BodyId(body)).id;
     if (state.present) pose.pose = state.placement.pose;
     poses.push_back(std::move(pose));
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// Which vehicle stands at which place. Private to dcem::io.
+/// Which vehicle is in which slot of the body pools. Private to dcem::io.
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -10,30 +10,30 @@
 
 namespace dcem::io {
 
-/// Gives vehicles that enter a free place of their type, which they keep until they leave.
-class PlaceKeeper {
+/// Gives vehicles that enter a free slot of their type, which they keep until they leave.
+class SlotKeeper {
  public:
-  explicit PlaceKeeper(const std::vector<Traffic::Type>& types);
+  explicit SlotKeeper(const std::vector<Traffic::Type>& types);
 
   /// The bodies at which the vehicles of the next frame stand, one per vehicle, which are ascending by id. Nothing
-  /// where there are more vehicles of a type than places.
+  /// where there are more vehicles of a type than slots.
   std::optional<std::vector<std::size_t>> next_frame(const std::vector<DrivingVehicle>& vehicles);
 
  private:
-  struct Place {
+  struct Slot {
     std::string occupant;         ///< empty: free
     std::size_t frame_seen = 0;   ///< last frame in which the occupant was there
     std::size_t frame_freed = 0;  ///< frame in which the last occupant was gone
   };
   struct Spot {
-    std::size_t type, place;
+    std::size_t type, slot;
   };
 
-  void clear_left_places();
-  std::optional<std::size_t> free_place(std::size_t type) const;
+  void clear_left_slots();
+  std::optional<std::size_t> free_slot_index(std::size_t type) const;
 
   std::vector<std::size_t> first_bodies_;
-  std::vector<std::vector<Place>> places_;  ///< by type
+  std::vector<std::vector<Slot>> slots_;  ///< by type
   std::unordered_map<std::string, Spot> spots_;
   std::size_t frame_ = 0;  ///< counted from 1: 0 is before all frames
 };

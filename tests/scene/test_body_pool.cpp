@@ -1,4 +1,4 @@
-/// Places: bodies that objects of one shape take in turn. Who stands where is told by each frame, and what changed is
+/// Slots: bodies that objects of one shape take in turn. Who stands where is told by each frame, and what changed is
 /// told exactly.
 #include <doctest/doctest.h>
 
@@ -19,14 +19,14 @@ BodyId body(std::size_t index) {
   return BodyId(index);
 }
 
-/// Body 1: the object `bus`. Bodies 2, 3, 4: places for cars.
+/// Body 1: the object `bus`. Bodies 2, 3, 4: slots for cars.
 struct Street {
   Scene scene;
 
   Street() {
     scene.add_material({"metal", PerfectConductor{}});
     scene.add_object("bus", make_box(Vec3(12, 2.5, 3), "metal"), LinearMotion{{Vec3(0, 10, 0)}, Vec3(1, 0, 0), 0.0});
-    scene.add_places(3, make_box(Vec3(4, 2, 1.5), "metal"));
+    scene.add_body_pool(3, make_box(Vec3(4, 2, 1.5), "metal"));
   }
 
   Frame empty() const { return scene.frame_at(0.0); }
@@ -69,12 +69,12 @@ void check_refused(Street& street, const Frame& frame, const std::string& named 
 
 }  // namespace
 
-TEST_CASE("places are empty until a frame fills them: no facet, no box, no name") {
+TEST_CASE("slots are empty until a frame fills them: no facet, no box, no name") {
   Street street;
-  CHECK(street.scene.place_count() == 3);
+  CHECK(street.scene.slot_count() == 3);
   CHECK(street.scene.bodies().size() == 5);
   for (const std::size_t index : {2U, 3U, 4U}) {
-    CHECK(street.scene.body(body(index)).is_place);
+    CHECK(street.scene.body(body(index)).is_slot);
     CHECK_FALSE(street.scene.body_state(body(index)).present);
     CHECK(street.scene.body_name(body(index)).empty());
     CHECK_FALSE(street.empty().bodies[index].present);
@@ -85,7 +85,7 @@ TEST_CASE("places are empty until a frame fills them: no facet, no box, no name"
       CHECK_FALSE(street.scene.facet(street.scene.facet_of_triangle(triangle)).present);
     }
   }
-  CHECK_FALSE(street.scene.body(body(1)).is_place);
+  CHECK_FALSE(street.scene.body(body(1)).is_slot);
   CHECK(street.scene.body_name(body(1)) == "bus");
   CHECK(street.scene.body_name(body(0)).empty());
   CHECK_FALSE(street.scene.find_body("").has_value());
@@ -94,15 +94,15 @@ TEST_CASE("places are empty until a frame fills them: no facet, no box, no name"
   CHECK(changes.replaced.empty());
 }
 
-TEST_CASE("places need a known material, count up, and none at all may be asked for") {
+TEST_CASE("slots need a known material, count up, and none at all may be asked for") {
   Street street;
-  CHECK_THROWS_AS(street.scene.add_places(2, make_box(Vec3(1.0), "wood")), std::invalid_argument);
-  CHECK(street.scene.place_count() == 3);
+  CHECK_THROWS_AS(street.scene.add_body_pool(2, make_box(Vec3(1.0), "wood")), std::invalid_argument);
+  CHECK(street.scene.slot_count() == 3);
   CHECK(street.scene.bodies().size() == 5);
-  street.scene.add_places(0, make_box(Vec3(1.0), "metal"));
+  street.scene.add_body_pool(0, make_box(Vec3(1.0), "metal"));
   CHECK(street.scene.bodies().size() == 5);
-  street.scene.add_places(2, make_box(Vec3(1.0), "metal"));
-  CHECK(street.scene.place_count() == 5);
+  street.scene.add_body_pool(2, make_box(Vec3(1.0), "metal"));
+  CHECK(street.scene.slot_count() == 5);
   CHECK(street.scene.bodies().size() == 7);
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("an object enters, drives, and leaves") {
   CHECK(scene.apply(street.empty()).moved.empty());
 }
 
-TEST_CASE("another object at the same place and pose: replaced, not moved") {
+TEST_CASE("another object at the same slot and pose: replaced, not moved") {
   Street street;
   street.scene.apply(with(street.empty(), 2, standing("a", Vec3(5, 0, 0))));
   const ChangeSet changes = street.scene.apply(with(street.empty(), 2, standing("b", Vec3(5, 0, 0))));
@@ -147,7 +147,7 @@ TEST_CASE("another object at the same place and pose: replaced, not moved") {
   CHECK(street.scene.find_body("b") == body(2));
 }
 
-TEST_CASE("objects change places in one frame, in pairs and in a ring") {
+TEST_CASE("objects change slots in one frame, in pairs and in a ring") {
   Street street;
   Scene& scene = street.scene;
   const Frame frame =
@@ -167,7 +167,7 @@ TEST_CASE("objects change places in one frame, in pairs and in a ring") {
   CHECK(scene.find_body("a") == body(4));
   CHECK(scene.find_body("b") == body(3));
   CHECK(scene.find_body("c") == body(2));
-  // One goes to the other's place, which leaves; in both directions of the numbers.
+  // One goes to the other's slot, which leaves; in both directions of the numbers.
   scene.apply(with(with(with(frame, 2, standing("a", Vec3(0.0))), 3, {false, {}, ""}), 4, {false, {}, ""}));
   CHECK(scene.find_body("a") == body(2));
   CHECK_FALSE(scene.find_body("c").has_value());
@@ -191,7 +191,7 @@ TEST_CASE("a frame in which a name is no good is refused and changes nothing") {
     refused(with(base, 4, standing("", Vec3(9, 0, 0))));              // there without a name
     refused(with(base, 4, {false, {Pose{Vec3(9, 0, 0)}, {}}, "d"}));  // away with a name
     refused(with(base, 2, {false, {Pose{Vec3(5, 0, 0)}, {}}, "a"}));  // gone, its name left behind
-    check_refused(street, with(base, 1, {true, {}, "d"}));            // an object is no place
+    check_refused(street, with(base, 1, {true, {}, "d"}));            // an object is no slot
     const double nan = std::numeric_limits<double>::quiet_NaN();
     refused(with(base, 3, standing("d", Vec3(nan, 0, 0))), "'d'");
     refused(with(base, 3, standing("d", Vec3(0.0), Vec3(nan, 0, 0))), "'d'");
@@ -256,7 +256,7 @@ TEST_CASE("a device rides on whoever bears the name, wherever that one stands in
   CHECK_FALSE(scene.device_state(device, at_two).ignored_body.has_value());
 }
 
-TEST_CASE("a device may wait for an object only where there are places") {
+TEST_CASE("a device may wait for an object only where there are slots") {
   Scene bare;
   Device device = device_at("rider", Vec3(0.0));
   device.attachment = Attachment{"nobody", Vec3(0.0), false};
