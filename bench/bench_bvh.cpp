@@ -1,4 +1,4 @@
-/// Times the tree_update of a tree while cars drive: rebuild, refit, or decide for each subtree.
+/// Times how a tree is kept while cars drive: rebuild, refit, or decide for each subtree.
 ///
 ///   bench_bvh [TOWN.obj] [--cars V...] [--frames N] [--rays R] [--sweep]
 ///
@@ -65,7 +65,7 @@ void follow(Contender& contender, const dcem::Scene& scene, const std::vector<st
   contender.sah_cost.push_back(report.sah_cost);
 }
 
-/// Parameter of the closest_hit hit, infinity where there is none.
+/// Parameter of the closest hit, infinity where there is none.
 double nearest_hit(const Contender& contender, const dcem::Scene& scene, const Ray<double>& ray,
                    dcem::TraversalCounters& counters) {
   const dcem::WatertightRay exact(ray);
@@ -193,7 +193,7 @@ bool bench(const Options& options) {
 
 int main(int count, char** arguments) {
   Options options;
-  CLI::App app("Times the tree_update of a tree while cars drive");
+  CLI::App app("Times how a tree is kept while cars drive");
   app.add_option("TOWN", options.file, "OBJ file; default: a generated town");
   app.add_option("--cars", options.cars, "numbers of cars")->check(CLI::Range(1, 100'000));
   app.add_option("--frames", options.frames, "frames of each drive")->check(CLI::Range(1, 1'000'000));

@@ -3,7 +3,7 @@
 ///   bench_frames ROUNDS SCENARIO.json... [--frames N] [--diffractions N]
 ///
 /// Each scenario is run with the cache off and, where discovery is sampled, with cache `seed`; with the default cache
-/// under the three policies of tree tree_update; each with one thread and with all cores. Configurations take turns
+/// under the three policies of keeping the tree; each with one thread and with all cores. Configurations take turns
 /// within a round. One CSV row per configuration: medians over the rounds, work counters, and the hash of every number
 /// of every path. Rounds, thread counts or policies of one cache mode whose hashes differ are an error: exit 1 and no
 /// row.
@@ -15,10 +15,13 @@
 
 #include "bench/bench_program.hpp"
 #include "bench/result_hash.hpp"
+#include "dcem/core/statistics.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/dcem.hpp"
-#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/scenario.hpp"
+#include "dcem/sim/discovery.hpp"
+#include "dcem/sim/simulator.hpp"
 
 namespace {
 
@@ -77,7 +80,7 @@ void run_once(const dcem::io::Scenario& scenario, std::size_t frames, Configurat
   dcem::SimulationSettings settings = scenario.settings;
   settings.threads = configuration.threads;
   settings.propagation.cache = configuration.cache;
-  settings.tree_update.policy = configuration.policy;
+  settings.tree.policy = configuration.policy;
   dcem::Simulator simulator(scenario.scene, settings);
   dcem::io::FrameSource source(scenario);
   std::vector<double> frame_ms, update_ms, source_ms;

@@ -15,7 +15,9 @@
 #include "dcem/accel/bvh.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/core/statistics.hpp"
+#include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/geometry/surfaces/facet_builder.hpp"
+#include "dcem/geometry/surfaces/wedge_builder.hpp"
 #include "dcem/io/obj_reader.hpp"
 
 namespace {

@@ -16,10 +16,13 @@
 
 #include "bench/bench_program.hpp"
 #include "bench/result_hash.hpp"
+#include "dcem/core/statistics.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/dcem.hpp"
-#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/scenario.hpp"
+#include "dcem/sim/discovery.hpp"
+#include "dcem/sim/simulator.hpp"
 
 namespace {
 
@@ -68,7 +71,7 @@ Maps run_once(const Case& map_case, Configuration& configuration) {
   dcem::SimulationSettings settings = map_case.scenario.settings;
   settings.share_map_work = configuration.shared;
   settings.threads = configuration.threads;
-  dcem::Simulator<> simulator(map_case.scenario.scene, settings);
+  dcem::Simulator simulator(map_case.scenario.scene, settings);
   simulator.move_to(map_case.frame);
   configuration.work = {};
   const dcem::bench::Stopwatch watch;
@@ -98,7 +101,7 @@ std::optional<double> solve_alone(const Case& map_case, const Maps& maps, std::s
   scene.add_receiver(dcem::grid_receiver(map_case.grid, row, column));
   dcem::SimulationSettings settings = map_case.scenario.settings;
   settings.threads = 1;
-  dcem::Simulator<> simulator(std::move(scene), settings);
+  dcem::Simulator simulator(std::move(scene), settings);
   const dcem::FrameResult result = simulator.advance(map_case.frame);
   for (const dcem::LinkResult& link : result.links) {
     const dcem::Vec3 position_m = dcem::grid_point_m(map_case.grid, row, column);

@@ -49,7 +49,7 @@ using Rays = std::vector<Ray<double>>;
 
 constexpr double none = std::numeric_limits<double>::infinity();
 
-/// What a tree says of a ray: where the closest_hit hit is, or 1 for occluded and 0 for free.
+/// What a tree says of a ray: where the closest hit is, or 1 for occluded and 0 for free.
 struct Answer {
   double t = none;
   std::uint32_t triangle = 0;
@@ -110,7 +110,7 @@ void set_queries(Contender& contender, unsigned threads, ClosestHit closest_hit,
 
 std::shared_ptr<dcem::WideBvh> wide_tree(const dcem::Scene& scene, unsigned threads) {
   auto tree = std::make_shared<dcem::WideBvh>();
-  dcem::WideSettings settings;
+  dcem::WideBuildSettings settings;
   settings.threads = threads;
   tree->build_objects({scene.vertices_m(), scene.triangles()}, scene.triangle_boxes(), scene.first_triangles(),
                       settings);
@@ -121,10 +121,10 @@ void set_wide_queries(Contender& contender, unsigned threads, const std::shared_
   set_queries(
       contender, threads,
       [tree](const Ray<double>& ray, TraversalCounters& sum) {
-        const auto hit = tree->closest_hit(ray, &sum);
+        const auto hit = tree->closest_hit(ray, {}, &sum);
         return hit ? Answer{hit->t, hit->triangle} : Answer{};
       },
-      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->occluded(ray, &sum); });
+      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->occluded(ray, {}, &sum); });
   contender.sah_cost = [tree] { return tree->sah_cost(); };
 }
 
@@ -153,7 +153,7 @@ Contender wide_contender(const dcem::Scene& scene, unsigned threads, WidePolicy 
 
 /// The wide tree as its updater keeps it.
 Contender kept_contender(const dcem::Scene& scene, unsigned threads, const char* name,
-                         const dcem::TreeUpdateSettings& settings) {
+                         const dcem::WideUpdateSettings& settings) {
   const auto tree = wide_tree(scene, threads);
   const auto updater = std::make_shared<dcem::WideUpdater>(settings);
   const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
@@ -176,8 +176,8 @@ Contender kept_contender(const dcem::Scene& scene, unsigned threads, const char*
 }
 
 /// Refit, and nothing that mends.
-dcem::TreeUpdateSettings nothing_mends() {
-  dcem::TreeUpdateSettings settings;
+dcem::WideUpdateSettings nothing_mends() {
+  dcem::WideUpdateSettings settings;
   settings.sah_growth_limit = settings.deformation_limit = settings.reinsertion_growth = none;
   settings.subtree_rebuild_price = settings.renewal_ratio = settings.rebuild_growth_limit = none;
   settings.reinsertion_turn = settings.rotations_per_node = 0;
@@ -186,8 +186,8 @@ dcem::TreeUpdateSettings nothing_mends() {
 
 /// The ways of the updater, each by itself, and what it does by default.
 void add_kept_contenders(const dcem::Scene& scene, unsigned threads, std::vector<Contender>& all) {
-  const dcem::TreeUpdateSettings usual, nothing = nothing_mends();
-  dcem::TreeUpdateSettings rotate = nothing, deform = nothing, sah = nothing, steps = nothing;
+  const dcem::WideUpdateSettings usual, nothing = nothing_mends();
+  dcem::WideUpdateSettings rotate = nothing, deform = nothing, sah = nothing, steps = nothing;
   rotate.rotations_per_node = 1;
   deform.deformation_limit = usual.deformation_limit;
   sah.sah_growth_limit = usual.sah_growth_limit;
@@ -235,8 +235,8 @@ Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
 
 #if defined(DCEM_HAS_EMBREE)
 Contender embree_contender(const dcem::Scene& scene, unsigned threads, const char* name,
-                           dcem::bench::EmbreeUpkeep tree_update) {
-  const auto moving = std::make_shared<dcem::bench::MovingEmbree>(scene, tree_update, threads);
+                           dcem::bench::EmbreeUpkeep upkeep) {
+  const auto moving = std::make_shared<dcem::bench::MovingEmbree>(scene, upkeep, threads);
   Contender contender{"embree", name};
   contender.prepare = [=](const Moved& moved) { moving->prepare(moved.bodies); };
   contender.update = [=](const Moved&) -> Work {

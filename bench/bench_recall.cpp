@@ -15,10 +15,12 @@
 
 #include "bench/bench_program.hpp"
 #include "bench/result_hash.hpp"
+#include "dcem/core/statistics.hpp"
 #include "dcem/dcem.hpp"
-#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/scenario.hpp"
+#include "dcem/sim/simulator.hpp"
+#include "dcem/sim/verify/verifier.hpp"
 
 namespace {
 
@@ -47,7 +49,7 @@ struct Configuration {
   CacheMode cache;
   std::uint32_t rays;
   std::uint32_t rays_steady;
-  dcem::Simulator<> simulator;
+  dcem::Simulator simulator;
   std::vector<Sample> samples{};
 };
 
@@ -59,7 +61,7 @@ Configuration configuration(const dcem::io::Scenario& scenario, const Options& o
   settings.propagation.cache = cache;
   settings.propagation.rays = rays;
   settings.propagation.rays_steady = rays_steady;
-  return {cache, rays, rays_steady, dcem::Simulator<>(scenario.scene, settings)};
+  return {cache, rays, rays_steady, dcem::Simulator(scenario.scene, settings)};
 }
 
 /// What there is to find.
@@ -81,7 +83,7 @@ class Reference {
     return settings;
   }
 
-  dcem::Simulator<> simulator_;
+  dcem::Simulator simulator_;
 };
 
 /// Adds the paths that `all` lacks; returns how many those are.

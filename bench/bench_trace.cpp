@@ -5,6 +5,7 @@
 /// All trees get the same rays, in turns. One CSV row per scene, kind of ray and tree; a table that a person reads goes
 /// to standard error. Hits that differ by more than 1e-5 of their distance from those of the binary tree, which is all
 /// double, or are there for one tree only, are counted; for our own trees more than one in 100,000 is an error: exit 1.
+/// (`wide, simulator` leaves out the facet that a ray leaves, and so may differ where a ray grazes it.)
 /// (Embree counts in single precision from the scene's origin.)
 #include <algorithm>
 #include <bit>
@@ -12,6 +13,7 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,11 +21,12 @@
 #include "bench/bench_program.hpp"
 #include "bench/moving_boxes.hpp"
 #include "bench/timed_rays.hpp"
-#include "dcem/accel/bvh.hpp"
-#include "dcem/accel/wide/trace/batch.hpp"
-#include "dcem/accel/wide/trace/ray_order.hpp"
+#include "dcem/accel/box_index.hpp"
+#include "dcem/accel/ray_order.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "dcem/core/statistics.hpp"
+#include "dcem/paths/discover/launch_sphere.hpp"
+#include "dcem/paths/query/leg_filter.hpp"
 #if defined(DCEM_HAS_EMBREE)
 #include "bench/embree_scene.hpp"
 #endif
@@ -35,178 +38,244 @@ using dcem::TraversalCounters;
 using dcem::Vec3;
 using dcem::bench::as_float;
 using dcem::bench::Stopwatch;
-using dcem::bench::timed;
+using dcem::bench::timed_pieces;
 
-/// One tree: how it is built, and what it says of a ray.
+/// Rays of one kind, and the facets that they leave, where they leave one.
+struct RayKind {
+  std::string name;
+  std::vector<Ray<double>> rays;
+  std::vector<dcem::FacetId> from{};  ///< one per ray, or none at all
+};
+
+/// Traces all rays of a kind once; the time, milliseconds, is that of the queries alone.
+using Trace = std::function<double(std::vector<double>&, TraversalCounters&)>;
+
+/// One tree: how it is built, and how it is asked about rays. What a tree needs its rays to look like is prepared
+/// before the clock starts, for every tree.
 struct Contender {
   std::string name;
   std::function<void()> build;
-  std::function<double(const std::vector<Ray<double>>&, std::vector<double>&, TraversalCounters&)> closest_ms;
-  std::function<double(const std::vector<Ray<double>>&, std::vector<double>&, TraversalCounters&)> occluded_ms;
+  std::function<Trace(const RayKind&)> closest, occluded;
   std::vector<double> build_ms{};
 };
 
-/// Gives a contender the two loops over its tree.
-template <typename ClosestHit, typename Occluded>
-void set_queries(Contender& contender, unsigned threads, ClosestHit closest_hit, Occluded occluded) {
-  contender.closest_ms = [=](const auto& rays, auto& answers, auto& counters) {
-    return timed(rays, answers, counters, threads, closest_hit);
-  };
-  contender.occluded_ms = [=](const auto& rays, auto& answers, auto& counters) {
-    return timed(rays, answers, counters, threads,
-                 [&](const Ray<double>& ray, TraversalCounters& sum) { return occluded(ray, sum) ? 1.0 : 0.0; });
-  };
-}
-
 constexpr double none = std::numeric_limits<double>::infinity();
 constexpr const char* rival_name = "embree robust";
+constexpr const char* packet_name = "embree robust packet";
 
-Contender wide_contender(const std::string& name, const dcem::Scene& scene, const dcem::TriangleView& mesh,
-                         const dcem::WideSettings& settings) {
-  const auto tree = std::make_shared<dcem::WideBvh>();
-  Contender contender{name, {}, {}, {}};
-  contender.build = [=, &scene] { tree->build(mesh, scene.triangle_boxes(), settings); };
-  set_queries(
-      contender, settings.threads,
-      [tree](const Ray<double>& ray, TraversalCounters& sum) {
-        const auto hit = tree->closest_hit(ray, &sum);
-        return hit ? hit->t : none;
-      },
-      [tree](const Ray<double>& ray, TraversalCounters& sum) { return tree->occluded(ray, &sum); });
-  return contender;
+/// Calls `ask(ray index, counters)` for all rays; its answers are kept.
+template <typename Ask>
+Trace one_by_one(const RayKind& kind, unsigned threads, Ask ask) {
+  return [&kind, threads, ask](std::vector<double>& answers, TraversalCounters& counters) {
+    return timed_pieces(kind.rays.size(), threads, counters,
+                        [&](std::size_t first, std::size_t last, TraversalCounters& sum) {
+                          for (std::size_t ray = first; ray < last; ++ray) answers[ray] = ask(ray, sum);
+                        });
+  };
 }
 
-/// All rays of a kind at once; the time holds their sorting.
-Contender batch_contender(const dcem::Scene& scene, const dcem::TriangleView& mesh, unsigned threads) {
-  struct Tree {
-    explicit Tree(unsigned threads) : batch(threads) {}
+double t_of(const std::optional<dcem::TriangleHit>& hit) {
+  return hit ? hit->t : none;
+}
 
-    dcem::WideBvh tree;
-    dcem::WideBatch batch;
-    std::vector<std::optional<dcem::TriangleHit>> hits;
-    std::vector<std::uint8_t> occluded;
-  };
-  const auto own = std::make_shared<Tree>(threads);
-  Contender contender{"wide, batch", {}, {}, {}};
-  contender.build = [=, &scene] { own->tree.build(mesh, scene.triangle_boxes()); };
-  contender.closest_ms = [=](const auto& rays, auto& answers, auto& counters) {
-    own->hits.resize(rays.size());
-    const Stopwatch watch;
-    own->batch.closest_hit(own->tree, rays, own->hits, {}, &counters);
-    const double elapsed_ms = watch.elapsed_ms();
-    std::transform(own->hits.begin(), own->hits.end(), answers.begin(),
-                   [](const auto& hit) { return hit ? hit->t : none; });
+/// Many closest hits at a time, in blocks as the simulator asks for them.
+Trace in_blocks(const dcem::WideBvh& tree, std::shared_ptr<std::vector<dcem::RayQuery>> queries, unsigned threads) {
+  const auto hits = std::make_shared<std::vector<std::optional<dcem::TriangleHit>>>(queries->size());
+  return [&tree, queries, hits, threads](std::vector<double>& answers, TraversalCounters& counters) {
+    constexpr std::size_t block = 1024;
+    const std::span<const dcem::RayQuery> all(*queries);
+    const std::span<std::optional<dcem::TriangleHit>> places(*hits);
+    const auto trace = [&](std::size_t first, std::size_t last, TraversalCounters& sum) {
+      for (; first < last; first += block) {
+        const std::size_t count = std::min(block, last - first);
+        tree.closest_hits(all.subspan(first, count), places.subspan(first, count), &sum);
+      }
+    };
+    const double elapsed_ms = timed_pieces(all.size(), threads, counters, trace);
+    std::transform(hits->begin(), hits->end(), answers.begin(), t_of);
     return elapsed_ms;
   };
-  contender.occluded_ms = [=](const auto& rays, auto& answers, auto& counters) {
-    own->occluded.resize(rays.size());
-    const Stopwatch watch;
-    own->batch.occluded(own->tree, rays, own->occluded, {}, &counters);
-    const double elapsed_ms = watch.elapsed_ms();
-    std::copy(own->occluded.begin(), own->occluded.end(), answers.begin());
-    return elapsed_ms;
+}
+
+/// One question after another.
+Contender wide_contender(const std::string& name, const dcem::Scene& scene, const dcem::WideBuildSettings& settings) {
+  const auto tree = std::make_shared<dcem::WideBvh>();
+  const unsigned threads = settings.threads;
+  return {name, [=, &scene] { tree->build(scene.triangle_view(), scene.triangle_boxes(), settings); },
+          [=](const RayKind& kind) {
+            return one_by_one(kind, threads, [tree, &kind](std::size_t ray, TraversalCounters& sum) {
+              return t_of(tree->closest_hit(kind.rays[ray], {}, &sum));
+            });
+          },
+          [=](const RayKind& kind) {
+            return one_by_one(kind, threads, [tree, &kind](std::size_t ray, TraversalCounters& sum) {
+              return tree->occluded(kind.rays[ray], {}, &sum) ? 1.0 : 0.0;
+            });
+          }};
+}
+
+/// What the simulator asks: closest hits a thousand at a time, and one leg after another whether it is free; rays do
+/// not meet the facets that they leave.
+Contender simulator_contender(const dcem::Scene& scene, unsigned threads) {
+  struct Prepared {
+    std::vector<dcem::LegFilter> filters;
+    std::shared_ptr<std::vector<dcem::RayQuery>> queries = std::make_shared<std::vector<dcem::RayQuery>>();
   };
-  return contender;
+  const auto tree = std::make_shared<dcem::WideBvh>();
+  const auto prepare = [&scene](const RayKind& kind) {
+    const auto prepared = std::make_shared<Prepared>();
+    prepared->filters.reserve(kind.rays.size());
+    for (std::size_t ray = 0; ray < kind.rays.size(); ++ray) {
+      dcem::LegEnd start;
+      if (!kind.from.empty()) start = {{&kind.from[ray], 1}, {&scene.facet(kind.from[ray]).plane, nullptr}};
+      prepared->filters.emplace_back(scene, kind.rays[ray], start, dcem::IgnoredBodies{});
+      prepared->queries->push_back({kind.rays[ray], prepared->filters.back().hit_filter()});
+    }
+    return prepared;
+  };
+  const dcem::WideBuildSettings settings{.threads = threads};
+  return {"wide, simulator", [=, &scene] { tree->build(scene.triangle_view(), scene.triangle_boxes(), settings); },
+          [=](const RayKind& kind) {
+            const auto prepared = prepare(kind);
+            return [=, trace = in_blocks(*tree, prepared->queries, threads)](auto& answers, auto& counters) {
+              return prepared->filters.empty() ? 0.0 : trace(answers, counters);
+            };
+          },
+          [=](const RayKind& kind) {
+            const auto prepared = prepare(kind);
+            return one_by_one(kind, threads, [tree, prepared](std::size_t ray, TraversalCounters& sum) {
+              const dcem::RayQuery& query = (*prepared->queries)[ray];
+              return tree->occluded(query.ray, query.filter, &sum) ? 1.0 : 0.0;
+            });
+          }};
 }
 
 Contender binary_contender(const dcem::Scene& scene, unsigned threads) {
-  const auto tree = std::make_shared<dcem::Bvh<double>>();
-  Contender contender{"binary, double", {}, {}, {}};
-  contender.build = [=, &scene] { tree->build(scene.triangle_boxes()); };
-  set_queries(
-      contender, threads,
-      [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
-        const dcem::WatertightRay exact(ray);
-        double closest_hit = none;
-        const auto leaf = [&](std::uint32_t triangle, double& t_max) {
-          const auto t = exact.intersect(scene.corners_m(triangle));
-          if (t && *t >= ray.t_min && *t <= t_max && *t < closest_hit) closest_hit = t_max = *t;
-        };
-        tree->closest(ray, leaf, &sum);
-        return closest_hit;
-      },
-      [tree, &scene](const Ray<double>& ray, TraversalCounters& sum) {
-        const dcem::WatertightRay exact(ray);
-        const auto leaf = [&](std::uint32_t triangle) {
-          const auto t = exact.intersect(scene.corners_m(triangle));
-          return t && *t >= ray.t_min && *t <= ray.t_max;
-        };
-        return tree->any(ray, leaf, &sum);
-      });
-  return contender;
+  const auto tree = std::make_shared<dcem::BinaryIndex>();
+  const std::vector<std::uint32_t> all_at_first{0};
+  return {"binary, double", [=, &scene] { tree->build(scene.triangle_view(), scene.triangle_boxes(), all_at_first); },
+          [=](const RayKind& kind) {
+            return one_by_one(kind, threads, [tree, &kind](std::size_t ray, TraversalCounters& sum) {
+              return t_of(tree->closest_hit(kind.rays[ray], {}, &sum));
+            });
+          },
+          [=](const RayKind& kind) {
+            return one_by_one(kind, threads, [tree, &kind](std::size_t ray, TraversalCounters& sum) {
+              return tree->occluded(kind.rays[ray], {}, &sum) ? 1.0 : 0.0;
+            });
+          }};
 }
 
 #if defined(DCEM_HAS_EMBREE)
-Contender embree_contender(const std::string& name, const dcem::TriangleView& mesh,
-                           const dcem::bench::EmbreeSettings& settings) {
-  const auto tree = std::make_shared<std::unique_ptr<dcem::bench::EmbreeScene>>();
-  const auto quads = std::make_shared<std::vector<dcem::Quad>>();
+using EmbreeTree = std::shared_ptr<std::unique_ptr<dcem::bench::EmbreeScene>>;
+
+std::function<void()> embree_build(const EmbreeTree& tree, const dcem::TriangleView& mesh,
+                                   const dcem::bench::EmbreeSettings& settings) {
+  std::vector<dcem::Quad> quads;
   if (settings.quads) {
-    dcem::detail::QuadBuilder(mesh, dcem::WideSettings{}.pair_flatness)
-        .append(0, static_cast<std::uint32_t>(mesh.size()), *quads);
+    dcem::detail::QuadBuilder(mesh, dcem::WideBuildSettings{}.pair_flatness)
+        .append(0, static_cast<std::uint32_t>(mesh.size()), quads);
   }
-  Contender contender{name, {}, {}, {}};
-  contender.build = [=] {
+  return [=] {
     *tree = std::make_unique<dcem::bench::EmbreeScene>(settings);
-    (*tree)->attach((*tree)->add(mesh, *quads));
+    (*tree)->attach((*tree)->add(mesh, quads));
     (*tree)->commit();
   };
-  set_queries(
-      contender, settings.threads,
-      [tree](const Ray<double>& ray, TraversalCounters&) { return static_cast<double>((*tree)->closest_hit(ray)); },
-      [tree](const Ray<double>& ray, TraversalCounters&) { return (*tree)->occluded(ray); });
-  return contender;
 }
 
-/// As the robust tree, its rays in the order of our batches; sorting and copying them is not timed.
-Contender sorted_embree_contender(const dcem::TriangleView& mesh, unsigned threads) {
-  const Contender plain = embree_contender("embree robust, sorted", mesh, {.threads = threads});
-  const auto sorted = [](const auto& trace) {
-    return [trace](const std::vector<Ray<double>>& rays, std::vector<double>& answers, TraversalCounters& counters) {
-      dcem::RayOrder order;
-      const auto positions = order.sort(rays);
-      std::vector<Ray<double>> in_order;
-      for (const std::uint32_t position : positions) in_order.push_back(rays[position]);
-      std::vector<double> own(rays.size());
-      const double elapsed_ms = trace(in_order, own, counters);
-      for (std::size_t at = 0; at < own.size(); ++at) answers[positions[at]] = own[at];
+/// Positions of a kind's rays in the order given, or in that of `RayOrder`.
+std::vector<std::uint32_t> positions_of(const RayKind& kind, bool sorted) {
+  std::vector<std::uint32_t> positions(kind.rays.size());
+  std::iota(positions.begin(), positions.end(), 0U);
+  dcem::RayOrder order;
+  if (sorted) std::ranges::copy(order.sort(kind.rays), positions.begin());
+  return positions;
+}
+
+/// One ray after another, in the order given or, `sorted`, in the best one.
+Contender embree_contender(const std::string& name, const dcem::TriangleView& mesh,
+                           const dcem::bench::EmbreeSettings& settings, bool sorted = false) {
+  const auto tree = std::make_shared<std::unique_ptr<dcem::bench::EmbreeScene>>();
+  const auto trace = [=](bool closest, const RayKind& kind) -> Trace {
+    const auto positions = positions_of(kind, sorted);
+    std::vector<RTCRayHit> prepared;
+    for (const std::uint32_t ray : positions) prepared.push_back(dcem::bench::embree_query(kind.rays[ray]));
+    return [=, threads = settings.threads](std::vector<double>& answers, TraversalCounters& counters) {
+      std::vector<RTCRayHit> queries = prepared;
+      const dcem::bench::EmbreeScene& scene = **tree;
+      const double elapsed_ms =
+          timed_pieces(queries.size(), threads, counters, [&](std::size_t first, std::size_t last, TraversalCounters&) {
+            for (; first < last; ++first) {
+              closest ? scene.intersect(queries[first]) : scene.occlude(queries[first].ray);
+            }
+          });
+      for (std::size_t at = 0; at < queries.size(); ++at) {
+        answers[positions[at]] = closest ? dcem::bench::t_of(queries[at]) : queries[at].ray.tfar < 0.0F ? 1.0 : 0.0;
+      }
       return elapsed_ms;
     };
   };
-  Contender contender{plain.name, plain.build, sorted(plain.closest_ms), sorted(plain.occluded_ms)};
-  return contender;
+  return {name, embree_build(tree, mesh, settings), [=](const RayKind& kind) { return trace(true, kind); },
+          [=](const RayKind& kind) { return trace(false, kind); }};
+}
+
+/// Sixteen rays that follow one another at a time, said to be coherent.
+Contender packet_contender(const dcem::TriangleView& mesh, unsigned threads) {
+  const auto tree = std::make_shared<std::unique_ptr<dcem::bench::EmbreeScene>>();
+  const auto trace = [=](bool closest, const RayKind& kind) -> Trace {
+    const auto prepared = std::make_shared<std::vector<RTCRayHit16>>(dcem::bench::embree_packets(kind.rays));
+    const std::size_t rays = kind.rays.size();
+    return [=](std::vector<double>& answers, TraversalCounters& counters) {
+      std::vector<RTCRayHit16> packets = *prepared;
+      const dcem::bench::EmbreeScene& scene = **tree;
+      const double elapsed_ms =
+          timed_pieces(packets.size(), threads, counters, [&](std::size_t first, std::size_t last, TraversalCounters&) {
+            for (; first < last; ++first) {
+              closest ? scene.intersect(packets[first]) : scene.occlude(packets[first].ray);
+            }
+          });
+      for (std::size_t ray = 0; ray < rays; ++ray) {
+        const RTCRayHit16& packet = packets[ray / 16];
+        answers[ray] = closest ? dcem::bench::t_of(packet, ray % 16) : packet.ray.tfar[ray % 16] < 0.0F ? 1.0 : 0.0;
+      }
+      return elapsed_ms;
+    };
+  };
+  return {packet_name, embree_build(tree, mesh, {.threads = threads}),
+          [=](const RayKind& kind) { return trace(true, kind); },
+          [=](const RayKind& kind) { return trace(false, kind); }};
 }
 #endif
 
-std::vector<Contender> contenders(const dcem::Scene& scene, const dcem::TriangleView& mesh, unsigned threads) {
+std::vector<Contender> contenders(const dcem::Scene& scene, unsigned threads) {
   using dcem::WideQuality;
   std::vector<Contender> all;
-  all.push_back(wide_contender("wide, pairs", scene, mesh, {.threads = threads}));
-  all.push_back(wide_contender("wide, fast build", scene, mesh, {.threads = threads, .quality = WideQuality::fast}));
-  all.push_back(wide_contender("wide, high quality", scene, mesh, {.threads = threads, .quality = WideQuality::high}));
-  all.push_back(batch_contender(scene, mesh, threads));
+  all.push_back(simulator_contender(scene, threads));
+  all.push_back(wide_contender("wide, one by one", scene, {.threads = threads}));
+  all.push_back(wide_contender("wide, fast build", scene, {.threads = threads, .quality = WideQuality::fast}));
+  all.push_back(wide_contender("wide, high quality", scene, {.threads = threads, .quality = WideQuality::high}));
 #if defined(DCEM_HAS_EMBREE)
+  const dcem::TriangleView mesh = scene.triangle_view();
   all.push_back(embree_contender(rival_name, mesh, {.threads = threads}));
-  all.push_back(sorted_embree_contender(mesh, threads));
+  all.push_back(packet_contender(mesh, threads));
+  all.push_back(embree_contender("embree robust sorted", mesh, {.threads = threads}, true));
   all.push_back(embree_contender("embree robust quads", mesh, {.quads = true, .threads = threads}));
   all.push_back(embree_contender("embree medium", mesh, {.robust = false, .threads = threads}));
   all.push_back(embree_contender("embree medium quads", mesh, {.robust = false, .quads = true, .threads = threads}));
 #endif
-  all.push_back(wide_contender("wide, triangles", scene, mesh, {.pair_flatness = -1.0, .threads = threads}));
+  all.push_back(wide_contender("wide, triangles", scene, {.pair_flatness = -1.0, .threads = threads}));
   all.push_back(binary_contender(scene, threads));
   return all;
 }
 
-struct RayKind {
-  std::string name;
-  std::vector<Ray<double>> rays;
-};
-
-/// The rays of a picture from above, rays that leave surfaces in all directions, and segments between points near the
-/// ground. All numbers are single-precision ones, so that everybody gets the same.
-std::vector<RayKind> ray_kinds(const dcem::TriangleView& mesh, const dcem::Aabb<double>& bounds, std::size_t count) {
+/// The rays of a picture from above, rays that leave surfaces in all directions, segments between points near the
+/// ground, and spheres of rays that receivers at such points launch. All numbers are single-precision ones, so that
+/// everybody gets the same.
+std::vector<RayKind> ray_kinds(const dcem::Scene& scene, const dcem::Aabb<double>& bounds, std::size_t count) {
+  const dcem::TriangleView mesh = scene.triangle_view();
   dcem::RandomStream random(3);
-  std::vector<RayKind> kinds{{"primary", {}}, {"bounce", {}}, {"segment", {}}};
+  std::vector<RayKind> kinds{
+      {"primary", {}}, {"bounce", {}}, {"segment", {}}, {"sphere of 2,000", {}}, {"sphere of 20,000", {}}};
   const Vec3 eye_m = as_float({bounds.center().x, bounds.center().y, bounds.max.z * 1.2});
   const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
   for (std::size_t ray = 0; ray < count; ++ray) {
@@ -219,11 +288,21 @@ std::vector<RayKind> ray_kinds(const dcem::TriangleView& mesh, const dcem::Aabb<
     if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
     const Vec3 direction = dcem::bench::direction_on_sphere(random);
     kinds[1].rays.push_back({as_float(a + u * (b - a) + v * (c - a) + 0.01 * direction), as_float(direction)});
+    kinds[1].from.push_back(scene.facet_of_triangle(triangle));
     Vec3 way = dcem::bench::direction_on_sphere(random);
     way.z *= 0.2;
     const Vec3 from_m = as_float(dcem::bench::point_over(bounds, 0.5, 20.0, random));
     const Vec3 to_m = as_float(from_m + way * dcem::bench::between(random, 5.0, 150.0));
     kinds[2].rays.push_back(dcem::segment_between(from_m, to_m));
+  }
+  for (const std::size_t kind : {3, 4}) {
+    while (kinds[kind].rays.size() < count) {
+      const Vec3 from_m = as_float(dcem::bench::point_over(bounds, 1.0, 2.0, random));
+      const dcem::Mat3 turned = dcem::random_rotation(random);
+      for (const Vec3& direction : dcem::launch_directions(kind == 3 ? 2000 : 20'000)) {
+        kinds[kind].rays.push_back({from_m, as_float(turned * direction)});
+      }
+    }
   }
   return kinds;
 }
@@ -267,21 +346,24 @@ struct Row {
 bool compare(const std::string& scene_name, std::size_t triangles, std::vector<Contender>& all, const RayKind& kind,
              bool closest_hit, std::size_t rounds, unsigned threads) {
   std::vector<Row> rows(all.size());
+  std::vector<Trace> traces;
+  for (const Contender& one : all) traces.push_back((closest_hit ? one.closest : one.occluded)(kind));
   for (std::size_t round = 0; round < rounds; ++round) {
     for (std::size_t turn = 0; turn < all.size(); ++turn) {
       const std::size_t index = (round + turn) % all.size();
       Row& row = rows[index];
       row.answers.resize(kind.rays.size());
       row.counters = {};
-      row.ms.push_back(
-          (closest_hit ? all[index].closest_ms : all[index].occluded_ms)(kind.rays, row.answers, row.counters));
+      row.ms.push_back(traces[index](row.answers, row.counters));
     }
   }
   const double count = static_cast<double>(kind.rays.size());
   // Without Embree there is nothing to compare with but ourselves, and the cell stays empty.
-  const auto rival = std::find_if(all.begin(), all.end(), [](const Contender& one) { return one.name == rival_name; });
-  const double rival_ms =
-      rival != all.end() ? dcem::median(rows[static_cast<std::size_t>(rival - all.begin())].ms) : 0.0;
+  const auto median_ms = [&](const char* name) {
+    const auto rival = std::find_if(all.begin(), all.end(), [&](const Contender& one) { return one.name == name; });
+    return rival != all.end() ? dcem::median(rows[static_cast<std::size_t>(rival - all.begin())].ms) : 0.0;
+  };
+  const double rival_ms = median_ms(rival_name), packet_ms = median_ms(packet_name);
   bool same = true;
   for (std::size_t index = 0; index < all.size(); ++index) {
     const double ms = dcem::median(rows[index].ms);
@@ -296,14 +378,15 @@ bool compare(const std::string& scene_name, std::size_t triangles, std::vector<C
     csv.text(scene_name).count(triangles).count(threads).text(kind.name).text(closest_hit ? "closest" : "occluded");
     csv.text("\"" + all[index].name + "\"");
     rival_ms > 0.0 ? csv.number(rival_ms / ms, 3) : csv.empty();
+    packet_ms > 0.0 ? csv.number(packet_ms / ms, 3) : csv.empty();
     csv.number(count / ms / 1e3, 3);
     csv.number(dcem::median(all[index].build_ms), 2);
     csv.number(static_cast<double>(rows[index].counters.nodes_visited) / count, 2);
     csv.number(static_cast<double>(rows[index].counters.primitives_tested) / count, 2);
     csv.count(differences).hash(hash).print();
-    std::fprintf(stderr, "%-14s %-8s %-8s %-22s %6.2f x  %7.2f Mrays/s  %zu differ\n", scene_name.c_str(),
+    std::fprintf(stderr, "%-14s %-8s %-8s %-22s %6.2f x %6.2f x  %7.2f Mrays/s  %zu differ\n", scene_name.c_str(),
                  kind.name.c_str(), closest_hit ? "closest" : "occluded", all[index].name.c_str(), rival_ms / ms,
-                 count / ms / 1e3, differences);
+                 packet_ms / ms, count / ms / 1e3, differences);
   }
   return same;
 }
@@ -322,8 +405,8 @@ bool bench(const Options& options, const std::string& file) {
   dcem::Scene scene;
   for (const std::string& name : scenery.material_names) scene.add_material({name, dcem::PerfectConductor{}});
   scene.set_scenery(scenery);
-  const dcem::TriangleView mesh{scene.vertices_m(), scene.triangles()};
-  std::vector<Contender> all = contenders(scene, mesh, options.threads());
+  const dcem::TriangleView mesh = scene.triangle_view();
+  std::vector<Contender> all = contenders(scene, options.threads());
   for (std::size_t round = 0; round < options.rounds; ++round) {
     for (Contender& each : all) {
       const Stopwatch watch;
@@ -339,7 +422,7 @@ bool bench(const Options& options, const std::string& file) {
   const std::string name = std::filesystem::path(file).stem().string() +
                            (options.copies > 1 ? " x " + std::to_string(options.copies * options.copies) : "");
   bool same = true;
-  for (const RayKind& kind : ray_kinds(mesh, bounds, options.rays)) {
+  for (const RayKind& kind : ray_kinds(scene, bounds, options.rays)) {
     for (const bool closest_hit : {true, false}) {
       same = compare(name, mesh.size(), all, kind, closest_hit, options.rounds, options.threads()) && same;
     }
@@ -360,7 +443,8 @@ int main(int count, char** arguments) {
   app.add_flag("--two-threads", options.two_threads, "builds and rays on two threads");
   return dcem::bench::run_program(app, count, arguments, [&] {
     std::puts(
-        "scene,triangles,threads,rays,query,tree,ratio_to_embree_robust,mrays_per_s,build_ms,nodes_per_ray,patches_per_"
+        "scene,triangles,threads,rays,query,tree,ratio_to_embree_robust,ratio_to_embree_packet,mrays_per_s,build_ms,"
+        "nodes_per_ray,patches_per_"
         "ray,"
         "differences,hash");
     bool same = true;

@@ -24,17 +24,17 @@ enum class EmbreeUpkeep {
 class MovingEmbree {
  public:
   /// Builds. The bodies from 1 on must all be the same mesh for EmbreeUpkeep::instances.
-  MovingEmbree(const Scene& scene, EmbreeUpkeep tree_update, unsigned threads)
-      : scene_(&scene), upkeep_(tree_update), embree_({.quality = scene_quality(tree_update), .threads = threads}) {
-    if (tree_update != EmbreeUpkeep::rebuild) {
+  MovingEmbree(const Scene& scene, EmbreeUpkeep upkeep, unsigned threads)
+      : scene_(&scene), upkeep_(upkeep), embree_({.quality = scene_quality(upkeep), .threads = threads}) {
+    if (upkeep != EmbreeUpkeep::rebuild) {
       rtcSetSceneFlags(embree_.handle(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
     }
-    if (tree_update == EmbreeUpkeep::instances) {
+    if (upkeep == EmbreeUpkeep::instances) {
       add_instances();
-    } else if (tree_update == EmbreeUpkeep::two_levels) {
+    } else if (upkeep == EmbreeUpkeep::two_levels) {
       for (std::size_t body = 0; body < scene.bodies().size(); ++body) add_body(BodyId(body));
     } else {
-      add({scene.vertices_m(), scene.triangles()}, tree_update == EmbreeUpkeep::refit);
+      add({scene.vertices_m(), scene.triangles()}, upkeep == EmbreeUpkeep::refit);
     }
     embree_.commit();
   }
@@ -79,8 +79,8 @@ class MovingEmbree {
   using Matrix = std::array<float, 12>;
 
   /// Only a scene of low quality has two levels and heeds the quality of its geometries.
-  static RTCBuildQuality scene_quality(EmbreeUpkeep tree_update) {
-    const bool low = tree_update == EmbreeUpkeep::refit || tree_update == EmbreeUpkeep::two_levels;
+  static RTCBuildQuality scene_quality(EmbreeUpkeep upkeep) {
+    const bool low = upkeep == EmbreeUpkeep::refit || upkeep == EmbreeUpkeep::two_levels;
     return low ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
   }
   std::span<const Vec3> vertices_of(BodyId body) const {

@@ -5,10 +5,12 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "dcem/accel/wide/build/quads.hpp"
 #include "dcem/geometry/ray.hpp"
@@ -35,6 +37,40 @@ inline RTCRay embree_ray(const Ray<double>& ray) {
   result.tfar = static_cast<float>(ray.t_max);
   result.mask = std::numeric_limits<unsigned>::max();
   return result;
+}
+
+inline RTCRayHit embree_query(const Ray<double>& ray) {
+  RTCRayHit query{};
+  query.ray = embree_ray(ray);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return query;
+}
+
+/// Parameter of a hit, infinity where there is none.
+inline double t_of(const RTCRayHit& query) {
+  return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity()
+                                                     : static_cast<double>(query.ray.tfar);
+}
+inline double t_of(const RTCRayHit16& packet, std::size_t lane) {
+  return packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity()
+                                                            : static_cast<double>(packet.ray.tfar[lane]);
+}
+
+/// Rays in sixteens; the last one is filled up with its last ray.
+inline std::vector<RTCRayHit16> embree_packets(std::span<const Ray<double>> rays) {
+  std::vector<RTCRayHit16> packets((rays.size() + 15) / 16);
+  for (std::size_t index = 0; index < 16 * packets.size(); ++index) {
+    const RTCRay ray = embree_ray(rays[std::min(index, rays.size() - 1)]);
+    RTCRayHit16& packet = packets[index / 16];
+    const std::size_t lane = index % 16;
+    packet.ray.org_x[lane] = ray.org_x, packet.ray.org_y[lane] = ray.org_y, packet.ray.org_z[lane] = ray.org_z;
+    packet.ray.dir_x[lane] = ray.dir_x, packet.ray.dir_y[lane] = ray.dir_y, packet.ray.dir_z[lane] = ray.dir_z;
+    packet.ray.tnear[lane] = ray.tnear, packet.ray.tfar[lane] = ray.tfar;
+    packet.ray.mask[lane] = ray.mask, packet.ray.flags[lane] = 0, packet.ray.time[lane] = 0.0F;
+    packet.hit.geomID[lane] = packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+  }
+  return packets;
 }
 
 /// A device with a scene of one or more geometries. Flushes denormal numbers to zero, as Embree's manual asks.
@@ -92,26 +128,49 @@ class EmbreeScene {
     }
   }
 
-  /// Parameter of the closest_hit hit, infinity where there is none.
-  float closest_hit(const Ray<double>& ray) const {
+  /// Queries that are prepared, answered in place.
+  void intersect(RTCRayHit& query) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRayHit query{};
-    query.ray = embree_ray(ray);
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_, &context, &query);
-    return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<float>::infinity() : query.ray.tfar;
+  }
+  void occlude(RTCRay& query) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene_, &context, &query);
+  }
+  /// Sixteen at a time, coherent ones.
+  void intersect(RTCRayHit16& packet) const {
+    RTCIntersectContext context = coherent();
+    rtcIntersect16(all_lanes.data(), scene_, &context, &packet);
+  }
+  void occlude(RTCRay16& packet) const {
+    RTCIntersectContext context = coherent();
+    rtcOccluded16(all_lanes.data(), scene_, &context, &packet);
+  }
+
+  /// Parameter of the closest hit, infinity where there is none.
+  double closest_hit(const Ray<double>& ray) const {
+    RTCRayHit query = embree_query(ray);
+    intersect(query);
+    return t_of(query);
   }
   bool occluded(const Ray<double>& ray) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRay query = embree_ray(ray);
-    rtcOccluded1(scene_, &context, &query);
+    occlude(query);
     return query.tfar < 0.0F;
   }
 
  private:
+  static constexpr std::array<int, 16> all_lanes{-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+
+  static RTCIntersectContext coherent() {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+  }
+
   EmbreeSettings settings_;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;

@@ -88,7 +88,7 @@ inline Scene scene_with_cars(const TriangleMesh& scenery, std::size_t cars, doub
 
 /// What is sent through the scene in every frame, all from 0.5 to 3 m above the lowest point.
 struct RaySet {
-  std::vector<Ray<double>> bounces;     ///< in all directions, for the closest_hit hit
+  std::vector<Ray<double>> bounces;     ///< in all directions, for the closest hit
   std::vector<Ray<double>> short_legs;  ///< segments of up to 30 m between two such points, for any hit
 };
 

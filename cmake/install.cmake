@@ -1,17 +1,22 @@
-# Headers, dcem::io, the program, and the files that find_package(dcem CONFIG [COMPONENTS io]) reads.
+# Headers, dcem::engine, dcem::io, the program, and the files that find_package(dcem CONFIG [COMPONENTS engine io]) reads.
 include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/dcem")
 
 if(NOT DCEM_BUILD_IO)
   set(headers_left_out PATTERN io EXCLUDE)
 endif()
-# A directory rather than a FILE_SET: that needs CMake 3.23, and 3.22 is promised. io/src is private.
+# A directory rather than a FILE_SET: that needs CMake 3.23, and 3.22 is promised. io/src and engine are private.
 install(DIRECTORY dcem DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.hpp" PATTERN src EXCLUDE
+                                                                                    PATTERN engine EXCLUDE
                                                                                     ${headers_left_out})
 
-# Two export sets, so that a project that wants the headers alone need not have the libraries of dcem::io.
+# Several export sets, so that a project that wants the headers or the engine alone need not have the libraries of dcem::io.
 install(TARGETS dcem EXPORT dcemTargets)
 install(EXPORT dcemTargets NAMESPACE dcem:: DESTINATION "${package_dir}")
+if(DCEM_BUILD_ENGINE)
+  install(TARGETS dcem_engine EXPORT dcemEngineTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(EXPORT dcemEngineTargets NAMESPACE dcem:: DESTINATION "${package_dir}")
+endif()
 if(DCEM_BUILD_IO)
   install(TARGETS dcem_io EXPORT dcemIoTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
   install(EXPORT dcemIoTargets NAMESPACE dcem:: DESTINATION "${package_dir}")

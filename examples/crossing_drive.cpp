@@ -4,8 +4,8 @@
 #include <cstdio>
 
 #include "dcem/dcem.hpp"
-#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/scenario.hpp"
+#include "dcem/sim/simulator.hpp"
 
 namespace {
 

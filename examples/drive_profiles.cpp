@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "dcem/dcem.hpp"
-#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/link_plots.hpp"
+#include "dcem/sim/simulator.hpp"
 
 namespace {
 
@@ -89,7 +89,7 @@ void drive(const std::string& name, const std::vector<dcem::Vec3>& points_m) {
   settings.frequency_hz = 30e9;
   settings.propagation.max_transmissions = 0;
   settings.propagation.discovery = dcem::Discovery::exact;
-  dcem::Simulator<> simulator(std::move(scene), settings);
+  dcem::Simulator simulator(std::move(scene), settings);
   dcem::io::LinkPlots plots({"mast", "car", dcem::watt_to_dbm(5.0)}, 1e-9, dcem::PdpMode::incoherent);
   std::size_t out_of_sight = 0, frame = 0;
   for (; static_cast<double>(frame) * step_s <= end_s; ++frame) {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "dcem/dcem.hpp"
-#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/map_writer.hpp"
 #include "dcem/io/scenario.hpp"
+#include "dcem/sim/simulator.hpp"
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dcem/accel/binary/updater.hpp"
 #include "dcem/dcem.hpp"
 #include "dcem/io/line_chart.hpp"
 #include "dcem/io/obj_reader.hpp"
@@ -83,7 +84,7 @@ void follow(Contender& contender, const dcem::Scene& scene, const std::vector<st
   contender.sah_cost.push_back(report.sah_cost);
 }
 
-/// Distance to the closest_hit hit of every ray; infinite where it meets nothing.
+/// Distance to the closest hit of every ray; infinite where it meets nothing.
 std::vector<double> trace(Contender& contender, const dcem::Scene& scene, const std::vector<dcem::Ray<double>>& rays) {
   dcem::TraversalCounters counters;
   std::vector<double> distances_m;

@@ -1,28 +1,29 @@
-/// A reflection model of one's own: every bounce loses 15 dB and turns the phase by π, whatever the angle.
-///
-/// A model is any type with `SurfaceResponse response(MaterialId, double cos_incidence) const`. The engine asks it at
-/// each interaction; nothing else changes. This one is what NIST's Q-D realization software uses for its L-shaped room.
+/// A reflection model of one's own: every bounce loses 15 dB and turns the phase by π, whatever the angle. It stands
+/// beside built-in materials in one scene. This one is what NIST's Q-D realization software uses for its L-shaped room.
 #include <cstdio>
 
 #include "dcem/dcem.hpp"
+#include "dcem/em/surface/user_surface.hpp"
 
 namespace {
 
-struct FixedLoss {
-  double loss_db = 15.0;
+class FixedLoss : public dcem::UserSurfaceModel {
+ public:
+  explicit FixedLoss(double loss_db) : amplitude_(dcem::db_to_amplitude_ratio(-loss_db)) {}
 
-  dcem::SurfaceResponse response(dcem::MaterialId, double) const {
-    const double amplitude = dcem::db_to_amplitude_ratio(-loss_db);
-    return {{-amplitude, -amplitude}, {0.0, 0.0}};  // exp(jπ) = −1 for both polarizations; nothing goes through
+  dcem::SurfaceResponse response(double, double) const override {
+    return {{-amplitude_, -amplitude_}, {0.0, 0.0}};  // exp(jπ) = −1 for both polarizations; nothing goes through
   }
+
+ private:
+  double amplitude_;
 };
 
 }  // namespace
 
 int main() {
   dcem::Scene scene;
-  scene.add_material(
-      {"wall", dcem::PerfectConductor{}});  // the name is needed; how it reflects is for FixedLoss to say
+  scene.add_material({"wall", dcem::user_surface(FixedLoss(15.0))});
   scene.set_scenery(dcem::make_box({10.0, 6.0, 3.0}, "wall"));
   const dcem::Antenna both{0.0, {dcem::PolarizationKind::dual}};  // the power of a bounce, whatever the polarization
   scene.add_transmitter(dcem::device_at("access point", {-3.0, 1.0, 2.5}, 20.0, both));
@@ -31,7 +32,7 @@ int main() {
   dcem::SimulationSettings settings;
   settings.frequency_hz = 60e9;
   settings.propagation.max_reflections = 2;
-  dcem::Simulator simulator(std::move(scene), settings, FixedLoss{15.0});
+  dcem::Simulator simulator(std::move(scene), settings);
 
   const dcem::FrameResult frame = simulator.advance_to(0.0);
   std::puts("kinds  length/m   gain/dB   of which bounces/dB");

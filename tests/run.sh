@@ -1,12 +1,23 @@
 #!/usr/bin/env bash
-# Builds the release preset and runs every test. Installs missing Debian packages where it may (root or sudo).
+# Builds the release preset and runs its tests. Installs missing Debian packages where it may (root or sudo).
 #
-#   tests/run.sh              with the default compiler, in build/release
-#   CXX=clang++ tests/run.sh  with another one, in build/release-clang++
+#   tests/run.sh              what a contributor needs: everything but what --all adds
+#   tests/run.sh --all        also slow tests, the viewer in a browser, benchmarks, packaging, budgets of compile time
+#   CXX=clang++ tests/run.sh  with another compiler, in build/release-clang++ (default: build/release)
 #
 # With CI set in the environment a compiler warning is an error.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+all=OFF
+if [[ "${1:-}" == --all ]]; then
+  all=ON
+  shift
+fi
+if (($# > 0)); then
+  echo "tests/run.sh: unknown argument '$1'; expected --all or nothing" >&2
+  exit 2
+fi
 
 build_dir=build/release
 more_packages=()
@@ -16,7 +27,8 @@ if [[ -n "${CXX:-}" ]]; then
 fi
 examples/install_dependencies.sh ${more_packages[@]+"${more_packages[@]}"}
 
-cmake --preset release -B "$build_dir" -DDCEM_WARNINGS_AS_ERRORS="${CI:-OFF}"
+cmake --preset release -B "$build_dir" -DDCEM_WARNINGS_AS_ERRORS="${CI:-OFF}" -DDCEM_TEST_ALL="$all" \
+  -DDCEM_BUILD_BENCH="$all"
 cmake --build "$build_dir" --parallel "$(nproc)"
 
 log="$build_dir/ctest.log"

@@ -77,7 +77,7 @@ class Bvh {
 
   // Queries. `counters`, when given, is added to.
 
-  /// The closest_hit hit: calls `leaf(primitive, t_max)` for primitives whose box the ray meets up to t_max, which
+  /// The closest hit: calls `leaf(primitive, t_max)` for primitives whose box the ray meets up to t_max, which
   /// starts as the ray's and which the callback lowers to the t of each nearer hit. Near boxes come first, a box that
   /// only touches t_max is still reported. The order among equals is open: a callback that wants one answer on a tie
   /// must choose it by itself at equal t, for instance the lower primitive.

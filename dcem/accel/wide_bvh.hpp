@@ -19,28 +19,23 @@
 
 #include "dcem/accel/counters.hpp"
 #include "dcem/accel/detail/box_check.hpp"
+#include "dcem/accel/hit_filter.hpp"
 #include "dcem/accel/sah_cost.hpp"
 #include "dcem/accel/wide/arrays.hpp"
 #include "dcem/accel/wide/build/builder.hpp"
 #include "dcem/accel/wide/build/plan.hpp"
-#include "dcem/accel/wide/trace/traversal.hpp"
+#include "dcem/accel/wide/trace/kernels.hpp"
 #include "dcem/accel/wide/update/degradation.hpp"
 #include "dcem/accel/wide/validate.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/ray.hpp"
-#include "dcem/geometry/triangle.hpp"
+#include "dcem/geometry/triangle_view.hpp"
 
 namespace dcem {
 
 namespace detail {
 struct WideRotation;
 }  // namespace detail
-
-/// The closest_hit hit of a ray.
-struct TriangleHit {
-  double t = 0.0;  ///< where the ray meets the plane of the triangle
-  std::uint32_t triangle = Quad::no_triangle;
-};
 
 /// What following a motion took.
 struct WideRefitReport {
@@ -58,10 +53,10 @@ class WideBvh {
   // Building.
 
   /// A new tree. Triangles [object_first[i], object_first[i + 1]) are object i, the last object ends with the
-  /// triangles. Groups of up to WideSettings::object_subtree_limit quads own a subtree.
+  /// triangles. Groups of up to WideBuildSettings::object_subtree_limit quads own a subtree.
   void build_objects(const TriangleView& mesh, Boxes boxes, std::span<const std::uint32_t> object_first,
-                     const WideSettings& settings = {});
-  void build(const TriangleView& mesh, Boxes boxes, const WideSettings& settings = {}) {
+                     const WideBuildSettings& settings = {});
+  void build(const TriangleView& mesh, Boxes boxes, const WideBuildSettings& settings = {}) {
     const std::uint32_t whole = 0;
     build_objects(mesh, boxes, {&whole, 1}, settings);
   }
@@ -110,56 +105,53 @@ class WideBvh {
   /// that are not in use.
   std::span<const Degradation> degradation() const { return degradation_.all(); }
 
-  // Queries. `counters`, when given, is added to.
+  // Queries, as `SpatialIndex` has them. `counters`, when given, is added to.
 
-  /// Considers all.
-  struct EveryTriangle {
-    bool operator()(std::uint32_t) const { return true; }
-  };
-
-  /// The closest_hit hit from t_min to t_max among the triangles for which `considers(triangle) -> bool` holds, which
-  /// must be the same for all triangles of one surface (TriangleView::surface_of_triangle). Of equally near ones the
-  /// one with the smallest number. t comes from the plane of the triangle, whatever decided that the ray meets it; so
-  /// it is the same for every tree over the same triangles.
-  template <typename Considers>
-  std::optional<TriangleHit> closest_hit(const Ray<double>& ray, Considers&& considers,
-                                         TraversalCounters* counters = nullptr) const;
-  std::optional<TriangleHit> closest_hit(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
-    return closest_hit(ray, EveryTriangle{}, counters);
+  /// The closest hit from t_min to t_max that passes the filter; of equally near ones that on the triangle with the
+  /// smallest number. t is exact_hit_t, whatever the tree looks like.
+  std::optional<TriangleHit> closest_hit(const Ray<double>& ray, const HitFilter& filter = {},
+                                         TraversalCounters* counters = nullptr) const {
+    // Counted where the caller wants it: a sum that is added at the end would be read before it is all written.
+    TraversalCounters unwanted;
+    return detail::wide_kernels().closest_hit(arrays_, ray, filter, counters != nullptr ? *counters : unwanted);
   }
 
-  /// Whether a triangle for which `considers(triangle) -> bool` holds is met from t_min to t_max. `first_try`: asked
-  /// before the tree, for instance what was in the way a moment ago.
-  template <typename Considers>
-  bool occluded(const Ray<double>& ray, Considers&& considers, TraversalCounters* counters = nullptr,
-                std::optional<std::uint32_t> first_try = {}) const;
-  bool occluded(const Ray<double>& ray, TraversalCounters* counters = nullptr) const {
-    return occluded(ray, EveryTriangle{}, counters);
+  /// The same for each of many rays, which is faster. Rays from one point are faster still where those that point in
+  /// similar directions follow one another. Throws std::invalid_argument where there is not one place for each answer.
+  void closest_hits(std::span<const RayQuery> queries, std::span<std::optional<TriangleHit>> hits,
+                    TraversalCounters* counters = nullptr) const {
+    if (queries.size() != hits.size()) throw std::invalid_argument("closest_hits: one place for each ray is needed");
+    TraversalCounters unwanted;
+    detail::wide_kernels().closest_hits(arrays_, queries, hits, counters != nullptr ? *counters : unwanted);
   }
 
-  /// As Bvh::closest: calls `leaf(triangle, t_max)`, near ones first, for all triangles that the ray may meet.
-  template <typename Leaf>
-  void closest(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
-
-  /// As Bvh::any: calls `leaf(triangle) -> bool` for triangles that the ray may meet until one returns true.
-  template <typename Leaf>
-  bool any(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
-
-  /// Calls `leaf(triangle)` once for every triangle that the ray may meet: all that it meets, and a few beside.
-  template <typename Leaf>
-  void all(const Ray<double>& ray, Leaf&& leaf, TraversalCounters* counters = nullptr) const {
-    any(
-        ray, [&](std::uint32_t triangle) { return leaf(triangle), false; }, counters);
+  /// Whether there is a hit from t_min to t_max that passes the filter.
+  bool occluded(const Ray<double>& ray, const HitFilter& filter = {}, TraversalCounters* counters = nullptr) const {
+    TraversalCounters unwanted;
+    return detail::wide_kernels().occluded(arrays_, ray, filter, counters != nullptr ? *counters : unwanted);
   }
 
-  /// Calls `leaf(triangle)` once for every triangle whose box has a point in common with `box`.
-  template <typename Leaf>
-  void overlapping(const Aabb<double>& box, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
+  /// Calls `visit(hit) -> bool` for each hit from t_min to t_max that passes the filter, in no promised order, until
+  /// one returns true. Returns whether one did.
+  template <typename Visit>
+  bool visit_hits(const Ray<double>& ray, const HitFilter& filter, Visit&& visit,
+                  TraversalCounters* counters = nullptr) const {
+    using Visitor = std::remove_reference_t<Visit>;
+    const detail::HitVisitor visitor{
+        [](void* context, const TriangleHit& hit) -> bool { return (*static_cast<Visitor*>(context))(hit); },
+        const_cast<void*>(static_cast<const void*>(&visit))};
+    TraversalCounters unwanted;
+    return detail::wide_kernels().visit_hits(arrays_, ray, filter, visitor, counters != nullptr ? *counters : unwanted);
+  }
 
-  /// As Bvh::visit: calls `leaf(triangle)` once for every triangle with a box for which `keep_box(box) -> bool` holds.
-  /// It must hold for every box that contains a box for which it holds: half spaces, frusta, beams.
-  template <typename Keep, typename Leaf>
-  void visit(Keep&& keep_box, Leaf&& leaf, TraversalCounters* counters = nullptr) const;
+  /// Calls `visit(triangle)` once for every triangle whose box has a point in common with `box`.
+  template <typename Visit>
+  void overlapping(const Aabb<double>& box, Visit&& visit, TraversalCounters* counters = nullptr) const;
+
+  /// Calls `visit(triangle)` once for every triangle with a box for which `keep(box) -> bool` holds. It must hold for
+  /// every box that contains a box for which it holds: half spaces, frusta, beams.
+  template <typename Keep, typename Visit>
+  void visit(Keep&& keep, Visit&& visit, TraversalCounters* counters = nullptr) const;
 
   // Looking inside.
 
@@ -167,7 +159,7 @@ class WideBvh {
   std::size_t object_count() const { return object_first_.size(); }
   Aabb<double> bounds() const { return in_world(root_box()); }
   const WideArrays& arrays() const { return arrays_; }
-  const WideSettings& settings() const { return settings_; }
+  const WideBuildSettings& settings() const { return settings_; }
 
   /// Expected cost of a long random ray by the surface-area heuristic, no unit; from a sum that every edit keeps.
   double sah_cost() const {
@@ -180,33 +172,11 @@ class WideBvh {
   std::string validate(Boxes boxes) const;
 
  private:
-  using Hits = WideRay::QuadHits;
-  static bool has(std::uint32_t lanes, std::uint32_t lane) { return (lanes >> lane & 1U) != 0; }
-
-  detail::WideView view() const { return {arrays_.nodes, arrays_.leaves, settings_.fetch_ahead}; }
   Aabb<float> root_box() const { return arrays_.nodes.empty() ? Aabb<float>{} : arrays_.nodes[0].box(); }
   Aabb<double> in_world(const Aabb<float>& box) const;
 
-  static bool has_direction(const Ray<double>& ray);
-  using Known = QuadKnowledge;
-  static const TrianglePlane* plane_met(const QuadPlanes& planes, const Ray<double>& ray, Known known);
-  std::optional<TriangleHit> hit_on(std::uint32_t quad, const Ray<double>& ray) const;
-  std::span<const TrianglePlane> halves_to_ask(std::uint32_t quad, Known known) const;
-  template <typename Visit>
-  bool for_each_present_quad(Visit&& visit) const;
-  template <typename Considers>
-  bool is_considered(std::uint32_t quad, Considers& considers) const;
-  void offer(std::uint32_t quad, const Ray<double>& ray, Known known, std::optional<TriangleHit>& best) const;
-
-  template <typename Considers>
-  std::optional<TriangleHit> closest_among(const Ray<double>& ray, const WideRay& wide, Considers& considers,
-                                           TraversalCounters& counters) const;
-  template <typename Considers>
-  std::optional<TriangleHit> closest_of_all(const Ray<double>& ray, Considers& considers,
-                                            TraversalCounters& counters) const;
-
-  template <typename KeepEntry, typename Keep, typename Leaf>
-  void visit_where(KeepEntry&& keep_entry, Keep&& keep_box, Leaf& leaf, TraversalCounters* counters) const;
+  template <typename KeepRounded, typename Keep, typename Visit>
+  void visit_where(KeepRounded&& keep_rounded, Keep&& keep, Visit&& visit, TraversalCounters* counters) const;
 
   static void require_input(const TriangleView& mesh, Boxes boxes);
   static void require_corners(const TriangleView& mesh, std::uint32_t triangle);
@@ -242,7 +212,7 @@ class WideBvh {
   void remember_inserted(WideChild child);
 
   WideArrays arrays_;
-  WideSettings settings_;
+  WideBuildSettings settings_;
   std::vector<std::uint32_t> object_first_;
   std::vector<Quad> quads_;                ///< by object
   std::vector<std::uint32_t> first_quad_;  ///< one more entry than objects
@@ -262,8 +232,7 @@ class WideBvh {
 
 }  // namespace dcem
 
-#include "dcem/accel/wide/trace/hits.hpp"
-#include "dcem/accel/wide/trace/queries.hpp"
+#include "dcem/accel/wide/box_queries.hpp"
 #include "dcem/accel/wide/update/edits.hpp"
 #include "dcem/accel/wide/update/rebuild_subtree.hpp"
 #include "dcem/accel/wide/update/rotation.hpp"

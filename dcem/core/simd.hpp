@@ -2,13 +2,16 @@
 /// Eight numbers at once: the compiler's vector types (g++, clang), in as many registers as the machine needs.
 ///
 /// No intrinsics: sums, products, comparisons and `a < b ? a : b` on vector types become the instructions of whatever
-/// is compiled for. Two operations have no portable form that compiles well, collecting the signs of a comparison, and
-/// multiplying and adding in one step: x86 has an instruction for each, elsewhere plain code does it.
+/// is compiled for. One operation has no portable form that compiles well, collecting the signs of a comparison: x86
+/// has an instruction for it, elsewhere plain code does it. Nothing is multiplied and added in one step, although most
+/// processors can: every processor then computes the same bits.
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+
+#include "dcem/core/instruction_set.hpp"
 
 namespace dcem {
 
@@ -19,9 +22,12 @@ using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 namespace detail {
 
+inline namespace DCEM_ISA {
+
 #if defined(__AVX__)
 using FloatPart = float __attribute__((vector_size(32)));
 using IntPart = std::int32_t __attribute__((vector_size(32)));
+using UintPart = std::uint32_t __attribute__((vector_size(32)));
 
 /// Lanes in one register.
 template <typename Part>
@@ -40,6 +46,7 @@ struct SimdLanes {
 #else
 using FloatPart = float __attribute__((vector_size(16)));
 using IntPart = std::int32_t __attribute__((vector_size(16)));
+using UintPart = std::uint32_t __attribute__((vector_size(16)));
 
 /// Lanes in two registers: a vector wider than a register is taken apart lane by lane by g++.
 template <typename Part>
@@ -74,7 +81,11 @@ inline constexpr std::size_t simd_part_lanes = sizeof(FloatPart) / sizeof(float)
 #endif
 }
 
+}  // namespace DCEM_ISA
+
 }  // namespace detail
+
+inline namespace DCEM_ISA {
 
 /// The result of a comparison: all bits of a lane are set where it holds.
 struct Mask8 {
@@ -110,6 +121,12 @@ struct Float8 {
   }
   [[gnu::always_inline]] explicit Float8(const std::array<float, simd_lanes>& numbers) {
     std::memcpy(&lanes, numbers.data(), sizeof lanes);
+  }
+  /// The eight numbers at an address, which need not be aligned.
+  [[gnu::always_inline]] static Float8 load(const void* numbers) {
+    Float8 result;
+    std::memcpy(&result.lanes, numbers, sizeof result.lanes);
+    return result;
   }
   [[gnu::always_inline]] Float8(const Float4& first, const Float4& last) {
 #if defined(__AVX__)
@@ -222,24 +239,15 @@ inline constexpr bool compares_integers = false;
   });
   return one;
 }
-/// Whether `one`, from zero on, is at most `other`, which may be anything. A zero with a sign counts as below zero.
-[[gnu::always_inline]] inline Mask8 not_later(Float8 one, const Float8& other) {
-  if constexpr (!compares_integers) return one <= other;
+/// Whether `one`, from zero on, is larger than `other`, which may be anything. A zero with a sign counts as below zero.
+[[gnu::always_inline]] inline Mask8 is_later(Float8 one, const Float8& other) {
   one.lanes.with(other.lanes, [](auto& part, const auto& by) {
-    part = std::bit_cast<detail::FloatPart>(std::bit_cast<detail::IntPart>(part) <= std::bit_cast<detail::IntPart>(by));
+    part = std::bit_cast<detail::FloatPart>(std::bit_cast<detail::IntPart>(part) > std::bit_cast<detail::IntPart>(by));
   });
   return std::bit_cast<Mask8>(one.lanes);
 }
-/// one · other + addend, in one rounding where the machine can.
-[[gnu::always_inline]] inline Float8 multiply_add(Float8 one, const Float8& other, const Float8& addend) {
-#if defined(__AVX__) && defined(__FMA__)
-  one.lanes.low = __builtin_ia32_vfmaddps256(one.lanes.low, other.lanes.low, addend.lanes.low);
-  return one;
-#else
-  return one * other + addend;
-#endif
-}
-
 }  // namespace simd
+
+}  // namespace DCEM_ISA
 
 }  // namespace dcem

@@ -19,8 +19,8 @@ struct ElementEnds {
 };
 
 /// `centre` is the end of the whole device: its elements ride on the same body and are mounted on the same facets.
-template <typename Tree>
-ElementEnds element_ends(const SceneTracer<Tree>& tracer, const LinkEnd& centre, const RadioEnd& device,
+template <typename Index>
+ElementEnds element_ends(const SceneTracer<Index>& tracer, const LinkEnd& centre, const RadioEnd& device,
                          double wavelength_m, TraversalCounters& counters) {
   ElementEnds ends;
   RadioEnd element = device;
@@ -40,12 +40,12 @@ ElementEnds element_ends(const SceneTracer<Tree>& tracer, const LinkEnd& centre,
 
 /// Solves the path that was found between the centres again for each pair of elements; a pair that has no such path has
 /// a zero in the channel. What only a pair of elements sees, and not the centres, is not looked for.
-template <typename Tree, SurfaceModel Surface, PathLossModel Loss>
+template <typename Index, SurfaceModel Surface, PathLossModel Loss>
 class ElementPaths {
  public:
   /// Everything named must outlive it.
-  ElementPaths(PathSolver<Tree>& solver, const FieldEvaluator<Surface, Loss>& evaluator, const ElementEnds& transmitter,
-               const ElementEnds& receiver)
+  ElementPaths(PathSolver<Index>& solver, const FieldEvaluator<Surface, Loss>& evaluator,
+               const ElementEnds& transmitter, const ElementEnds& receiver)
       : solver_(solver), evaluator_(evaluator), transmitter_(transmitter), receiver_(receiver) {}
 
   /// Rows are element·ports + port of the receiver, columns those of the transmitter.
@@ -74,7 +74,7 @@ class ElementPaths {
     return evaluator_.evaluate(std::move(*path), transmitter_.radio[from], receiver_.radio[to]).ports;
   }
 
-  PathSolver<Tree>& solver_;
+  PathSolver<Index>& solver_;
   const FieldEvaluator<Surface, Loss>& evaluator_;
   const ElementEnds& transmitter_;
   const ElementEnds& receiver_;

@@ -48,4 +48,10 @@ inline Vec3 angular_velocity(const Pose& pose, double yaw_rate_rad_per_s, double
          roll_rate_rad_per_s * rotation_matrix(pose)[0];
 }
 
+/// The difference of two angles in (−π, π]: half a turn goes to the left.
+inline double shortest_arc_rad(double from_rad, double to_rad) {
+  const double difference = std::remainder(to_rad - from_rad, 2.0 * pi);
+  return difference == -pi ? pi : difference;
+}
+
 }  // namespace dcem

@@ -16,16 +16,16 @@ namespace dcem {
 /// The paths from every transmitter to one receiver. An absent transmitter has none. With a `cache`, the sequences that
 /// it remembers are tried first, and afterwards it holds those of the paths found. `reached` says which edges each
 /// transmitter reaches, and is needed where diffractions are wanted.
-template <typename Tree>
-std::vector<LinkPaths> find_paths(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings,
+template <typename Index>
+std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSearchSettings& settings,
                                   const LinkEnd& receiver, const SphereKey& key,
                                   std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters,
                                   PathCache* cache = nullptr, std::span<const ReachedEdges> reached = {});
 
 /// The edges that one end reaches: by exhaustive search every one, in place of what `reach` holds; otherwise those that
 /// `rays` rays come by, in addition to it.
-template <typename Tree>
-void find_reach(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings, const LinkEnd& end,
+template <typename Index>
+void find_reach(const SceneTracer<Index>& tracer, const PathSearchSettings& settings, const LinkEnd& end,
                 const SphereKey& key, std::uint32_t rays, EdgeReach& reach, SearchCounters& counters);
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -62,13 +62,13 @@ inline void remember(PathCache& cache, std::span<const std::optional<LinkEnd>> t
 
 }  // namespace detail
 
-template <typename Tree>
-std::vector<LinkPaths> find_paths(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings,
+template <typename Index>
+std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSearchSettings& settings,
                                   const LinkEnd& receiver, const SphereKey& key,
                                   std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters,
                                   PathCache* cache, std::span<const ReachedEdges> reached) {
   DCEM_ASSERT(settings.max_diffractions == 0 || reached.size() == transmitters.size());
-  detail::PathSearch<Tree> search(tracer, settings, receiver, transmitters, counters);
+  detail::PathSearch<Index> search(tracer, settings, receiver, transmitters, counters);
   const bool steady = cache != nullptr && detail::remembers_all(*cache, transmitters);
   EdgeReach seen_now;
   EdgeReach& seen = cache != nullptr ? cache->reach() : seen_now;
@@ -87,8 +87,8 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Tree>& tracer, const PathSea
   return links;
 }
 
-template <typename Tree>
-void find_reach(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings, const LinkEnd& end,
+template <typename Index>
+void find_reach(const SceneTracer<Index>& tracer, const PathSearchSettings& settings, const LinkEnd& end,
                 const SphereKey& key, std::uint32_t rays, EdgeReach& reach, SearchCounters& counters) {
   const auto ignore_mirrors = [](const Sequence&, const std::vector<Vec3>&) {};
   if (settings.exhaustive) {
@@ -98,7 +98,7 @@ void find_reach(const SceneTracer<Tree>& tracer, const PathSearchSettings& setti
     search.for_each_sequence(end, ignore_mirrors);
     return;
   }
-  RayLauncher<Tree> launcher(tracer, {rays, settings.max_reflections, settings.max_transmissions});
+  RayLauncher<Index> launcher(tracer, {rays, settings.max_reflections, settings.max_transmissions});
   launcher.note_edges(reach, settings.edges, detail::most_mirrors_of_a_half(settings));
   launcher.for_each_sequence(end, launch_rotation(settings.seed, key.id, key.frame), ignore_mirrors);
   counters.rays += launcher.rays();

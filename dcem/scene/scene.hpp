@@ -2,23 +2,18 @@
 /// The world: materials, bodies and devices. The only state that changes from frame to frame.
 ///
 /// Body 0 is the standing scenery, every object is a body of its own.
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
-#include <utility>
 #include <vector>
 
-#include "dcem/core/error.hpp"
 #include "dcem/core/ids.hpp"
 #include "dcem/em/surface/material.hpp"
-#include "dcem/geometry/surfaces/facet_builder.hpp"
+#include "dcem/geometry/triangle_view.hpp"
 #include "dcem/scene/device.hpp"
 #include "dcem/world/frame.hpp"
 #include "dcem/world/world_geometry.hpp"
@@ -103,6 +98,8 @@ class Scene {
   std::span<const Vec3> vertices_m() const { return world_.vertices_m(); }
   std::span<const std::array<std::uint32_t, 3>> triangles() const { return world_.triangles(); }
   std::array<Vec3, 3> corners_m(std::uint32_t triangle) const { return world_.corners_m(triangle); }
+  /// Valid until the scene changes.
+  TriangleView triangle_view() const { return {vertices_m(), triangles()}; }
   FacetId facet_of_triangle(std::uint32_t triangle) const { return world_.facet_of_triangle(triangle); }
   /// Which enclosing shell of its body a triangle belongs to, counted from 1; 0: none.
   std::uint32_t shell_of_triangle(std::uint32_t triangle) const { return world_.shell_of_triangle(triangle); }
@@ -116,6 +113,8 @@ class Scene {
     return static_cast<std::size_t>(
         std::count_if(all.begin(), all.end(), [](const WorldFacet& facet) { return !facet.is_foliage; }));
   }
+  /// Whether any facet, there or not, lets anything pass.
+  bool has_sheets() const { return world_.has_sheets(); }
   /// Closed shells of foliage; empty boxes for those of an absent body.
   std::span<const FoliageShell> foliage() const { return world_.foliage(); }
   /// The number of a facet within its body: it does not change when other bodies come or go.
@@ -124,7 +123,7 @@ class Scene {
   /// The number of a wedge within its body.
   std::uint32_t wedge_number(WedgeId id) const { return id.value - world_.first(wedge(id).body).wedge; }
 
-  /// Index of the first triangle of each body: the groups of the tree.
+  /// Index of the first triangle of each body: the objects of an index over the triangles.
   std::vector<std::uint32_t> first_triangles() const;
   /// The triangles of a body as a range of indices [first, last).
   std::pair<std::uint32_t, std::uint32_t> triangle_range(BodyId id) const;
@@ -150,153 +149,8 @@ class Scene {
   WorldGeometry world_;
 };
 
-// ---------------------------------------------------------------------------------------------------------------------
-
-namespace detail {
-
-/// Does something, and puts `name` before the message where it throws std::invalid_argument.
-template <typename Action>
-void naming(const std::string& name, Action&& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(name + ": " + error.what());
-  }
-}
-
-}  // namespace detail
-
-inline MaterialId Scene::add_material(Material material) {
-  validate(material);
-  if (find_material(material.name)) {
-    throw std::invalid_argument("material '" + material.name + "' is there twice; expected a new name");
-  }
-  materials_.push_back(std::move(material));
-  return MaterialId(materials_.size() - 1);
-}
-
-inline std::optional<MaterialId> Scene::find_material(const std::string& name) const {
-  for (std::size_t index = 0; index < materials_.size(); ++index) {
-    if (materials_[index].name == name) return MaterialId(index);
-  }
-  return std::nullopt;
-}
-
-inline std::optional<BodyId> Scene::find_body(const std::string& id) const {
-  const auto found = body_by_id_.find(id);
-  return found == body_by_id_.end() ? std::nullopt : std::optional(found->second);
-}
-
-inline void Scene::set_scenery(const TriangleMesh& mesh) {
-  if (bodies_.size() != 1 || !triangles().empty()) {
-    throw std::invalid_argument("scene: the scenery is set once, before any object");
-  }
-  Body scenery{"", LinearMotion{}, build_surface_mesh(mesh, settings_)};
-  resolve_materials(scenery.mesh);
-  bodies_.clear();
-  states_.clear();
-  world_.clear();
-  append(std::move(scenery));
-}
-
-inline BodyId Scene::add_object(std::string id, const TriangleMesh& mesh, Motion motion) {
-  const std::string name = "object '" + id + "'";
-  if (id.empty() || id.find('/') != std::string::npos || find_body(id)) {
-    throw std::invalid_argument(name + ": expected an id that is not empty, has no slash and is not there yet");
-  }
-  Body body{std::move(id), std::move(motion), {}};
-  detail::naming(name, [&] {
-    validate(body.motion);
-    body.mesh = build_surface_mesh(mesh, settings_);
-    resolve_materials(body.mesh);
-  });
-  body_by_id_.emplace(body.id, BodyId(bodies_.size()));
-  append(std::move(body));
-  return BodyId(bodies_.size() - 1);
-}
-
-inline void Scene::add_body_pool(std::size_t count, const TriangleMesh& mesh) {
-  Body body{"", LinearMotion{}, build_surface_mesh(mesh, settings_), true};
-  resolve_materials(body.mesh);
-  for (std::size_t index = 0; index < count; ++index) append(body);
-  slot_count_ += count;
-}
-
-inline std::vector<SurfaceMaterial> Scene::resolve_materials(const SurfaceMesh& mesh) const {
-  std::vector<SurfaceMaterial> resolved(mesh.material_names.size());
-  for (const Facet& facet : mesh.facets) {
-    const std::string& name = mesh.material_names[facet.material];
-    const std::optional<MaterialId> id = find_material(name);
-    if (!id) throw std::invalid_argument("material '" + name + "' is used but not defined; add it first");
-    const Material& surface = material(*id);
-    resolved[facet.material] = {*id, transmits(surface), scatters(surface), is_foliage(surface)};
-  }
-  check_foliage_is_closed(mesh, resolved);
-  return resolved;
-}
-
-/// A length inside is defined for shells that are closed all around, and of one foliage.
-inline void Scene::check_foliage_is_closed(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials) {
-  std::vector<std::optional<std::uint32_t>> material_of_shell(mesh.shell_foot_m.size() + 1);
-  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
-    const std::uint32_t shell = mesh.shell_of_triangle[triangle];
-    const std::uint32_t material = mesh.facets[mesh.facet_of_triangle[triangle]].material;
-    const std::uint32_t first = material_of_shell[shell].value_or(material);
-    if (shell != 0) material_of_shell[shell] = first;
-    if (!materials[material].is_foliage && !materials[first].is_foliage) continue;
-    if (shell != 0 && !mesh.shell_stands[shell - 1] && first == material) continue;
-    const std::uint32_t foliage = materials[material].is_foliage ? material : first;
-    throw std::invalid_argument("material '" + mesh.material_names[foliage] +
-                                "' is foliage on a surface that is not closed, shares an edge with another one, or is "
-                                "of something else in part; expected closed shells of it alone");
-  }
-}
-
-inline void Scene::append(Body body) {
-  const BodyState state{!body.is_slot, placement_at(body.motion, 0.0)};
-  world_.append(body.mesh, resolve_materials(body.mesh), state);
-  states_.push_back(state);
-  bodies_.push_back(std::move(body));
-}
-
-inline void Scene::check_device(const Device& device, const std::unordered_set<std::string>& ids) const {
-  const std::string name = "device '" + device.id + "': ";
-  if (device.id.empty()) throw std::invalid_argument("device: its id is empty; expected a name");
-  if (ids.contains(device.id)) throw std::invalid_argument(name + "is there twice; expected a new id");
-  detail::naming("device '" + device.id + "'", [&] { validate(device.antenna); });
-  if (!std::isfinite(device.power_dbm)) throw std::invalid_argument(name + "power_dbm is not finite");
-  if (!device.attachment) {
-    detail::naming("device '" + device.id + "'", [&] { validate(device.motion); });
-  } else if (!find_body(device.attachment->object) && slot_count_ == 0) {
-    throw std::invalid_argument(name + "rides on '" + device.attachment->object + "', which is no object of the scene");
-  } else if (!is_finite(device.attachment->offset_m)) {
-    throw std::invalid_argument(name + "offset_m is not finite");
-  }
-}
-
-inline void Scene::add_transmitter(Device device) {
-  check_device(device, transmitter_ids_);
-  transmitter_ids_.insert(device.id);
-  transmitters_.push_back(std::move(device));
-}
-
-inline void Scene::add_receiver(Device device) {
-  check_device(device, receiver_ids_);
-  receiver_ids_.insert(device.id);
-  receivers_.push_back(std::move(device));
-}
-
-inline std::vector<std::uint32_t> Scene::first_triangles() const {
-  std::vector<std::uint32_t> first;
-  for (std::size_t index = 0; index < bodies_.size(); ++index) first.push_back(world_.first(BodyId(index)).triangle);
-  return first;
-}
-
-inline std::pair<std::uint32_t, std::uint32_t> Scene::triangle_range(BodyId id) const {
-  const std::uint32_t first = world_.first(id).triangle;
-  return {first, first + static_cast<std::uint32_t>(body(id).mesh.triangles.size())};
-}
-
 }  // namespace dcem
 
-#include "dcem/scene/scene_time.hpp"
+#if !defined(DCEM_ENGINE)
+#include "dcem/scene/scene_bodies.hpp"
+#endif

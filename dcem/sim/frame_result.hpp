@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "dcem/accel/binary/updater.hpp"
+#include "dcem/accel/tree_settings.hpp"
 #include "dcem/channel/link_statistics.hpp"
 #include "dcem/field/diffuse/diffuse_contribution.hpp"
 #include "dcem/field/path_contribution.hpp"
-#include "dcem/paths/discover/path_cache.hpp"
+#include "dcem/paths/discover/cache_counters.hpp"
 
 namespace dcem {
 

@@ -1,19 +1,15 @@
 #pragma once
 /// Everything a simulation can be told, one sentence, unit and default per field.
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
-#include <string>
-#include <variant>
 
-#include "dcem/accel/binary/updater.hpp"
+#include "dcem/accel/wide/settings.hpp"
+#include "dcem/em/diffraction/lossy_wedge.hpp"
 #include "dcem/em/medium/atmosphere.hpp"
 #include "dcem/em/medium/path_loss.hpp"
-#include "dcem/em/surface/itu_p2040.hpp"
-#include "dcem/field/diffraction_chain.hpp"
+#include "dcem/em/surface/itu_settings.hpp"
 #include "dcem/field/diffuse/diffuse_settings.hpp"
 
 namespace dcem {
@@ -77,8 +73,8 @@ struct SimulationSettings {
   double frequency_hz = 30e9;
   ItuSettings itu{};  ///< revision of the material tables, and whether they may be extrapolated
   PropagationSettings propagation{};
-  TreeUpdateSettings tree_update{};  ///< how the tree is kept while the scene moves. Never changes a result
-  unsigned threads = 0;              ///< 0: all cores. Never changes a result
+  WideTreeSettings tree{};     ///< how the tree is built, and kept while the scene moves. Never changes a result
+  unsigned threads = 0;        ///< 0: all cores. Never changes a result
   bool share_map_work = true;  ///< work that is the same at all points of a map is done once. Never changes a result
 };
 
@@ -105,27 +101,10 @@ inline int interaction_order(const PropagationSettings& propagation) {
 }
 
 /// Throws std::invalid_argument, naming the field, where a value is out of range.
-inline void validate(const SimulationSettings& settings) {
-  const auto check = [](bool holds, const char* message) {
-    if (!holds) throw std::invalid_argument(message);
-  };
-  const PropagationSettings& propagation = settings.propagation;
-  check(settings.frequency_hz > 0.0 && settings.frequency_hz <= 1e15, "frequency_hz: expected a number in (0, 1e15]");
-  check(propagation.max_reflections >= 0 && propagation.max_reflections <= 10, "max_reflections: expected 0 to 10");
-  check(propagation.max_transmissions >= 0 && propagation.max_transmissions <= 10,
-        "max_transmissions: expected 0 to 10");
-  check(propagation.max_diffractions >= 0 && propagation.max_diffractions <= 3, "max_diffractions: expected 0 to 3");
-  const double least_deg = propagation.diffraction.min_exterior_angle_deg;
-  check(least_deg > 180.0 && least_deg <= 360.0, "min_exterior_angle_deg: expected above 180, at most 360");
-  check(!propagation.max_interactions || *propagation.max_interactions >= 0, "max_interactions: expected 0 or more");
-  check(!propagation.min_path_gain_db || std::isfinite(*propagation.min_path_gain_db),
-        "min_path_gain_db: expected a finite number");
-  if (const auto* close_in = std::get_if<CloseIn>(&propagation.path_loss.model)) validate(*close_in);
-  check(propagation.rays >= 1 && propagation.rays <= 100'000'000, "rays: expected 1 to 1e8");
-  check(steady_rays(propagation) >= 1 && steady_rays(propagation) <= 100'000'000, "rays_steady: expected 1 to 1e8");
-  if (propagation.atmosphere) validate(*propagation.atmosphere);
-  validate(propagation.diffuse);
-  validate(settings.tree_update);
-}
+void validate(const SimulationSettings& settings);
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/sim/settings_bodies.hpp"
+#endif

@@ -1,62 +1,49 @@
 #pragma once
 /// The whole line: scene and settings in, links out, frame by frame.
 #include <cstddef>
-#include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include "dcem/accel/binary/updater.hpp"
-#include "dcem/accel/bvh.hpp"
-#include "dcem/channel/link_statistics.hpp"
 #include "dcem/channel/radio_map.hpp"
-#include "dcem/core/parallel_for.hpp"
-#include "dcem/field/diffuse/diffuse_power.hpp"
-#include "dcem/field/element_paths.hpp"
-#include "dcem/field/field_evaluator.hpp"
-#include "dcem/field/medium_loss.hpp"
-#include "dcem/paths/path_finder.hpp"
-#include "dcem/paths/query/obstruction.hpp"
+#include "dcem/field/path_contribution.hpp"
+#include "dcem/paths/sequence.hpp"
 #include "dcem/scene/scene.hpp"
-#include "dcem/sim/detail/scene_tree.hpp"
-#include "dcem/sim/discovery.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/settings.hpp"
 
 namespace dcem {
 
-/// Owns the scene and the tree over it. `Surface` says how surfaces reflect and transmit: the scene's materials, or a
-/// model of the caller's own. `Tree` is `WideBvh`, `Bvh<double>`, or `BruteForce<double>` to check them.
-template <SurfaceModel Surface = MaterialTable, typename Tree = WideBvh>
+class WideIndex;
+
+/// Owns the scene and the tree over it.
 class Simulator {
  public:
   /// Throws std::invalid_argument where a setting is out of range or a material is not tabled at the frequency.
-  Simulator(Scene scene, SimulationSettings settings) requires std::same_as<Surface, MaterialTable>
-      : Simulator(std::move(scene), settings, nullptr) {}
+  Simulator(Scene scene, const SimulationSettings& settings);
+  ~Simulator();
+  Simulator(Simulator&&) noexcept;
+  Simulator& operator=(Simulator&&) noexcept;
 
-  /// With a reflection model of the caller's own.
-  Simulator(Scene scene, SimulationSettings settings, Surface surface);
-
-  const Scene& scene() const { return scene_; }
-  const SimulationSettings& settings() const { return settings_; }
-  const Tree& tree() const { return tree_; }
-  const Surface& surface() const { return surface_; }
-  Discovery discovery() const { return discovery_; }  ///< exact or sampled: what is really done
-  CacheMode cache() const { return cache_; }          ///< off or seed: what is really remembered
+  const Scene& scene() const;
+  const SimulationSettings& settings() const;
+  Discovery discovery() const;     ///< exact or sampled: what is really done
+  CacheMode cache() const;         ///< off or seed: what is really remembered
+  const WideIndex& index() const;  ///< over the scene's triangles (dcem/accel/wide_index.hpp)
 
   /// Moves the scene to a frame and solves all links, starting from what is remembered of the frame before.
   FrameResult advance(const Frame& frame);
   /// The same for the instant `time_s`, by the motions of the scene.
-  FrameResult advance_to(double time_s, std::size_t index = 0) { return advance(scene_.frame_at(time_s, index)); }
+  FrameResult advance_to(double time_s, std::size_t index = 0);
 
   /// Links from all transmitters to receivers of the caller's, in the current frame, by transmitter, then receiver.
   /// `LinkResult::receiver` is the index in `receivers`. Nothing is remembered.
   std::vector<LinkResult> solve(std::span<const Device> receivers, WorkCounters* work = nullptr) const;
 
   /// Whether a device is there in the current frame.
-  bool is_present(const Device& device) const { return scene_.device_state(device, frame_).present; }
+  bool is_present(const Device& device) const;
 
   /// Moves scene and tree to a frame without solving anything.
   TreeUpdateReport move_to(const Frame& frame);
@@ -71,107 +58,12 @@ class Simulator {
                                    WorkCounters* work = nullptr) const;
 
  private:
-  using Tracer = SceneTracer<Tree>;
-  using Evaluator = FieldEvaluator<Surface, AnyPathLoss>;
-
-  /// A transmitter as paths and as fields see it; absent while its object is away.
-  struct TransmitterEnds {
-    std::vector<std::optional<LinkEnd>> link;
-    std::vector<RadioEnd> radio;
-    std::vector<ReachedEdges> reached;  ///< the edges within reach; empty lists where no diffraction is wanted
-    std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
-    std::vector<char> embedded;         ///< edges that no path can use; empty where nobody has looked
-    WorkCounters work;                  ///< what finding them took
-  };
-
-  /// One end of a link, as paths and as fields see it.
-  struct DeviceEnd {
-    const LinkEnd& link;
-    const RadioEnd& radio;
-  };
-
-  Simulator(Scene scene, SimulationSettings settings, std::nullptr_t) requires std::same_as<Surface, MaterialTable>
-      : Simulator(scene, settings,
-                  MaterialTable({scene.materials().begin(), scene.materials().end()}, settings.frequency_hz,
-                                settings.itu)) {}
-
-  /// A solution of some receivers, with what it took.
-  struct Solved {
-    std::vector<LinkResult> links;
-    WorkCounters work;
-    CacheCounters cache;
-  };
-
-  TreeUpdateReport update_tree(const ChangeSet& changes);
-  LinkEnd link_end(const DeviceState& state, TraversalCounters& counters) const {
-    return make_link_end(Tracer(scene_, tree_), state.position_m, state.ignored_body, counters);
-  }
-  void forget_replaced(const ChangeSet& changes, CacheCounters& counters);
-  Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters,
-                   std::span<PathCache> caches) const;
-  /// With `reach`, which has an entry per transmitter, edges that were within reach in frames before count, too.
-  /// `embedded` as in `EdgeRules`.
-  TransmitterEnds transmitter_ends(std::span<EdgeReach> reach, std::vector<char> embedded = {}) const;
-  void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
-  Evaluator evaluator() const {
-    const PropagationSettings& propagation = settings_.propagation;
-    return Evaluator(scene_, surface_, propagation.path_loss, settings_.frequency_hz,
-                     {propagation.diffraction.lossy_wedge, propagation.max_transmissions}, medium_);
-  }
-  PathSearchSettings search_settings(std::span<const char> embedded_edges = {}) const;
-  std::span<const std::optional<LinkEnd>> ends_beside(const Device& receiver, const TransmitterEnds& transmitters,
-                                                      std::vector<std::optional<LinkEnd>>& others) const;
-  /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
-  Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
-                        PathCache* cache) const;
-  /// What rough surfaces bring to one receiver, by transmitter; empty entries where it is not asked for.
-  std::vector<DiffusePower> diffuse_powers(const std::string& receiver, const LinkEnd& end, const RadioEnd& to,
-                                           const TransmitterEnds& transmitters,
-                                           std::span<const std::optional<LinkEnd>> ends, WorkCounters& work) const;
-  LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const DeviceEnd& from,
-                       const DeviceEnd& to, const Evaluator& evaluator) const;
-  /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
-  void trace_elements(std::span<PathContribution> paths, const DeviceEnd& from, const DeviceEnd& to,
-                      const Evaluator& evaluator) const;
-  static RadioMapPoint map_point(const LinkResult& link, const Vec3& position_m);
-
-  Scene scene_;
-  SimulationSettings settings_;
-  Surface surface_;
-  Tree tree_;
-  MediumLoss medium_;
-  UpdaterOf<Tree> updater_;
-  Discovery discovery_;
-  CacheMode cache_;
-  std::vector<std::uint32_t> moved_;  ///< triangles that the tree has still to hear of
-  std::vector<PathCache> caches_;     ///< one per receiver of the scene; none where the cache is off
-  std::vector<EdgeReach> reach_;      ///< one per transmitter; none where the cache is off
-  Frame frame_;
+  struct Body;
+  std::unique_ptr<Body> body_;
 };
-
-// ---------------------------------------------------------------------------------------------------------------------
-
-template <SurfaceModel Surface, typename Tree>
-Simulator<Surface, Tree>::Simulator(Scene scene, SimulationSettings settings, Surface surface)
-    : scene_(std::move(scene)),
-      settings_(std::move(settings)),
-      surface_(std::move(surface)),
-      updater_(settings_.tree_update) {
-  validate(settings_);
-  medium_ = MediumLoss(settings_.propagation.atmosphere, scene_.materials(), settings_.frequency_hz);
-  discovery_ = resolve_discovery(settings_.propagation, scene_);
-  cache_ = resolve_cache(settings_.propagation, discovery_);
-  if (cache_ == CacheMode::seed) {
-    caches_.resize(scene_.receivers().size());
-    reach_.resize(scene_.transmitters().size());
-  }
-  frame_ = scene_.frame_at(0.0);
-  scene_.apply(frame_);
-  build_tree(tree_, scene_);
-}
 
 }  // namespace dcem
 
-#include "dcem/sim/detail/simulator_frames.hpp"
-#include "dcem/sim/detail/simulator_links.hpp"
-#include "dcem/sim/detail/simulator_maps.hpp"
+#if !defined(DCEM_ENGINE)
+#include "dcem/sim/simulator_bodies.hpp"
+#endif

@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "dcem/dcem.hpp"
-#include "dcem/io/compiled_simulator.hpp"
+#include "dcem/em/diffraction/wedge_diffraction.hpp"
+#include "dcem/em/surface/material_table.hpp"
 #include "dcem/io/line_chart.hpp"
+#include "dcem/sim/simulator.hpp"
 
 namespace {
 
@@ -289,7 +291,7 @@ std::vector<Complex> walk_round_corner(const CornerMaterial& material, const std
     walker.push_back(dcem::device_at("step" + std::to_string(walker.size()), places_m.back()));
   }
   const double wavelength_m = dcem::speed_of_light_mps / settings.frequency_hz;
-  dcem::Simulator<> simulator(std::move(scene), settings);
+  dcem::Simulator simulator(std::move(scene), settings);
   const std::vector<dcem::LinkResult> links = simulator.solve(walker);
   std::vector<Complex> fields;
   for (std::size_t step = 0; step < links.size(); ++step) {

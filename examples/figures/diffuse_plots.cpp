@@ -10,17 +10,17 @@
 #include <vector>
 
 #include "dcem/dcem.hpp"
-#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/line_chart.hpp"
 #include "dcem/io/map_writer.hpp"
 #include "dcem/io/scenario.hpp"
+#include "dcem/sim/simulator.hpp"
 
 namespace {
 
 constexpr double bin_s = 1e-9, floor_dbm = -100.0;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-dcem::Simulator<> office(const dcem::io::Scenario& scenario, bool diffuse) {
+dcem::Simulator office(const dcem::io::Scenario& scenario, bool diffuse) {
   dcem::SimulationSettings settings = scenario.settings;
   settings.propagation.diffuse.enabled = diffuse;
   settings.propagation.diffuse.tolerance_db = 0.5;  // what the colours of a picture can show
@@ -28,7 +28,7 @@ dcem::Simulator<> office(const dcem::io::Scenario& scenario, bool diffuse) {
   return {scenario.scene, settings};
 }
 
-dcem::io::HeatMap picture(const dcem::Simulator<>& simulator, const dcem::RadioMap& map) {
+dcem::io::HeatMap picture(const dcem::Simulator& simulator, const dcem::RadioMap& map) {
   return dcem::io::map_picture(map, simulator.scene(), simulator.scene().frame_at(0.0),
                                simulator.settings().frequency_hz);
 }
@@ -38,7 +38,7 @@ void draw_maps(const dcem::io::Scenario& scenario) {
   grid.origin_m += dcem::Vec3(0.15, 0.15, 0.0);
   grid.spacing_m = {0.5, 0.5};
   grid.count = {40, 24};
-  const dcem::Simulator<> without = office(scenario, false), with = office(scenario, true);
+  const dcem::Simulator without = office(scenario, false), with = office(scenario, true);
   dcem::io::HeatMap off = picture(without, without.radio_maps(grid).at(0));
   dcem::io::HeatMap on = picture(with, with.radio_maps(grid).at(0));
   off.range = on.range = dcem::io::default_value_range(on);
@@ -80,7 +80,7 @@ double diffuse(const dcem::PdpTap& tap) {
 }
 
 void draw_profile(const dcem::io::Scenario& scenario) {
-  dcem::Simulator<> simulator = office(scenario, true);
+  dcem::Simulator simulator = office(scenario, true);
   simulator.advance_to(0.0);
   const std::vector<dcem::Device> receivers{dcem::device_at("room", {11.3, 3.1, 1.5})};
   const dcem::LinkResult link = simulator.solve(receivers).at(0);

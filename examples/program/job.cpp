@@ -55,7 +55,7 @@ Job prepare_job(const ScenarioOptions& options) {
   return job;
 }
 
-Simulator<> make_simulator(Job& job, const ScenarioOptions& options) {
+Simulator make_simulator(Job& job, const ScenarioOptions& options) {
   try {
     return {std::move(job.scenario.scene), job.scenario.settings};
   } catch (const std::invalid_argument& error) {
@@ -90,7 +90,7 @@ void expand_grids(io::Scenario& scenario, const std::string& file) {
   }
 }
 
-io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t receivers) {
+io::RunFacts run_facts(const Job& job, const Simulator& simulator, std::size_t receivers) {
   return {DCEM_VERSION,      job.scenario.name, simulator.settings(), simulator.discovery(), simulator.cache(),
           job.scenario.time, receivers,         job.scenario.warnings};
 }
@@ -100,7 +100,7 @@ void print_warnings(const std::vector<std::string>& warnings, const ScenarioOpti
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
 }
 
-std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator,
+std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
                                               std::size_t map_points_per_frame) {
   if (!job.scenario.output.html) return nullptr;
   const io::ViewerFacts facts{job.scenario.name, simulator.settings().frequency_hz, job.frames.first,

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/summary.hpp"
 #include "dcem/io/viewer_writer.hpp"
+#include "dcem/sim/simulator.hpp"
 #include "options.hpp"
 
 namespace dcem::program {
@@ -28,16 +28,16 @@ void require_grid_memory(const io::Scenario& scenario, const std::string& file, 
 void expand_grids(io::Scenario& scenario, const std::string& file);
 
 /// Takes the scene out of the job. What the simulator refuses is an InputError that names the scenario file.
-Simulator<> make_simulator(Job& job, const ScenarioOptions& options);
+Simulator make_simulator(Job& job, const ScenarioOptions& options);
 
-io::RunFacts run_facts(const Job& job, const Simulator<>& simulator, std::size_t receivers);
+io::RunFacts run_facts(const Job& job, const Simulator& simulator, std::size_t receivers);
 
 /// One line per warning on the error stream, unless the user wants quiet. Called when nothing in the input can be wrong
 /// any more, because an error is to be the only line.
 void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options);
 
 /// The page of results, where the scenario asks for it; otherwise nothing.
-std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator,
+std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
                                               std::size_t map_points_per_frame = 0);
 
 /// Writes the page; what it leaves out is a warning of the summary.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dcem/core/instruction_set.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/input_error.hpp"
 #include "options.hpp"
@@ -42,6 +43,21 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, const std::s
       ->check(CLI::IsMember(words));
 }
 
+const std::map<std::string, InstructionSet> instruction_sets{
+    {"baseline", InstructionSet::baseline}, {"avx2", InstructionSet::avx2}, {"avx512", InstructionSet::avx512}};
+
+void choose_instructions(const std::string& word) {
+  try {
+    select_instruction_set(instruction_sets.at(word));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what(), "a level that this processor has");
+  }
+}
+
+std::string version_text() {
+  return "dcem " DCEM_VERSION "\nrays are traced with: " + std::string(name_of(instruction_set()));
+}
+
 void add_common_options(CLI::App& command, ScenarioOptions& options) {
   command.add_option("scenario", options.scenario, "The scenario file (JSON)")->required()->type_name("SCENARIO.json");
   command.add_option("--threads", options.threads, "Number of threads (default: all cores); never changes a result")
@@ -61,6 +77,12 @@ void add_common_options(CLI::App& command, ScenarioOptions& options) {
                   "Rays per receiver, with --discovery sampled; with --cache seed in the first frame")
       ->type_name("N");
   command.add_option("--seed", options.overrides.seed, "Turns the sphere of rays")->type_name("S");
+  command
+      .add_option_function<std::string>(
+          "--instructions", choose_instructions,
+          "Instructions that trace rays (default: the best that the processor has); never changes a result")
+      ->check(CLI::IsMember({"baseline", "avx2", "avx512"}))
+      ->type_name("LEVEL");
   add_choice(command, "--progress", "Progress bar: auto (on a terminal), always or never", progress_modes,
              options.progress)
       ->type_name("WHEN");
@@ -107,7 +129,7 @@ void add_absent_command(CLI::App& app, const std::string& name, const std::strin
 }
 
 void add_commands(CLI::App& app, Options& options) {
-  app.set_version_flag("--version", "dcem " DCEM_VERSION, "Print the version");
+  app.set_version_flag("--version", version_text, "Print the version, and which instructions trace rays");
   app.require_subcommand(1);
   CLI::App* run = app.add_subcommand("run", "Every frame of a scenario: paths, received power, delay profiles");
   add_scenario_options(*run, options.scenario);

@@ -60,7 +60,7 @@ void add_figures(const RadioMap& map, io::FrameFigures& figures) {
 /// Writes the files of the maps of one frame.
 class MapFiles {
  public:
-  MapFiles(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator, const Frame& frame)
+  MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& simulator, const Frame& frame)
       : folder_(folder),
         wanted_(job.scenario.output.map),
         scene_(simulator.scene()),
@@ -137,7 +137,7 @@ class MapFiles {
   std::optional<double> noise_dbm_;
 };
 
-io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, Simulator<>& simulator, const Frame& frame,
+io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, Simulator& simulator, const Frame& frame,
                            io::ViewerWriter* viewer, io::ProgressBar& bar) {
   const FrameResult result = simulator.advance(frame);
   io::FrameFigures figures = io::figures_of(result);
@@ -167,7 +167,7 @@ void map_scenario(const ScenarioOptions& options) {
   const auto transmitters = static_cast<double>(job.scenario.scene.transmitters().size());
   require_grid_memory(job.scenario, options.scenario, transmitters * sizeof(RadioMapPoint));
   io::FrameSource frames(job.scenario);
-  Simulator<> simulator = make_simulator(job, options);
+  Simulator simulator = make_simulator(job, options);
   io::OutputFolder folder(job.folder);
   const std::size_t points = point_count(job.scenario);
   io::RunSummary summary(run_facts(job, simulator, points), simulator.scene());

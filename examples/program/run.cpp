@@ -21,7 +21,7 @@ void write_frame(io::ResultWriter& writer, const FrameResult& result, const Scen
   }
 }
 
-void solve_frames(Simulator<>& simulator, const Job& job, const ScenarioOptions& options, io::FrameSource& frames,
+void solve_frames(Simulator& simulator, const Job& job, const ScenarioOptions& options, io::FrameSource& frames,
                   io::ResultWriter& writer, io::ViewerWriter* viewer, io::RunSummary& summary) {
   io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
   for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
@@ -34,7 +34,7 @@ void solve_frames(Simulator<>& simulator, const Job& job, const ScenarioOptions&
   }
 }
 
-io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Simulator<>& simulator,
+io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
                              const ScenarioOptions& options) {
   const DiffuseSettings& diffuse = simulator.settings().propagation.diffuse;
   const io::ResultFacts facts{simulator.discovery(), simulator.settings().frequency_hz,
@@ -67,7 +67,7 @@ void run_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
   expand_grids(job.scenario, options.scenario);
   io::FrameSource frames(job.scenario);
-  Simulator<> simulator = make_simulator(job, options);
+  Simulator simulator = make_simulator(job, options);
   const auto receivers = simulator.scene().receivers();
   io::OutputFolder folder(job.folder);
   io::ResultWriter writer = make_writer(folder, job, simulator, options);

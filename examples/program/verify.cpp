@@ -3,6 +3,7 @@
 
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/text_table.hpp"
+#include "dcem/sim/verify/verifier.hpp"
 #include "job.hpp"
 
 namespace dcem::program {
@@ -29,7 +30,7 @@ void add_recall(io::TextTable& table, const VerificationReport& report) {
   table.add_row({"from the 21st frame on", share_text(settled)});
 }
 
-std::string table_of(const VerificationReport& report, const Simulator<>& simulator) {
+std::string table_of(const VerificationReport& report, const Simulator& simulator) {
   const bool sampled = simulator.discovery() == Discovery::sampled;
   io::TextTable table({{"", io::TextTable::Align::left}, {"", io::TextTable::Align::left}});
   table.add_row({"frames", std::to_string(report.frames)});
@@ -54,8 +55,8 @@ void verify_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
   expand_grids(job.scenario, options.scenario);
   io::FrameSource frames(job.scenario);
-  Simulator<> simulator = make_simulator(job, options);
-  Verifier<> verifier(simulator.scene(), simulator.settings(), simulator.surface());
+  Simulator simulator = make_simulator(job, options);
+  Verifier verifier(simulator.scene(), simulator.settings());
   print_warnings(job.scenario.warnings, options);
   io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
   for (std::size_t index = job.frames.first; index < job.frames.last; ++index) {

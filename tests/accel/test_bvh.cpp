@@ -7,7 +7,7 @@
 
 #include "dcem/accel/brute_force.hpp"
 #include "dcem/accel/bvh.hpp"
-#include "dcem/core/parallel_for.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "tests/accel/random_boxes.hpp"
 
 using namespace dcem;

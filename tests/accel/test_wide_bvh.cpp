@@ -14,7 +14,9 @@
 
 using namespace dcem;
 using dcem_test::any_ray;
+using dcem_test::exact_hits;
 using dcem_test::fault_of_closest;
+using dcem_test::fault_of_hits;
 using dcem_test::hits_on_line;
 using dcem_test::infinity;
 using dcem_test::not_a_number;
@@ -29,8 +31,12 @@ struct Built {
   WideMesh mesh;
   std::vector<Aabb<double>> boxes;
   WideBvh tree;
+  bool has_lines = false;
 
-  explicit Built(WideMesh given, const WideSettings& settings = {}) : mesh(std::move(given)), boxes(mesh.boxes()) {
+  explicit Built(WideMesh given, const WideBuildSettings& settings = {}) : mesh(std::move(given)), boxes(mesh.boxes()) {
+    for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+      has_lines = has_lines || dcem_test::is_line(mesh.corners(triangle));
+    }
     tree.build(mesh.view(), boxes, settings);
     REQUIRE(tree.validate(boxes) == "");
   }
@@ -41,57 +47,36 @@ struct Built {
   }
 };
 
-std::optional<TriangleHit> closest_by_callback(const WideBvh& tree, const WideMesh& mesh, const Ray<double>& ray) {
-  std::optional<TriangleHit> best;
-  const WatertightRay exact(ray);
-  tree.closest(ray, [&](std::uint32_t triangle, double& t_max) {
-    const auto t = exact.intersect(mesh.corners(triangle));
-    if (!t || !(*t >= ray.t_min && *t <= t_max)) return;
-    best = TriangleHit{*t, triangle};
-    t_max = *t;
-  });
-  return best;
-}
-
-/// All ray queries against the oracle.
-void check_ray(const Built& scene, const Ray<double>& ray, RandomStream& random) {
+/// All queries of one ray: against the oracle that knows how far roundings reach, and to the last bit against the same
+/// arithmetic without a tree.
+void check_ray(const Built& scene, const Ray<double>& ray) {
   INFO(text_of(ray));
-  const WideBvh& tree = scene.tree;
   const std::vector<OracleHit> line = hits_on_line(scene.mesh, ray);
-  REQUIRE(fault_of_closest(line, ray, tree.closest_hit(ray)) == "");
-  REQUIRE(fault_of_closest(line, ray, closest_by_callback(tree, scene.mesh, ray)) == "");
+  REQUIRE(fault_of_closest(line, ray, scene.tree.closest_hit(ray)) == "");
+  const auto is_sound = [&](const TriangleHit& hit) { return !dcem_test::is_line(scene.mesh.corners(hit.triangle)); };
+  const HitFilter filter = scene.has_lines ? filter_by(is_sound) : HitFilter{};
+  REQUIRE(fault_of_hits(scene.tree, exact_hits(scene.mesh, ray, filter), ray, filter) == "");
   const int in_the_way = dcem_test::oracle_occluded(line, ray);
-  const auto first_try = static_cast<std::uint32_t>(random.next() % scene.mesh.triangles.size());
-  const auto every = [](std::uint32_t) { return true; };
-  if (in_the_way >= 0) {
-    REQUIRE(tree.occluded(ray) == (in_the_way == 1));
-    REQUIRE(tree.occluded(ray, every, nullptr, first_try) == (in_the_way == 1));
-  }
-  const WatertightRay exact(ray);
-  const auto is_met = [&](std::uint32_t triangle) {
-    const auto t = exact.intersect(scene.mesh.corners(triangle));
-    return t && *t >= ray.t_min && *t <= ray.t_max;
-  };
-  if (in_the_way >= 0) REQUIRE(tree.any(ray, is_met) == (in_the_way == 1));
-  const auto all = reported([&](auto leaf) { tree.all(ray, leaf); });
-  REQUIRE(std::ranges::adjacent_find(all) == all.end());
-  for (const OracleHit& hit : line) {
-    if (hit.t - hit.tolerance <= ray.t_min || hit.t + hit.tolerance >= ray.t_max) continue;
-    REQUIRE(std::ranges::binary_search(all, hit.triangle));
-  }
-  REQUIRE(std::ranges::all_of(all, [&](std::uint32_t triangle) { return scene.mesh.is_there(triangle); }));
+  if (in_the_way >= 0) REQUIRE(scene.tree.occluded(ray) == (in_the_way == 1));
 }
 
 void check_rays(const Built& scene, int trials, std::uint64_t seed) {
   RandomStream random(seed);
   const Aabb<double> bounds = scene.bounds();
-  int hits = 0;
+  std::vector<RayQuery> queries;
   for (int trial = 0; trial < trials; ++trial) {
-    const Ray<double> ray = any_ray(random, scene.mesh, bounds);
-    check_ray(scene, ray, random);
-    hits += scene.tree.closest_hit(ray) ? 1 : 0;
+    queries.push_back({any_ray(random, scene.mesh, bounds)});
+    check_ray(scene, queries.back().ray);
   }
-  CHECK(hits > trials / 20);
+  std::vector<std::optional<TriangleHit>> hits(queries.size());
+  scene.tree.closest_hits(queries, hits);
+  int found = 0;
+  for (std::size_t ray = 0; ray < queries.size(); ++ray) {
+    INFO(text_of(queries[ray].ray));
+    REQUIRE(hits[ray] == scene.tree.closest_hit(queries[ray].ray));
+    found += hits[ray] ? 1 : 0;
+  }
+  CHECK(found > trials / 20);
 }
 
 void check_regions(const Built& scene, int trials, std::uint64_t seed) {
@@ -168,7 +153,7 @@ TEST_CASE("bent quadrilaterals, also along their surface") {
                     dcem_test::between(random, -height, height));
       Ray<double> ray = segment_between(from, to);
       if (trial % 3 == 0) ray.t_min = random.uniform();
-      check_ray(scene, ray, random);
+      check_ray(scene, ray);
     }
   }
 }
@@ -187,7 +172,7 @@ TEST_CASE("a pair folded at its diagonal, met twice: the nearer hit counts, and 
     Ray<double> ray = segment_between(from, to);
     if (trial % 2 == 0) ray.t_min = random.uniform();
     if (trial % 5 == 0) ray.t_max = ray.t_min + random.uniform();
-    check_ray(scene, ray, random);
+    check_ray(scene, ray);
   }
 }
 
@@ -215,7 +200,7 @@ TEST_CASE("one thing beside the origin of a map, another at its far end") {
   const Built scene(mesh);
   RandomStream random(77);
   const Aabb<double> there = inflated(Aabb<double>{Vec3(-2e4, 1e4, 0), Vec3(-2e4, 1e4, 0)}, 0.01);
-  for (int trial = 0; trial < 3000; ++trial) check_ray(scene, any_ray(random, mesh, there), random);
+  for (int trial = 0; trial < 3000; ++trial) check_ray(scene, any_ray(random, mesh, there));
 }
 
 TEST_CASE("objects stacked on one point") {
@@ -235,7 +220,7 @@ TEST_CASE("sizes that double from one to the next: the tree stays shallow enough
     mesh.add(Vec3(size, 0, 0), Vec3(1.3 * size, 0.2 * size, 0), Vec3(1.1 * size, 0.1 * size, 0.4 * size));
   }
   for (const std::uint32_t limit : {512U, 0U}) {
-    WideSettings settings;
+    WideBuildSettings settings;
     settings.object_subtree_limit = limit;
     const Built scene(mesh, settings);
     CHECK(scene.tree.closest_hit({Vec3(1e12, 1e11, 1e11), Vec3(-1, -0.1, -0.1)}).has_value() ==
@@ -249,15 +234,13 @@ TEST_CASE("an empty tree, and a tree of triangles that are not there") {
   const auto all_of = [&](const WideBvh& tree) {
     std::size_t count = 0;
     const auto leaf = [&](std::uint32_t) { ++count; };
-    tree.all(ray, leaf);
     tree.overlapping({Vec3(-100), Vec3(100)}, leaf);
     tree.visit([](const Aabb<double>&) { return true; }, leaf);
-    tree.closest(ray, [&](std::uint32_t, double&) { ++count; });
+    tree.visit_hits(ray, {}, [&](const TriangleHit&) { return ++count, false; });
     return count;
   };
   CHECK(!none.tree.closest_hit(ray));
   CHECK(!none.tree.occluded(ray));
-  CHECK(!none.tree.occluded(ray, WideBvh::EveryTriangle{}, nullptr, 3U));
   CHECK(all_of(none.tree) == 0);
   CHECK(none.tree.bounds().empty());
   const Built gone(without_every(dcem_test::boxes_mesh(5, 91), 1));
@@ -277,29 +260,6 @@ TEST_CASE("a triangle with an empty box is not there, be it half of a pair") {
   }
 }
 
-TEST_CASE("what a query considers is all that it finds") {
-  WideMesh mesh = dcem_test::boxes_mesh(50, 101);
-  for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
-    mesh.surface.push_back(triangle / 2 % 7);
-  const Built scene(mesh);
-  RandomStream random(102);
-  for (int trial = 0; trial < 3000; ++trial) {
-    const Ray<double> ray = any_ray(random, mesh, scene.bounds());
-    INFO(text_of(ray));
-    const std::uint32_t left_out = static_cast<std::uint32_t>(trial) % 7;
-    const auto considers = [&](std::uint32_t triangle) { return mesh.surface[triangle] != left_out; };
-    std::vector<OracleHit> line = hits_on_line(mesh, ray);
-    std::erase_if(line, [&](const OracleHit& hit) { return !considers(hit.triangle); });
-    REQUIRE(fault_of_closest(line, ray, scene.tree.closest_hit(ray, considers)) == "");
-    const int in_the_way = dcem_test::oracle_occluded(line, ray);
-    if (in_the_way < 0) continue;
-    const auto first_try = static_cast<std::uint32_t>(random.next() % mesh.triangles.size());
-    REQUIRE(scene.tree.occluded(ray, considers) == (in_the_way == 1));
-    REQUIRE(scene.tree.occluded(ray, considers, nullptr, first_try) == (in_the_way == 1));
-    REQUIRE(scene.tree.occluded(ray, considers, nullptr, 0xfffffff0U) == (in_the_way == 1));
-  }
-}
-
 TEST_CASE("directions of any length, components of zero, and rays from behind") {
   const Built scene(dcem_test::boxes_mesh(40, 111));
   RandomStream random(112);
@@ -311,7 +271,7 @@ TEST_CASE("directions of any length, components of zero, and rays from behind") 
     ray.t_max /= factor;
     if (trial % 5 == 0) ray.t_min = -random.uniform() / factor;
     if (trial % 7 == 0) ray.direction[trial % 3] *= 1e-23;
-    check_ray(scene, ray, random);
+    check_ray(scene, ray);
   }
 }
 
@@ -348,9 +308,6 @@ TEST_CASE("rays that are none meet nothing") {
     INFO(text_of(ray));
     CHECK(!scene.tree.closest_hit(ray));
     CHECK(!scene.tree.occluded(ray));
-    for (std::uint32_t first_try = 0; first_try < scene.mesh.triangles.size(); ++first_try) {
-      REQUIRE(!scene.tree.occluded(ray, WideBvh::EveryTriangle{}, nullptr, first_try));
-    }
   };
   const Vec3 from(-30, 0.1, 0.2), along(1, 0.01, 0.02);
   for (const double bad : {not_a_number, infinity, -infinity}) {
@@ -400,7 +357,7 @@ TEST_CASE("ends just before or behind a surface: the surface is not met, or is")
     behind.t_max = hit->t * (1 + step);
     from_before.t_min = hit->t * (1 - step);
     from_behind.t_min = hit->t * (1 + step);
-    for (const Ray<double>& one : {before, behind, from_before, from_behind}) check_ray(scene, one, random);
+    for (const Ray<double>& one : {before, behind, from_before, from_behind}) check_ray(scene, one);
   }
   CHECK(met > 1000);
 }
@@ -571,20 +528,18 @@ TEST_CASE("bad input is refused before anything changes") {
        {std::vector<std::uint32_t>{}, {1}, {0, 50, 40}, {0, 121}, {0, 0xffffffffU}}) {
     refused([&] { scene.tree.build_objects(other.view(), other.boxes(), first); });
   }
-  for (const WideSettings& settings :
-       {WideSettings{WideCosts{0.0, 1.0}}, WideSettings{WideCosts{1.0, NAN}}, WideSettings{WideCosts{}, NAN},
-        WideSettings{WideCosts{}, 1e-3, 512, 0}, WideSettings{WideCosts{}, 1e-3, 512, 9}}) {
+  for (const WideBuildSettings& settings :
+       {WideBuildSettings{WideCosts{0.0, 1.0}}, WideBuildSettings{WideCosts{1.0, NAN}},
+        WideBuildSettings{WideCosts{}, NAN}, WideBuildSettings{WideCosts{}, 1e-3, 512, 0},
+        WideBuildSettings{WideCosts{}, 1e-3, 512, 9}}) {
     refused([&] { scene.tree.build(other.view(), other.boxes(), settings); });
   }
   CHECK(scene.tree.closest_hit(ray).has_value() == !hits_on_line(mesh, ray).empty());
 }
 
-TEST_CASE("surfaces for some triangles only, and corners that name no vertex, are refused") {
+TEST_CASE("corners that name no vertex, are refused") {
   WideMesh mesh = dcem_test::boxes_mesh(10, 165);
   Built scene(mesh);
-  WideMesh partly = mesh;
-  partly.surface.assign(5, 0);
-  CHECK_THROWS_AS(scene.tree.build(partly.view(), scene.boxes), std::invalid_argument);
   WideMesh astray = mesh;
   astray.triangles[7][1] = 1000;
   CHECK_THROWS_AS(scene.tree.build(astray.view(), scene.boxes), std::invalid_argument);

@@ -1,4 +1,4 @@
-/// Every policy of tree tree_update answers every question as the oracle does, in every frame of randomized drives.
+/// Every policy of keeping a tree answers every question as the oracle does, in every frame of randomized drives.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "dcem/geometry/surfaces/facet_builder.hpp"
+#include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/io/inspection.hpp"
 #include "tests/io/temporary_folder.hpp"
 

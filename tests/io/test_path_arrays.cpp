@@ -105,7 +105,7 @@ Run run(PolarizationKind polarization = PolarizationKind::vertical, unsigned thr
   SimulationSettings settings;
   settings.propagation.discovery = Discovery::exact;
   settings.threads = threads;
-  Simulator<> simulator(street(polarization), settings);
+  Simulator simulator(street(polarization), settings);
   const TemporaryFolder folder;
   io::OutputFolder out(folder / "out");
   io::OutputSettings output;

@@ -82,7 +82,7 @@ LinkResult link_between(Scene scene, const Vec3& transmitter_m, const Vec3& rece
                         PolarizationKind polarization = PolarizationKind::vertical) {
   scene.add_transmitter(device_at("tx", transmitter_m, 0.0, antenna(polarization)));
   scene.add_receiver(device_at("rx", receiver_m, 0.0, antenna(polarization)));
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   return simulator.advance_to(0.0).links.at(0);
 }
 
@@ -585,7 +585,7 @@ TEST_CASE("elements of an array that are traced one by one have their own foliag
   scene.add_receiver(device_at("rx", Vec3(2000, 0, 10)));
   SimulationSettings settings = settings_for(299'792'458.0 / 0.3);
   settings.propagation.antenna_array = ArrayChannel::exact;
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   const LinkResult link = simulator.advance_to(0.0).links.at(0);
   REQUIRE(link.paths.size() == 1);
   REQUIRE(link.paths[0].channel.columns() == 2);
@@ -604,9 +604,9 @@ TEST_CASE("how many threads work changes no bit, and a map holds what a receiver
     SimulationSettings settings = settings_for(60e9, gas_and_rain(50));
     settings.propagation.diffuse.enabled = true;
     settings.threads = threads;
-    return Simulator<>(std::move(scene), settings);
+    return Simulator(std::move(scene), settings);
   };
-  Simulator<> one = simulator(1), four = simulator(4);
+  Simulator one = simulator(1), four = simulator(4);
   const FrameResult alone = one.advance_to(0.0), together = four.advance_to(0.0);
   const RadioMap map = four.radio_maps({"area", Vec3(0, 0, 1.5), {4.0, 1.0}, {4, 1}, {}}).at(0);
   for (std::size_t link = 0; link < 4; ++link) {

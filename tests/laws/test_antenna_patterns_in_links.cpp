@@ -70,7 +70,7 @@ Complex free_space(double length_m) {
 LinkResult link_between(Scene scene, const Device& transmitter, const Device& receiver, int reflections) {
   scene.add_transmitter(transmitter);
   scene.add_receiver(receiver);
-  return Simulator<>(std::move(scene), law_settings(reflections, 0)).advance_to(0.0).links.at(0);
+  return Simulator(std::move(scene), law_settings(reflections, 0)).advance_to(0.0).links.at(0);
 }
 
 /// The path of a length.
@@ -226,7 +226,7 @@ TEST_CASE("patterns in links: the antenna on a car follows the car, over line of
       roof.attachment = Attachment{"car", Vec3(0, 0, roof_m), false};
       scene.add_receiver(roof);
     }
-    const FrameResult frame = Simulator<>(scene, law_settings(1, 0)).advance_to(0.0);
+    const FrameResult frame = Simulator(scene, law_settings(1, 0)).advance_to(0.0);
     REQUIRE(frame.links.size() == 8);
     for (const LinkResult& link : frame.links) {
       const double mast_azimuth_deg = 90.0 * static_cast<double>(link.transmitter);

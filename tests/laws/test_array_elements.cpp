@@ -72,7 +72,7 @@ std::vector<PathContribution> paths_of(Scene scene, const Device& transmitter, c
                                        const SimulationSettings& settings) {
   scene.add_transmitter(transmitter);
   scene.add_receiver(receiver);
-  return std::move(Simulator<>(std::move(scene), settings).advance_to(0.0).links.at(0).paths);
+  return std::move(Simulator(std::move(scene), settings).advance_to(0.0).links.at(0).paths);
 }
 
 /// Mirrors and edges, without the sheets that a path crosses: those may differ from element to element.
@@ -157,7 +157,7 @@ Entries check_against_single_antennas(const Scene& scene, const Device& transmit
     with_singles.add_transmitter(element_alone(transmitter, from, element_place_m(transmitter.antenna, from)));
   for (std::size_t to = 0; to < to_size; ++to)
     with_singles.add_receiver(element_alone(receiver, to, element_place_m(receiver.antenna, to)));
-  Simulator<> arrays(std::move(with_arrays), settings), singles(std::move(with_singles), settings);
+  Simulator arrays(std::move(with_arrays), settings), singles(std::move(with_singles), settings);
   const std::vector<PathContribution> paths = arrays.advance_to(time_s).links.at(0).paths;
   const FrameResult alone = singles.advance_to(time_s);
   REQUIRE(alone.links.size() == from_size * to_size);
@@ -544,7 +544,7 @@ TEST_CASE("array elements: everything but the channel is that of one antenna at 
     transmitter.pattern = Tr38901Element{};
     with_devices.add_transmitter(posed("tx", Vec3(-6, 1, 3), transmitter));
     with_devices.add_receiver(posed("rx", Vec3(8, -3, 1.7), receiver));
-    Simulator<> simulator(with_devices, array_settings(mode, 2, 2, 1));
+    Simulator simulator(with_devices, array_settings(mode, 2, 2, 1));
     LinkResult link = simulator.advance_to(0.0).links.at(0);
     return std::pair(bits(with_devices, link), std::move(link));
   };
@@ -584,8 +584,8 @@ TEST_CASE("array elements: runs with arrays pass verification, in both modes and
     for (const Discovery discovery : {Discovery::exact, Discovery::sampled}) {
       SimulationSettings settings = array_settings(mode, 2, 1, 1);
       settings.propagation.discovery = discovery;
-      Simulator<> simulator(scene, settings);
-      Verifier<> verifier(scene, settings, simulator.surface());
+      Simulator simulator(scene, settings);
+      Verifier verifier(scene, settings);
       std::size_t entries = 0;
       for (std::size_t frame = 0; frame < 6; ++frame) {
         const Frame instant = scene.frame_at(0.15 * static_cast<double>(frame), frame);
@@ -617,7 +617,7 @@ TEST_CASE("array elements: one thread and three give the same bits") {
           posed("rx" + std::to_string(index), Vec3(8, 2 - index, 1.7), array_of(1, 3, PolarizationKind::slant)));
     SimulationSettings settings = array_settings(mode, 2, 2, 1);
     settings.threads = threads;
-    Simulator<> simulator(scene, settings);
+    Simulator simulator(scene, settings);
     std::string bytes;
     for (const LinkResult& link : simulator.advance_to(0.0).links) bytes += bits(scene, link) + channel_bits(link);
     return bytes;
@@ -644,7 +644,7 @@ TEST_CASE("elements of an array on a wall are mounted on it as its centre is, al
     scene.add_receiver(device_at("street", Vec3(30, 4, 1.5)));
     SimulationSettings settings;
     settings.propagation.antenna_array = ArrayChannel::exact;
-    Simulator<> simulator(scene, settings);
+    Simulator simulator(scene, settings);
     const LinkResult link = simulator.advance_to(0.0).links.at(0);
     REQUIRE(!link.paths.empty());
     const ChannelMatrix& channel = link.paths[0].channel;

@@ -213,9 +213,9 @@ TEST_CASE("seams: every ray from inside a closed mesh hits it, also one aimed at
   for (const Mat3& turn : turns()) {
     Patches turned = mapped(box, [&](const Vec3& p) { return turn * p; });
     const Scene scene = scene_through_files(turned);
-    WideBvh tree;
-    build_tree(tree, scene);
-    const SceneTracer<WideBvh> tracer(scene, tree);
+    WideIndex index;
+    index.build(scene.triangle_view(), scene.triangle_boxes(), scene.first_triangles());
+    const SceneTracer<WideIndex> tracer(scene, index);
     TraversalCounters counters;
     for (const Patch& face : turned) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -289,7 +289,7 @@ TEST_CASE("own body: a car does not exist for the device that rides on it, and d
     rider.attachment = Attachment{"car", offset_m, sees_own_body};
     scene.add_transmitter(rider);
     scene.add_receiver(device_at("mast", Vec3(10.5, 5.8, 8)));
-    Simulator<> simulator(std::move(scene), settings(2, 2, discovery));
+    Simulator simulator(std::move(scene), settings(2, 2, discovery));
     return kinds_of(simulator.advance_to(0.0).links.at(0).paths);
   };
   for (const Discovery discovery : both_discoveries) {
@@ -313,7 +313,7 @@ TEST_CASE("own body: another car mirrors for the rider, and the rider's car mirr
   scene.add_transmitter(rider);
   scene.add_transmitter(device_at("post", Vec3(-1, 3.1, 0.8)));
   scene.add_receiver(device_at("walker", Vec3(0.7, 3.3, 1.1)));
-  Simulator<> simulator(std::move(scene), law_settings(2, 0));
+  Simulator simulator(std::move(scene), law_settings(2, 0));
   const FrameResult frame = simulator.advance_to(0.0);
   // The rider sees the walker and the other car's side; its own side, which would stand between, is not there.
   CHECK(kinds_of(frame.links.at(0).paths) == "LOS R");

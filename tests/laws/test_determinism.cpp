@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "dcem/accel/brute_force.hpp"
+#include "dcem/accel/box_index.hpp"
+#include "dcem/sim/basic_simulator.hpp"
 #include "tests/support/law_scenes.hpp"
 
 using namespace dcem;
@@ -81,13 +82,13 @@ SimulationSettings settings_of(const Way& way) {
   return settings;
 }
 
-template <typename Tree>
+template <typename Index>
 Bytes run(Scene scene, const Way& way, unsigned threads, std::vector<std::size_t> frames,
           std::vector<std::uint64_t>* work = nullptr) {
   SimulationSettings settings = settings_of(way);
   settings.propagation.rays = 500;
   settings.threads = threads;
-  Simulator<MaterialTable, Tree> simulator(std::move(scene), settings);
+  BasicSimulator<MaterialTable, Index> simulator(std::move(scene), settings);
   Bytes bytes;
   for (const std::size_t index : frames) {
     const FrameResult frame = simulator.advance_to(0.23 * static_cast<double>(index), index);
@@ -112,11 +113,11 @@ const std::vector<std::size_t> all_frames{0, 1, 2, 3};
 TEST_CASE("determinism: 1, 2 and 5 threads, and twice in a row, give the same bits and the same counts of work") {
   for (const Way& way : all_ways) {
     std::vector<std::uint64_t> work;
-    const Bytes expected = run<WideBvh>(ordered_scene(), way, 1, all_frames, &work);
+    const Bytes expected = run<WideIndex>(ordered_scene(), way, 1, all_frames, &work);
     CHECK(expected.size() == all_frames.size() * transmitters * receivers);
     for (const unsigned threads : {1U, 2U, 5U}) {
       std::vector<std::uint64_t> other_work;
-      CHECK(run<WideBvh>(ordered_scene(), way, threads, all_frames, &other_work) == expected);
+      CHECK(run<WideIndex>(ordered_scene(), way, threads, all_frames, &other_work) == expected);
       CHECK(other_work == work);
     }
   }
@@ -125,20 +126,20 @@ TEST_CASE("determinism: 1, 2 and 5 threads, and twice in a row, give the same bi
 TEST_CASE("determinism: the order of transmitters and receivers changes no bit of any link") {
   Dice dice(93);
   for (const Way& way : all_ways) {
-    const Bytes expected = run<WideBvh>(ordered_scene(), way, 1, all_frames);
+    const Bytes expected = run<WideIndex>(ordered_scene(), way, 1, all_frames);
     for (int trial = 0; trial < 3; ++trial) {
       std::vector<std::size_t> sending = counted(transmitters), receiving = counted(receivers);
       dice.shuffle(sending);
       dice.shuffle(receiving);
-      CHECK(run<WideBvh>(moving_scene(sending, receiving), way, 2, all_frames) == expected);
+      CHECK(run<WideIndex>(moving_scene(sending, receiving), way, 2, all_frames) == expected);
     }
   }
 }
 
 TEST_CASE("determinism: a subset of the devices gives the same links") {
   for (const Way& way : {without_memory[1], seeded}) {
-    const Bytes expected = run<WideBvh>(ordered_scene(), way, 1, all_frames);
-    const Bytes some = run<WideBvh>(moving_scene({2}, {5, 1}), way, 1, all_frames);
+    const Bytes expected = run<WideIndex>(ordered_scene(), way, 1, all_frames);
+    const Bytes some = run<WideIndex>(moving_scene({2}, {5, 1}), way, 1, all_frames);
     CHECK(some.size() == 2 * all_frames.size());
     for (const auto& [key, bytes] : some) CHECK(expected.at(key) == bytes);
   }
@@ -146,11 +147,11 @@ TEST_CASE("determinism: a subset of the devices gives the same links") {
 
 TEST_CASE("determinism: without a memory a frame does not depend on the frames before it") {
   for (const Way& way : without_memory) {
-    const Bytes expected = run<WideBvh>(ordered_scene(), way, 1, all_frames);
-    Bytes backwards = run<WideBvh>(ordered_scene(), way, 1, {3, 1, 2, 0});
+    const Bytes expected = run<WideIndex>(ordered_scene(), way, 1, all_frames);
+    Bytes backwards = run<WideIndex>(ordered_scene(), way, 1, {3, 1, 2, 0});
     CHECK(backwards == expected);
     Bytes single;
-    for (const std::size_t frame : all_frames) single.merge(run<WideBvh>(ordered_scene(), way, 1, {frame}));
+    for (const std::size_t frame : all_frames) single.merge(run<WideIndex>(ordered_scene(), way, 1, {frame}));
     CHECK(single == expected);
   }
 }
@@ -169,10 +170,10 @@ TEST_CASE("determinism: an object that came to a place is as one that always sto
     return bytes;
   };
   for (const Way& way : without_memory) {
-    Simulator<> moving(ordered_scene(), settings_of(way));
+    Simulator moving(ordered_scene(), settings_of(way));
     for (const std::size_t frame : all_frames) {
       const double time_s = 0.23 * static_cast<double>(frame);
-      Simulator<> standing(moving_scene(counted(transmitters), counted(receivers), time_s), settings_of(way));
+      Simulator standing(moving_scene(counted(transmitters), counted(receivers), time_s), settings_of(way));
       CHECK(without_doppler(moving.advance_to(time_s, frame), moving.scene()) ==
             without_doppler(standing.advance_to(time_s, frame), standing.scene()));
     }
@@ -181,8 +182,8 @@ TEST_CASE("determinism: an object that came to a place is as one that always sto
 
 TEST_CASE("determinism: the tree changes the work and nothing else") {
   for (const Way& way : all_ways) {
-    const Bytes expected = run<BruteForce<double>>(ordered_scene(), way, 1, all_frames);
-    CHECK(run<WideBvh>(ordered_scene(), way, 1, all_frames) == expected);
-    CHECK(run<Bvh<double>>(ordered_scene(), way, 1, all_frames) == expected);
+    const Bytes expected = run<BruteForceIndex>(ordered_scene(), way, 1, all_frames);
+    CHECK(run<WideIndex>(ordered_scene(), way, 1, all_frames) == expected);
+    CHECK(run<BinaryIndex>(ordered_scene(), way, 1, all_frames) == expected);
   }
 }

@@ -15,7 +15,9 @@
 
 #include "dcem/channel/power_delay_profile.hpp"
 #include "dcem/core/random.hpp"
-#include "dcem/io/compiled_simulator.hpp"
+#include "dcem/field/diffuse/adaptive_tiles.hpp"
+#include "dcem/field/diffuse/scattered_power.hpp"
+#include "dcem/sim/simulator.hpp"
 #include "tests/support/quadrature.hpp"
 
 using namespace dcem;
@@ -73,7 +75,7 @@ SimulationSettings settings_for(double tolerance_db, std::size_t budget = 1'000'
 LinkResult link(Scene scene, Device from, Device to, const SimulationSettings& settings) {
   scene.add_transmitter(std::move(from));
   scene.add_receiver(std::move(to));
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   return std::move(simulator.advance_to(0.0).links.at(0));
 }
 
@@ -275,7 +277,7 @@ TEST_CASE("diffuse power: what one wall scatters in all directions is (S·Γ)²�
         weights_sr.push_back(node.weight * circle / 10);
       }
     }
-    Simulator<> simulator(std::move(scene), settings_for(0.02));
+    Simulator simulator(std::move(scene), settings_for(0.02));
     simulator.move_to(simulator.scene().frame_at(0.0));
     double sum = 0.0;
     for (const LinkResult& one : simulator.solve(receivers)) {
@@ -775,7 +777,7 @@ TEST_CASE("diffuse power: with too few tiles the result says so, and the residua
   city.add_transmitter(device_at("tx", from_m));
   city.add_receiver(device_at("rx", to_m));
   city.add_receiver(device_at("sky", Vec3(0, 0, 80)));
-  Simulator<> simulator(std::move(city), settings_for(0.02, 20));
+  Simulator simulator(std::move(city), settings_for(0.02, 20));
   const FrameResult frame = simulator.advance_to(0.0);
   CHECK(frame.work.diffuse_links_unfinished == 2);
   CHECK(frame.work.diffuse_tiles == frame.links[0].diffuse.tiles_evaluated + frame.links[1].diffuse.tiles_evaluated);
@@ -876,7 +878,7 @@ TEST_CASE("diffuse power: the phase of a tile follows its length from frame to f
   SimulationSettings settings = seeded(5);
   settings.propagation.diffuse.list_paths = true;
   settings.propagation.diffuse.tile_max_m = 0.5;
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   const auto tiles_at = [&](double time_s) {
     std::map<std::pair<std::uint32_t, std::uint64_t>, DiffuseContribution> tiles;
     const FrameResult frame = simulator.advance_to(time_s);
@@ -992,7 +994,7 @@ TEST_CASE("diffuse power: the Doppler shift of a tile is the rate at which its p
   SimulationSettings settings = settings_for(1.0);
   settings.propagation.diffuse.list_paths = true;
   settings.propagation.diffuse.tile_max_m = 1.0;
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   using Tiles = std::map<std::pair<std::uint32_t, std::uint64_t>, DiffuseContribution>;
   const auto tiles_at = [&](double time_s) {
     Tiles tiles;
@@ -1082,7 +1084,7 @@ std::map<std::string, Numbers> run_street(const Run& run) {
   settings.propagation.cache = run.cache;
   settings.propagation.rays = 300;
   settings.propagation.diffuse.phases = run.phases;
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   std::map<std::string, Numbers> links;
   for (std::size_t index = 0; index < 3; ++index) {
     for (const LinkResult& one : simulator.advance_to(0.1 * double(index), index).links) {
@@ -1126,7 +1128,7 @@ TEST_CASE("diffuse power: a frame does not depend on the frames before it") {
   scene.add_object("car", make_box(Vec3(5, 2, 1.6), "car"), LinearMotion{{Vec3(-3, 1, 0), 0.2}, Vec3(12, 0, 0)});
   scene.add_transmitter(device_at("a", lamp_m));
   scene.add_receiver(device_at("x", walker_m));
-  Simulator<> simulator(scene, settings_for(0.3, 20'000, 1)), other(scene, settings_for(0.3, 20'000, 1));
+  Simulator simulator(scene, settings_for(0.3, 20'000, 1)), other(scene, settings_for(0.3, 20'000, 1));
   simulator.advance_to(0.7);
   simulator.advance_to(1.9);
   CHECK(numbers_of(simulator.advance_to(0.3).links.at(0)) == numbers_of(other.advance_to(0.3).links.at(0)));
@@ -1137,7 +1139,7 @@ TEST_CASE("diffuse power: a map says what a link to its point says") {
   scene.add_transmitter(device_at("a", lamp_m));
   SimulationSettings settings = settings_for(0.5, 3000, 1);
   settings.propagation.diffuse.phases = DiffusePhases::seeded;
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   simulator.advance_to(0.0);
   const ReceiverGrid grid{"area", Vec3(4, -5, 1.5), {3.0, 4.0}, {3, 2}, {}};
   const std::vector<RadioMap> maps = simulator.radio_maps(grid);
@@ -1235,7 +1237,7 @@ TEST_CASE("diffuse power: a place is the same part of its triangle in every fram
   SimulationSettings settings = settings_for(1.0);
   settings.propagation.diffuse.list_paths = true;
   settings.propagation.diffuse.tile_max_m = 1.0;
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   std::map<std::pair<std::uint32_t, std::uint64_t>, Vec3> first;
   std::size_t compared = 0;
   for (int step = 0; step < 20; ++step) {

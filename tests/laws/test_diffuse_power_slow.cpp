@@ -10,12 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "dcem/accel/bvh.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/field/diffuse/scattered_power.hpp"
-#include "dcem/io/compiled_simulator.hpp"
 #include "dcem/io/scenario.hpp"
 #include "dcem/paths/solve/scatter_solver.hpp"
+#include "dcem/sim/simulator.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 using namespace dcem;
@@ -65,14 +64,14 @@ void for_each_cell(const TriangleCorners& corners, double cell_m, Visit&& visit)
 /// A scene with all that the power of one of its points is made of.
 struct Illuminated {
   Illuminated(const Scene& scene, double frequency_hz)
-      : tracer(scene, tree),
+      : tracer(scene, index),
         table({scene.materials().begin(), scene.materials().end()}, frequency_hz),
         scattered(scene, table, loss, medium, frequency_hz) {
-    build_tree(tree, scene);
+    index.build(scene.triangle_view(), scene.triangle_boxes(), scene.first_triangles());
   }
 
-  WideBvh tree;
-  SceneTracer<WideBvh> tracer;
+  WideIndex index;
+  SceneTracer<WideIndex> tracer;
   MaterialTable table;
   AnyPathLoss loss;
   MediumLoss medium;
@@ -84,7 +83,7 @@ double grid_power(const Scene& scene, const Illuminated& world, const Vec3& from
   TraversalCounters counters;
   const LinkEnd from = make_link_end(world.tracer, from_m, {}, counters),
                 to = make_link_end(world.tracer, to_m, {}, counters);
-  ScatterSolver<WideBvh> solver(world.tracer, 2);
+  ScatterSolver<WideIndex> solver(world.tracer, 2);
   Path path;
   double sum = 0.0;
   for (std::uint32_t triangle = 0; triangle < scene.triangles().size(); ++triangle) {
@@ -131,7 +130,7 @@ TEST_CASE("diffuse power in the office: what has converged is within its toleran
   for (const double tolerance_db : {1.0, 0.1}) {
     CAPTURE(tolerance_db);
     settings.propagation.diffuse.tolerance_db = tolerance_db;
-    Simulator<> simulator(office.scene, settings);
+    Simulator simulator(office.scene, settings);
     simulator.move_to(simulator.scene().frame_at(0.0));
     for (const LinkResult& link : simulator.solve(receivers)) {
       CAPTURE(link.transmitter);
@@ -176,7 +175,7 @@ TEST_CASE("diffuse power of a wall behind a bus: what has converged is within it
     settings.propagation.discovery = Discovery::exact;
     settings.propagation.max_reflections = settings.propagation.max_diffractions = 0;
     settings.propagation.diffuse.enabled = true;
-    Simulator<> simulator(scene, settings);
+    Simulator simulator(scene, settings);
     const FrameResult frame = simulator.advance_to(0.0);
     const DiffusePower& power = frame.links.at(0).diffuse;
 

@@ -39,7 +39,7 @@ struct Seen {
   Path path;
 };
 
-std::map<std::string, Seen> paths_at(Simulator<>& simulator, double time_s) {
+std::map<std::string, Seen> paths_at(Simulator& simulator, double time_s) {
   std::map<std::string, Seen> result;
   for (const LinkResult& link : simulator.advance_to(time_s).links) {
     const std::string receiver = simulator.scene().receivers()[link.receiver].id;
@@ -68,7 +68,7 @@ struct Tally {
   double largest_hz = 0.0;
 };
 
-void check_doppler(Simulator<>& simulator, double time_s, Tally& tally) {
+void check_doppler(Simulator& simulator, double time_s, Tally& tally) {
   constexpr double step_s = 5e-4;
   const std::array<std::map<std::string, Seen>, 4> around{
       paths_at(simulator, time_s - 2 * step_s), paths_at(simulator, time_s - step_s),
@@ -94,7 +94,7 @@ void check_doppler(Simulator<>& simulator, double time_s, Tally& tally) {
 
 void check_times(io::Scenario read, std::size_t least_checked, std::size_t least_on_objects,
                  std::size_t least_at_moving_edges = 0) {
-  Simulator<> simulator(std::move(read.scene), read.settings);
+  Simulator simulator(std::move(read.scene), read.settings);
   Tally tally;
   for (int instant = 0; instant < 30; ++instant) check_doppler(simulator, 0.21 + 0.131 * instant, tally);
   MESSAGE(tally.checked << " paths, " << tally.on_objects << " over objects, " << tally.at_moving_edges
@@ -128,7 +128,7 @@ TEST_CASE("Doppler: a mirror that comes closer at v shifts by 2·v·cosθ/λ") {
   const std::string devices = R"("transmitters": [{"id": "tx", "power_dbm": 0, "position_m": [0, 1, 3]}],
                                  "receivers": [{"id": "rx", "position_m": [0, -1, 3.2]}])";
   io::Scenario read = scenario(street(), objects, devices);
-  Simulator<> simulator(std::move(read.scene), read.settings);
+  Simulator simulator(std::move(read.scene), read.settings);
   // The mirror's normal lies in the plane y = 0: from its edges (0, 3, 0) and (0.3, 0, 2) it is (2, 0, −0.3)/√4.09.
   const double normal_x = 2.0 / std::sqrt(4.09), normal_z = -0.3 / std::sqrt(4.09);
   bool found = false;

@@ -49,7 +49,7 @@ Drive driven(const Patches& patches, const Vec3& transmitter_m, Device receiver,
   SimulationSettings settings = law_settings(2, 0);
   settings.frequency_hz = frequency_hz;
   settings.propagation.max_diffractions = 1;
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   Drive drive;
   for (std::size_t frame = 0; frame < frames; ++frame) {
     const double time_s = step_s * static_cast<double>(frame);

@@ -79,7 +79,7 @@ Scene with_devices(Scene scene, const Vec3& transmitter_m, const std::vector<Vec
 
 std::vector<LinkResult> links(const Patches& patches, const Vec3& transmitter_m, const std::vector<Vec3>& receivers_m,
                               const SimulationSettings& settings) {
-  Simulator<> simulator(with_devices(scene_through_files(patches), transmitter_m, receivers_m), settings);
+  Simulator simulator(with_devices(scene_through_files(patches), transmitter_m, receivers_m), settings);
   return simulator.advance_to(0.0).links;
 }
 
@@ -122,8 +122,8 @@ void for_each_sequence(const Scene& scene, int reflections, int diffractions, Se
 
 void check_complete(const Patches& patches, const Vec3& transmitter_m, const std::vector<Vec3>& receivers_m,
                     int reflections, int diffractions, const std::vector<std::string>& wanted_kinds) {
-  Simulator<> simulator(with_devices(scene_through_files(patches), transmitter_m, receivers_m),
-                        chain_settings(reflections, diffractions));
+  Simulator simulator(with_devices(scene_through_files(patches), transmitter_m, receivers_m),
+                      chain_settings(reflections, diffractions));
   const FrameResult frame = simulator.advance_to(0.0);
   std::map<std::string, int> seen_kinds;
   for (const LinkResult& link : frame.links) {
@@ -261,7 +261,7 @@ TEST_CASE("a frame in which nothing moved repeats the one before, byte for byte"
     SimulationSettings settings = chain_settings(2, 1, discovery);
     settings.propagation.rays = 20'000;
     settings.propagation.rays_steady = 2000;
-    Simulator<> simulator(with_devices(scene_through_files(crossing()), mast_m, walkers_m()), settings);
+    Simulator simulator(with_devices(scene_through_files(crossing()), mast_m, walkers_m()), settings);
     CHECK((simulator.cache() == CacheMode::seed) == (discovery == Discovery::sampled));
     std::vector<std::string> frames;
     for (std::size_t frame = 0; frame < 12; ++frame) {
@@ -284,7 +284,7 @@ TEST_CASE("the number of threads and the order of patches change no bit") {
     for (const unsigned threads : {1U, 2U, 5U}) {
       SimulationSettings settings = chain_settings(2, 1, discovery);
       settings.threads = threads;
-      Simulator<> simulator(with_devices(scene_through_files(patches), mast_m, walkers_m()), settings);
+      Simulator simulator(with_devices(scene_through_files(patches), mast_m, walkers_m()), settings);
       const FrameResult first = simulator.advance_to(0.0, 0), second = simulator.advance_to(0.0, 1);
       results.insert(all_bits(simulator.scene(), first.links) + all_bits(simulator.scene(), second.links));
       dice.shuffle(patches);
@@ -322,7 +322,7 @@ TEST_CASE("a moving box takes its edges along, and its paths keep their names") 
   const MovingPatches car{"car", box_faces(Vec3(-2.2, -0.9, 0), Vec3(2.2, 0.9, 1.5), "pec"),
                           LinearMotion{{Vec3(0, -20, 0), 0.4, 0.0, 0.0}, Vec3(0.5, 9, 0), 0.0}};
   SimulationSettings settings = chain_settings(1, 1);
-  Simulator<> simulator(
+  Simulator simulator(
       with_devices(scene_through_files(crossing(), {car}), Vec3(4, -30, 1.1), {Vec3(-3, 25, 1.2), Vec3(2, -2, 3)}),
       settings);
   std::map<std::string, Vec3> before;

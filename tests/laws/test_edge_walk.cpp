@@ -81,7 +81,7 @@ std::vector<ComplexMatrix2> fields(const EdgeCase& edge, double frequency_hz, co
     receivers.push_back(
         device_at("rx" + std::to_string(index), turn * receivers_m[index], 0.0, antenna(PolarizationKind::dual)));
   }
-  Simulator<> simulator(std::move(scene), settings_of(edge, frequency_hz, diffractions));
+  Simulator simulator(std::move(scene), settings_of(edge, frequency_hz, diffractions));
   std::vector<ComplexMatrix2> result;
   for (const LinkResult& link : simulator.solve(receivers)) result.push_back(total(link, turn));
   return result;

@@ -98,7 +98,7 @@ std::string link_bits(Scene scene, const RandomRoom& room, Discovery discovery) 
   scene.add_receiver(device_at("rx", room.receiver_m, 0.0, antenna(PolarizationKind::dual)));
   SimulationSettings exact = settings();
   exact.propagation.discovery = discovery;
-  Simulator<> simulator(std::move(scene), exact);
+  Simulator simulator(std::move(scene), exact);
   const FrameResult frame = simulator.advance_to(0.0);
   return bits(simulator.scene(), frame.links.at(0));
 }

@@ -60,14 +60,14 @@ TEST_CASE("a map equals a run point by point, with diffuse power and arrays, wha
     for (const bool share : {true, false}) {
       SimulationSettings settings = scenario.settings;
       settings.share_map_work = share;
-      Simulator<> simulator(scenario.scene, settings);
+      Simulator simulator(scenario.scene, settings);
       simulator.advance_to(0.0);
       maps.push_back(simulator.radio_maps(grid).at(0));
     }
     for (std::size_t cell = 0; cell < grid.size(); ++cell) {
       scenario.scene.add_receiver(grid_receiver(grid, cell / grid.columns(), cell % grid.columns()));
     }
-    Simulator<> simulator(scenario.scene, scenario.settings);
+    Simulator simulator(scenario.scene, scenario.settings);
     const FrameResult run = simulator.advance_to(0.0);
     REQUIRE(run.links.size() == grid.size());
     std::size_t diffuse = 0, diffracted = 0;

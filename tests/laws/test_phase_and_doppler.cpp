@@ -137,7 +137,7 @@ class WalkedLink {
   }
 
   Walk walk_;
-  Simulator<> simulator_;
+  Simulator simulator_;
 };
 
 /// The phase −kL(t) has the symmetric difference f_D − (dt²/6·L''' + dt⁴/120·L⁽⁵⁾ + …)/λ: an error known in advance, of
@@ -279,14 +279,14 @@ std::pair<HandRay, HandRay> hand_rays(const Drive& drive) {
   return {hand_ray(drive, antenna_m), hand_ray(drive, -antenna_m)};
 }
 
-Simulator<> two_ray_simulator(const Drive& drive, double frequency_hz = law_frequency_hz) {
+Simulator two_ray_simulator(const Drive& drive, double frequency_hz = law_frequency_hz) {
   Scene scene = scene_through_files({sheet(Vec3(0), Vec3(400, 0, 0), Vec3(0, 400, 0), drive.material)});
   scene.add_transmitter(moving_device("tx", {Vec3(0, 0, mast_m)}, PolarizationKind::vertical));
   scene.add_receiver(
       moving_device("rx", {drive.at_m + Vec3(0, 0, antenna_m), drive.velocity_mps}, PolarizationKind::vertical));
   SimulationSettings settings = law_settings(1, 0);
   settings.frequency_hz = frequency_hz;
-  return Simulator<>(std::move(scene), settings);
+  return Simulator(std::move(scene), settings);
 }
 
 LinkResult two_ray_link(const Drive& drive) {
@@ -572,7 +572,7 @@ TEST_CASE("a drive through a two-ray field: the field has its lines there, and i
   constexpr std::size_t count = 512;
   constexpr double duration_s = 0.05, step_s = duration_s / count;
   const auto [direct, reflected] = hand_rays(drive);
-  Simulator<> simulator = two_ray_simulator(drive);
+  Simulator simulator = two_ray_simulator(drive);
   std::vector<Complex> fields, powers;
   double mean_power = 0.0;
   for (std::size_t n = 0; n < count; ++n) {

@@ -54,7 +54,7 @@ void report(const std::string& name, const RecallTally& recall, double least) {
 
 /// The two simulators of a scenario.
 struct Both {
-  Simulator<> exact, sampled;
+  Simulator exact, sampled;
 
   explicit Both(const io::Scenario& scenario)
       : exact(scenario.scene, with(scenario.settings, Discovery::exact)),
@@ -83,7 +83,7 @@ TEST_CASE("sampled within exact: random rooms, three reflections") {
     Scene scene = scene_through_files(room.patches);
     scene.add_transmitter(device_at("tx", room.transmitter_m, 0.0, antenna(PolarizationKind::dual)));
     scene.add_receiver(device_at("rx", room.receiver_m, 0.0, antenna(PolarizationKind::dual)));
-    Simulator<> exact(scene, law_settings(3, 2)), sampled(scene, law_settings(3, 2, Discovery::sampled));
+    Simulator exact(scene, law_settings(3, 2)), sampled(scene, law_settings(3, 2, Discovery::sampled));
     compare(scene, exact.advance_to(0.0).links.at(0), sampled.advance_to(0.0).links.at(0), recall);
   }
   // Rooms are simple: a wall fills a large part of the sphere. What is missed is mostly small sheets far away.
@@ -136,7 +136,7 @@ TEST_CASE("the rays cast are the same for 1, 10 and 100 transmitters") {
       scene.add_transmitter(device_at("tx" + std::to_string(index), dice.inside(Vec3(0.2), room.size_m - 0.2)));
     }
     scene.add_receiver(device_at("rx", room.receiver_m));
-    Simulator<> simulator(std::move(scene), law_settings(3, 2, Discovery::sampled));
+    Simulator simulator(std::move(scene), law_settings(3, 2, Discovery::sampled));
     const FrameResult frame = simulator.advance_to(0.0);
     CHECK(frame.links.size() == static_cast<std::size_t>(transmitters));
     rays.insert(frame.work.rays);

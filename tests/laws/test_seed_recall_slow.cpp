@@ -34,8 +34,8 @@ SimulationSettings sampled(SimulationSettings settings, CacheMode cache, std::ui
 }
 
 Figures drive(const Scene& scene, const SimulationSettings& settings, const io::TimeSettings& time) {
-  Simulator<> simulator(scene, settings);
-  Verifier<> verifier(scene, settings, simulator.surface());
+  Simulator simulator(scene, settings);
+  Verifier verifier(scene, settings);
   Figures figures;
   for (std::size_t index = 0; index < time.frames; ++index) {
     const Frame frame = scene.frame_at(time.time_s(index), index);

@@ -67,8 +67,8 @@ io::Scenario scenario(const TemporaryFolder& folder, const std::string& material
   write_law_materials(folder / "laws.mtl");
   write_patches(folder / "ground.obj", {sheet(Vec3(300, -40, 0), Vec3(4000, 311, 0), Vec3(-173, 2225, 0), material)});
   std::ofstream json(folder / "two_ray.json");
-  const std::string antenna_text =
-      std::string(R"("antenna": {"pattern": "isotropic", "polarization": ")") + (vertical ? "V" : "H") + "\"}";
+  const std::string antenna_text = vertical ? R"("antenna": {"pattern": "isotropic", "polarization": "V"})"
+                                            : R"("antenna": {"pattern": "isotropic", "polarization": "H"})";
   json << std::setprecision(17) << R"({"format": "dcem-scenario/1", "scene": {"obj": "ground.obj"}, "frequency_hz": )"
        << frequency_hz << R"(, "transmitters": [{"id": "tx", "position_m": [0, 0, )" << transmitter_height_m
        << R"(], "power_dbm": 0, )" << antenna_text << R"(}], "receivers": [{"id": "rx", "positions_m": [)";
@@ -87,7 +87,7 @@ void check_two_ray(const std::string& material, bool vertical, double frequency_
   const TemporaryFolder folder;
   const std::vector<double> distances = distances_m(frequency_hz);
   io::Scenario read = scenario(folder, material, vertical, frequency_hz, distances);
-  Simulator<> simulator(std::move(read.scene), read.settings);
+  Simulator simulator(std::move(read.scene), read.settings);
   const FrameResult frame = simulator.advance_to(0.0);
   REQUIRE(frame.links.size() == distances.size());
   double deepest_db = 0.0;

@@ -2,6 +2,7 @@
 """Checks which header includes which: the order of the rooms, and what public headers may show.
 
     check_includes.py REPOSITORY     lists the violations; exit status 1 if there are any
+    check_includes.py --figures REPOSITORY   prints the table of rooms that ARCHITECTURE.md must hold
     check_includes.py --self-check   plants one violation of each rule in a scratch tree and expects it to be found
 """
 import re
@@ -23,9 +24,10 @@ ROOMS = {
     "channel": ["core", "geometry", "accel", "world", "em", "scene", "paths", "field"],
     "sim": ["core", "geometry", "accel", "world", "em", "scene", "paths", "field", "channel"],
     "debug": ["core", "geometry", "accel", "world", "em", "scene", "paths", "field", "channel", "sim"],
+    "engine": ["core", "geometry", "accel", "world", "em", "scene", "paths", "field", "channel", "sim"],
     "io": ["core", "geometry", "accel", "world", "em", "scene", "paths", "field", "channel", "sim", "debug"],
 }
-UMBRELLA = "dcem/dcem.hpp"  # stands outside the rooms; includes every public header but those of io
+UMBRELLA = "dcem/dcem.hpp"  # stands outside the rooms; includes what most programs need
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 STANDARD_OR_GLM = re.compile(r"^([a-z_0-9]+|glm/.+)$")  # <vector>, <glm/vec3.hpp>; not <unistd.h>, <nlohmann/json.hpp>
 SYSTEM_HEADER_OF = {"dcem/core/huge_pages.hpp": "sys/mman.h"}  # included only where there is such a system
@@ -69,14 +71,65 @@ def check_include(path, bracket, target, root):
     return None
 
 
-def reachable_from(start, includes):
-    seen, waiting = set(), [start]
-    while waiting:
-        path = waiting.pop()
-        if path not in seen:
-            seen.add(path)
-            waiting += [target for _, target in includes.get(path, [])]
-    return seen
+def levels_of(boxes, arrows):
+    """The longest chain; a cycle is an error."""
+    depth = {}
+
+    def visit(box, above):
+        if box in above:
+            sys.exit(f"includes run in a circle: {' -> '.join(above + (box,))}")
+        if box not in depth:
+            depth[box] = 1 + max((visit(target, above + (box,)) for target in arrows.get(box, ())), default=0)
+        return depth[box]
+
+    return max((visit(box, ()) for box in sorted(boxes)), default=0)
+
+
+def count_figures(library):
+    """Per room: headers, levels, arrows inside, and the rooms it includes. Two headers that include each other are one
+    box: the second holds the bodies of the first."""
+    includes = {path: {target for _, target in INCLUDE.findall(text) if target in library and target != path}
+                for path, text in library.items() if path.endswith(".hpp")}
+    box_of = {path: path for path in includes}
+    for path, targets in includes.items():
+        for target in targets:
+            if path in includes.get(target, ()):  # the shorter path is the one that others include
+                first, second = sorted((path, target), key=lambda name: (name.count("/"), len(name)))
+                box_of[second] = first
+    def box(path):
+        return path if box_of[path] == path else box(box_of[path])
+    arrows = {}
+    for path, targets in includes.items():
+        arrows.setdefault(box(path), set()).update(box(target) for target in targets if box(target) != box(path))
+    rooms = {}
+    for room in ROOMS:
+        boxes = {name for name in arrows if room_of(name) == room}
+        inside = {name: {t for t in arrows[name] if room_of(t) == room} for name in boxes}
+        others = {room_of(t) for name in boxes for t in arrows[name]} - {room, None}
+        rooms[room] = (len(boxes), levels_of(boxes, inside), sum(map(len, inside.values())), others)
+    return rooms
+
+
+def figure_lines(library):
+    rooms = count_figures(library)
+    lines = ["| room | boxes | levels | arrows inside | includes |", "|---|---|---|---|---|"]
+    for room, (boxes, levels, arrows, others) in rooms.items():
+        names = ", ".join(sorted(others, key=list(ROOMS).index)) or "–"
+        lines.append(f"| `{room}` | {boxes} | {levels} | {arrows} | {names} |")
+    total = {room: others for room, (_, _, _, others) in rooms.items()}
+    lines.append(f"| all {len(rooms)} rooms | {sum(r[0] for r in rooms.values())} | {levels_of(total, total)} | "
+                 f"{sum(map(len, total.values()))} between rooms | |")
+    return lines
+
+
+def check_figures(root, library):
+    """The table in ARCHITECTURE.md must be the one counted here."""
+    document = root / "ARCHITECTURE.md"
+    if not document.is_file():
+        return []
+    text = document.read_text(encoding="utf-8")
+    return [f"ARCHITECTURE.md: lacks the line '{line}' (check_includes.py --figures prints the table)"
+            for line in figure_lines(library) if line not in text]
 
 
 def check_tree(root):
@@ -95,15 +148,16 @@ def check_tree(root):
         lines += filter(None, (check_include(path, bracket, target, root) for bracket, target in includes[path]))
         if path.endswith(".hpp") and not text.startswith("#pragma once\n"):
             lines.append(f"{path}: does not begin with #pragma once")
-        if path.endswith(".cpp") and not path.startswith("dcem/io/src/"):
-            lines.append(f"{path}: compiled code stands in dcem/io/src only")
+        if path.endswith(".cpp") and not path.startswith(("dcem/io/src/", "dcem/engine/")):
+            lines.append(f"{path}: compiled code stands in dcem/engine and dcem/io/src only")
     lines += [f"{path}: defines GLM_FORCE_..., which changes GLM for whoever includes it"
               for path, text in texts.items() if re.search(r"#\s*define\s+GLM_FORCE_", text)]
 
-    if UMBRELLA in library:
-        reached = reachable_from(UMBRELLA, includes)
-        lines += [f"{UMBRELLA}: does not reach {path}" for path in library
-                  if is_public_header(path) and room_of(path) != "io" and path not in reached]
+    lines += [f"{path}: bodies are included by {path.replace('_bodies', '')} and dcem/engine alone; {other} does, too"
+              for other, found in includes.items() for _, path in found
+              if path.endswith("_bodies.hpp") and path != other
+              and other != path.replace("_bodies", "") and room_of(other) != "engine"]
+    lines += check_figures(root, library)
     return lines
 
 
@@ -112,6 +166,8 @@ SOUND_TREE = {
     "dcem/core/ids.hpp": "#pragma once\n#include <cstdint>\n",
     "dcem/accel/bvh.hpp": '#pragma once\n#include <glm/vec3.hpp>\n#include "dcem/core/ids.hpp"\n',
     "dcem/em/surface/fresnel.hpp": '#pragma once\n#include "dcem/core/ids.hpp"\n',
+    "dcem/scene/scene_bodies.hpp": '#pragma once\n#include "dcem/scene/scene.hpp"\n',
+    "dcem/engine/world.cpp": '#include "dcem/scene/scene_bodies.hpp"\n',
     "dcem/scene/scene.hpp": '#pragma once\n#include "dcem/em/surface/fresnel.hpp"\n',
     "dcem/paths/path.hpp": '#pragma once\n#include "dcem/accel/bvh.hpp"\n#include "dcem/scene/scene.hpp"\n',
     "dcem/io/load.hpp": '#pragma once\n#include "dcem/paths/path.hpp"\n',
@@ -134,7 +190,7 @@ PLANTED = [  # file, the line put at its end, a piece of the message it must cau
     ("dcem/io/load.hpp", "#include <CLI/CLI.hpp>", "a public header includes"),
     ("dcem/core/ids.hpp", "#include <sys/mman.h>", "a public header includes"),
     (UMBRELLA, '#include "dcem/io/load.hpp"', "io is not part of it"),
-    ("dcem/core/lost.hpp", "#pragma once", "does not reach dcem/core/lost.hpp"),
+    ("dcem/paths/path.hpp", '#include "dcem/scene/scene_bodies.hpp"', "bodies are included by"),
     ("dcem/core/guard.hpp", "#ifndef GUARD", "does not begin with #pragma once"),
     ("dcem/core/code.cpp", "", "compiled code stands in"),
     ("dcem/tools/x.hpp", "#pragma once", "stands in no known room"),
@@ -160,6 +216,11 @@ def self_check():
 
 
 def main(arguments):
+    if len(arguments) == 2 and arguments[0] == "--figures":
+        root = Path(arguments[1]).resolve()
+        print("\n".join(figure_lines({p.relative_to(root).as_posix(): p.read_text(encoding="utf-8")
+                                      for p in (root / "dcem").rglob("*.[hc]pp")})))
+        return
     if len(arguments) != 1:
         sys.exit(__doc__)
     violations = self_check() if arguments[0] == "--self-check" else check_tree(Path(arguments[0]).resolve())

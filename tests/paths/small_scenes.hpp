@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/accel/brute_force.hpp"
-#include "dcem/accel/bvh.hpp"
+#include "dcem/accel/box_index.hpp"
+#include "dcem/accel/wide_index.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/paths/query/link_end.hpp"
 #include "dcem/paths/query/scene_tracer.hpp"
@@ -76,7 +76,7 @@ inline Scene scene_of(const TriangleMesh& mesh) {
 }
 
 /// A scene with a tree over it and questions to both.
-template <typename Tree = WideBvh>
+template <typename Index = WideIndex>
 struct TracedScene {
   explicit TracedScene(Scene of) : scene(std::move(of)) { apply(scene.frame_at(0.0)); }
   TracedScene(const TracedScene&) = delete;
@@ -85,7 +85,7 @@ struct TracedScene {
   /// Moves the bodies, and builds the tree anew.
   void apply(const Frame& frame) {
     scene.apply(frame);
-    build_tree(tree, scene);
+    index.build(scene.triangle_view(), scene.triangle_boxes(), scene.first_triangles());
   }
 
   LinkEnd end(const Vec3& position_m, std::optional<BodyId> ignored_body = std::nullopt) {
@@ -101,8 +101,8 @@ struct TracedScene {
   }
 
   Scene scene;
-  Tree tree;
-  SceneTracer<Tree> tracer{scene, tree};
+  Index index;
+  SceneTracer<Index> tracer{scene, index};
   TraversalCounters counters;
 };
 

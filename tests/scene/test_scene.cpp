@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/scene/scene.hpp"
 
 using namespace dcem;

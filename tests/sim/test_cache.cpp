@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "dcem/accel/box_index.hpp"
 #include "dcem/paths/path_id.hpp"
+#include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/simulator.hpp"
 #include "tests/paths/small_scenes.hpp"
 
@@ -96,7 +98,7 @@ std::map<std::string, std::string> bits(const Scene& scene, const FrameResult& r
 
 /// The scene solved path by path, with every triangle asked in turn.
 struct Oracle {
-  Simulator<MaterialTable, BruteForce<double>> simulator;
+  BasicSimulator<MaterialTable, BruteForceIndex> simulator;
 
   Oracle(const Scene& scene, SimulationSettings settings) : simulator(scene, without_cache(settings)) {}
   static SimulationSettings without_cache(SimulationSettings settings) {
@@ -140,7 +142,7 @@ Frame with_box(Frame frame, std::size_t body, const std::string& name, const Vec
 TEST_CASE("every reported path is that path solved from scratch, and the books balance") {
   Scene scene = office();
   add_devices(scene);
-  Simulator<> simulator(scene, seeded());
+  Simulator simulator(scene, seeded());
   REQUIRE(simulator.cache() == CacheMode::seed);
   Oracle oracle(scene, seeded());
   Books books;
@@ -171,7 +173,7 @@ TEST_CASE("every reported path is that path solved from scratch, and the books b
 TEST_CASE("reused and expired are what was revalidated, but for what left with its object") {
   Scene scene = office();
   add_devices(scene);
-  Simulator<> simulator(scene, seeded());
+  Simulator simulator(scene, seeded());
   std::uint64_t before = 0;
   for (std::size_t index = 0; index < 20; ++index) {
     const FrameResult result =
@@ -205,7 +207,7 @@ TEST_CASE("a still scene: everything is reused, nothing dies, and births add wha
     scene.add_receiver(device_at("r0", Vec3(7.4, 4.7, 1.1)));
     SimulationSettings settings = seeded(200, 20);
     settings.propagation.max_diffractions = diffractions;
-    Simulator<> simulator(scene, settings);
+    Simulator simulator(scene, settings);
     FrameResult result = simulator.advance_to(0.0, 0);
     CHECK(result.cache.born == result.work.paths);
     std::uint64_t paths = result.work.paths, born = 0;
@@ -223,7 +225,7 @@ TEST_CASE("a still scene: everything is reused, nothing dies, and births add wha
     CHECK(born > 0);
     settings.propagation.discovery = Discovery::exact;
     settings.propagation.cache = CacheMode::off;
-    Simulator<> all(scene, settings);
+    Simulator all(scene, settings);
     const FrameResult whole = all.advance_to(0.0, 0);
     CHECK(paths <= whole.work.paths);
     // 200 + 199·20 rays have looked around. Of the edges' paths, most of them weak, a good part stays undiscovered:
@@ -243,7 +245,7 @@ TEST_CASE("all rays in a frame without history, few later, all again when an end
   settings.propagation.max_reflections = 1;
   settings.propagation.max_transmissions = 0;  // then each ray is one ray
   settings.propagation.max_diffractions = 0;   // and transmitters shoot none
-  Simulator<> simulator(scene, settings);
+  Simulator simulator(scene, settings);
   std::size_t index = 0;
   const auto rays = [&](bool a, bool b) {
     Frame frame = scene.frame_at(0.0, index++);
@@ -281,7 +283,7 @@ TEST_CASE("another object at the same place: the paths over the first one die, t
   scene.add_receiver(device_at("r0", Vec3(7.4, 1.9, 1.3)));
   // The mirror image of r0 in the top of the box, at 1.1 m, is seen at 0.9 / (0.9 + 0.2) of the way.
   const Vec3 above_box_m(6.2, 1.77, 0);
-  Simulator<> simulator(scene, seeded(3000, 3000));
+  Simulator simulator(scene, seeded(3000, 3000));
   const auto over = [&](const FrameResult& result, const std::string& name) {
     std::uint64_t count = 0;
     for (const PathContribution& path : result.links[0].paths) {
@@ -311,7 +313,7 @@ TEST_CASE("a device that sends and receives under one id has no link with itself
   scene.add_transmitter(device_at("t0", Vec3(1, 1.2, 2)));
   scene.add_transmitter(device_at("both", Vec3(8, 1.3, 2)));
   scene.add_receiver(device_at("both", Vec3(8, 1.3, 2)));
-  Simulator<> simulator(scene, seeded());
+  Simulator simulator(scene, seeded());
   Books books;
   for (std::size_t index = 0; index < 10; ++index) {
     const FrameResult result = simulator.advance_to(0.1 * double(index), index);
@@ -323,7 +325,7 @@ TEST_CASE("a device that sends and receives under one id has no link with itself
 TEST_CASE("frames out of order, skipped and repeated do no harm") {
   Scene scene = office();
   add_devices(scene);
-  Simulator<> simulator(scene, seeded());
+  Simulator simulator(scene, seeded());
   Oracle oracle(scene, seeded());
   Books books;
   for (const std::size_t index : {5U, 40U, 3U, 3U, 0U, 59U, 2U, 58U, 58U, 7U}) {
@@ -338,7 +340,7 @@ TEST_CASE("frames out of order, skipped and repeated do no harm") {
 TEST_CASE("moving without solving, and solving for others' receivers, leave the memory sound") {
   Scene scene = office();
   add_devices(scene);
-  Simulator<> simulator(scene, seeded()), undisturbed(scene, seeded());
+  Simulator simulator(scene, seeded()), undisturbed(scene, seeded());
   Oracle oracle(scene, seeded());
   const Device guest = device_at("guest", Vec3(5, 5, 1));
   for (std::size_t index = 0; index < 10; ++index) {
@@ -376,7 +378,7 @@ TEST_CASE("neither the order of the devices nor the number of threads changes a 
     for (const Device& device : receivers) scene.add_receiver(device);
     SimulationSettings settings = seeded();
     settings.threads = threads;
-    Simulator<> simulator(scene, settings);
+    Simulator simulator(scene, settings);
     std::vector<std::pair<std::map<std::string, std::string>, CacheCounters>> frames;
     std::vector<std::uint64_t> work;
     for (std::size_t index = 0; index < 12; ++index) {
@@ -400,14 +402,14 @@ TEST_CASE("no policy of the tree changes a bit") {
     Scene scene = office();
     add_devices(scene);
     SimulationSettings settings = seeded();
-    settings.tree_update.policy = policy;
-    Simulator<> simulator(scene, settings);
+    settings.tree.policy = policy;
+    Simulator simulator(scene, settings);
     std::vector<std::map<std::string, std::string>> frames;
     for (std::size_t index = 0; index < 30; ++index) {
       Frame frame = scene.frame_at(0.2 * double(index), index);
       if (index % 7 > 2) frame = with_box(frame, 2, "a", Vec3(3 + 0.1 * double(index), 4.5, 0));
       frames.push_back(bits(scene, simulator.advance(frame)));
-      CHECK(simulator.tree().validate(simulator.scene().triangle_boxes()) == "");
+      CHECK(simulator.index().tree().validate(simulator.scene().triangle_boxes()) == "");
     }
     return frames;
   };
@@ -421,7 +423,7 @@ TEST_CASE("with the cache off nothing is remembered and nothing is counted") {
   add_devices(scene);
   SimulationSettings settings = seeded();
   settings.propagation.cache = CacheMode::off;
-  Simulator<> simulator(scene, settings);
+  Simulator simulator(scene, settings);
   for (std::size_t index = 0; index < 3; ++index) {
     const FrameResult result = simulator.advance_to(0.1 * double(index), index);
     CHECK(result.cache == CacheCounters{});
@@ -435,7 +437,7 @@ TEST_CASE("which cache a simulation gets") {
     SimulationSettings settings;
     settings.propagation.discovery = discovery;
     settings.propagation.cache = cache;
-    return Simulator<>(scene, settings).cache();
+    return Simulator(scene, settings).cache();
   };
   CHECK(resolved(Discovery::sampled, CacheMode::automatic) == CacheMode::seed);
   CHECK(resolved(Discovery::sampled, CacheMode::seed) == CacheMode::seed);
@@ -453,7 +455,7 @@ TEST_CASE("a frame that is refused leaves the simulation as it was") {
   add_devices(scene);
   for (const double far_m : {1e16, std::numeric_limits<double>::infinity()}) {
     CAPTURE(far_m);
-    Simulator<> simulator(scene, seeded()), undisturbed(scene, seeded());
+    Simulator simulator(scene, seeded()), undisturbed(scene, seeded());
     const Frame good = scene.frame_at(0.0, 0);
     simulator.advance(good);
     undisturbed.advance(good);
@@ -463,6 +465,6 @@ TEST_CASE("a frame that is refused leaves the simulation as it was") {
     Frame next = scene.frame_at(0.1, 2);
     next.bodies[1] = bad.bodies[1];
     CHECK((bits(scene, simulator.advance(next)) == bits(scene, undisturbed.advance(next))));
-    CHECK(simulator.tree().validate(simulator.scene().triangle_boxes()) == "");
+    CHECK(simulator.index().tree().validate(simulator.scene().triangle_boxes()) == "");
   }
 }

@@ -41,7 +41,7 @@ TEST_CASE("the defaults are valid and are those of the documentation") {
   CHECK(settings.propagation.rays == 2000);
   CHECK_FALSE(settings.propagation.rays_steady.has_value());
   CHECK(settings.propagation.cache == CacheMode::automatic);
-  CHECK(settings.tree_update.policy == TreePolicy::adaptive);
+  CHECK(settings.tree.policy == TreePolicy::adaptive);
   CHECK(settings.propagation.seed == 1);
   CHECK_FALSE(settings.propagation.min_path_gain_db.has_value());
   CHECK(settings.propagation.path_loss == AnyPathLoss{});
@@ -73,8 +73,8 @@ TEST_CASE("at least one ray, at most a hundred million") {
   CHECK(names(refusal([](auto& s) { s.propagation.rays_steady = 0; }), "rays_steady"));
   CHECK(names(refusal([](auto& s) { s.propagation.rays_steady = 100'000'001; }), "rays_steady"));
   CHECK(refusal([](auto& s) { s.propagation.rays_steady = 1; }).empty());
-  CHECK(names(refusal([](auto& s) { s.tree_update.sah_growth_limit = 1.0; }), "sah_growth_limit"));
-  CHECK(names(refusal([](auto& s) { s.tree_update.deformation_limit = 0.0; }), "deformation_limit"));
+  CHECK(names(refusal([](auto& s) { s.tree.sah_growth_limit = 1.0; }), "sah_growth_limit"));
+  CHECK(names(refusal([](auto& s) { s.tree.deformation_limit = 0.0; }), "deformation_limit"));
 }
 
 TEST_CASE("numbers that would spread as NaN are refused") {

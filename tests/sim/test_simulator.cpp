@@ -1,4 +1,6 @@
 /// The whole line in memory: who is linked with whom, and what settings do to a link.
+#include "dcem/accel/box_index.hpp"
+#include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/simulator.hpp"
 
 #include <doctest/doctest.h>
@@ -101,7 +103,7 @@ TEST_CASE("links come by transmitter, then receiver, and a device has none with 
   scene.add_receiver(device_at("x", Vec3(7, 2, 1)));
   scene.add_receiver(device_at("b", Vec3(8, 1, 2)));
   scene.add_receiver(device_at("y", Vec3(1, 5, 1)));
-  Simulator<> simulator(std::move(scene), settings_for(1, 1));
+  Simulator simulator(std::move(scene), settings_for(1, 1));
   const FrameResult result = simulator.advance_to(0.0, 7);
   CHECK(result.index == 7);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
@@ -125,7 +127,7 @@ TEST_CASE("results and work do not depend on the number of threads or on the tre
       SimulationSettings settings = settings_for(2, 2, threads);
       settings.propagation.discovery = discovery;
       settings.propagation.rays = 300;
-      Simulator<> simulator(std::move(scene), settings);
+      Simulator simulator(std::move(scene), settings);
       simulator.advance_to(0.0, 0);
       FrameResult result = simulator.advance_to(0.5, 1);
       return std::pair(fingerprint(simulator.scene(), result.links), result.work);
@@ -153,9 +155,9 @@ TEST_CASE("the tree and its brute-force twin find the same paths, frame after fr
     }
     return all;
   };
-  const auto tree = run([](Scene scene) { return Simulator<>(std::move(scene), settings_for(2, 2)); });
+  const auto tree = run([](Scene scene) { return Simulator(std::move(scene), settings_for(2, 2)); });
   const auto brute = run(
-      [](Scene scene) { return Simulator<MaterialTable, BruteForce<double>>(std::move(scene), settings_for(2, 2)); });
+      [](Scene scene) { return BasicSimulator<MaterialTable, BruteForceIndex>(std::move(scene), settings_for(2, 2)); });
   CHECK(tree.size() > 2000);
   CHECK(tree == brute);
 }
@@ -168,7 +170,7 @@ TEST_CASE("a point of a map equals the same receiver solved alone, to the last b
     SimulationSettings settings = settings_for(2, 2, 3);
     settings.propagation.discovery = discovery;
     settings.propagation.rays = 200;
-    Simulator<> simulator(std::move(scene), settings);
+    Simulator simulator(std::move(scene), settings);
     simulator.advance_to(0.3, 4);
     ReceiverGrid grid{"area", Vec3(0.25, 0.31, 1.2), {0.9, 0.83}, {10, 7}, {}};
     std::atomic<std::size_t> done{0};
@@ -205,7 +207,7 @@ TEST_CASE("a point of a map equals the same receiver solved alone, to the last b
     Scene again = office();
     again.add_transmitter(device_at("a", Vec3(1, 1.2, 2), 27.0));
     again.add_transmitter(device_at("b", Vec3(8, 1.3, 2), 10.0));
-    Simulator<> apart(std::move(again), settings);
+    Simulator apart(std::move(again), settings);
     apart.advance_to(0.3, 4);
     WorkCounters apart_work;
     const auto same_maps = apart.radio_maps(grid, {}, &apart_work);
@@ -219,7 +221,7 @@ TEST_CASE("a point of a map equals the same receiver solved alone, to the last b
 TEST_CASE("map points inside a body or on a wall are obstructed and hold nothing") {
   Scene scene = office();
   scene.add_transmitter(device_at("a", Vec3(1, 5, 2)));
-  Simulator<> simulator(std::move(scene), settings_for(1, 1));
+  Simulator simulator(std::move(scene), settings_for(1, 1));
   const auto maps = simulator.radio_maps({"area", Vec3(2, 1.5, 0.5), {2.0, 1.5}, {2, 2}, {}});
   const auto& points = maps.at(0).points;
   CHECK(points[0].obstructed);  // in the trolley
@@ -239,7 +241,7 @@ TEST_CASE("a surface model of the caller's own sets every amplitude") {
   scene.add_transmitter(device_at("t", Vec3(-2, 0.5, 1.5), 0.0, {0.0, {PolarizationKind::dual, 0.0}}));
   scene.add_receiver(device_at("above", Vec3(2, 0.5, 1.5), 0.0, {0.0, {PolarizationKind::dual, 0.0}}));
   scene.add_receiver(device_at("below", Vec3(2, 0.5, -1.5), 0.0, {0.0, {PolarizationKind::dual, 0.0}}));
-  Simulator<HalfMirror> simulator(std::move(scene), settings_for(1, 1), HalfMirror{});
+  BasicSimulator<HalfMirror> simulator(std::move(scene), settings_for(1, 1), HalfMirror{});
   const FrameResult result = simulator.advance_to(0.0);
   REQUIRE(kinds_of(result.links.at(0)) == Strings{"", "R"});
   REQUIRE(kinds_of(result.links.at(1)) == Strings{"T"});
@@ -266,7 +268,7 @@ TEST_CASE("absent bodies: no link for what rides on them, and nothing of them in
   Device speaker = device_at("speaker", Vec3(0.0));
   speaker.attachment = Attachment{"bus", Vec3(0, 0, 4.5), false};
   scene.add_transmitter(speaker);
-  Simulator<> simulator(std::move(scene), settings_for(0, 0));
+  Simulator simulator(std::move(scene), settings_for(0, 0));
   Frame frame = simulator.scene().frame_at(0.0);
   const auto pairs = [&](const FrameResult& result) {
     Strings all;
@@ -295,7 +297,7 @@ TEST_CASE("without line_of_sight the direct path is dropped and the flag stays")
     scene.add_receiver(device_at("r", Vec3(2, 0.5, receiver_z_m)));
     SimulationSettings settings = settings_for(1, 1);
     settings.propagation.line_of_sight = line_of_sight;
-    Simulator<> simulator(std::move(scene), settings);
+    Simulator simulator(std::move(scene), settings);
     return std::move(simulator.advance_to(0.0).links.at(0));
   };
   CHECK(kinds_of(solve(true, 1.5)) == Strings{"", "R"});
@@ -316,7 +318,7 @@ TEST_CASE("min_path_gain_db drops what is weaker, after its field is known, and 
     scene.add_receiver(device_at("r", Vec3(7.4, 4.7, 1.1), 0.0, {0.0, {kind, 0.0}}));
     SimulationSettings settings = settings_for(2, 2);
     settings.propagation.min_path_gain_db = limit_db;
-    Simulator<> simulator(std::move(scene), settings);
+    Simulator simulator(std::move(scene), settings);
     return std::move(simulator.advance_to(0.0).links.at(0));
   };
   for (const PolarizationKind kind : {PolarizationKind::vertical, PolarizationKind::dual}) {
@@ -343,7 +345,7 @@ TEST_CASE("max_interactions bounds reflections, not crossings") {
     scene.add_receiver(device_at("r", Vec3(7.4, 4.7, 1.1)));
     SimulationSettings settings = settings_for(2, 2);
     settings.propagation.max_interactions = bound;
-    Simulator<> simulator(std::move(scene), settings);
+    Simulator simulator(std::move(scene), settings);
     return kinds_of(simulator.advance_to(0.0).links.at(0));
   };
   const auto longest = [](const Strings& all, char letter) {
@@ -368,7 +370,7 @@ TEST_CASE("sampled results say that they may be incomplete, unless there was not
     settings.propagation.max_diffractions = 0;
     settings.propagation.discovery = Discovery::sampled;
     settings.propagation.rays = 10;
-    Simulator<> simulator(std::move(scene), settings);
+    Simulator simulator(std::move(scene), settings);
     CHECK(simulator.discovery() == Discovery::sampled);
     CHECK(simulator.advance_to(0.0).links.at(0).complete == (order == 0));
   }
@@ -384,7 +386,7 @@ TEST_CASE("without a cache a sampled frame depends on seed, receiver and frame n
     settings.propagation.cache = CacheMode::off;
     settings.propagation.rays = 20;
     settings.propagation.seed = seed;
-    Simulator<> simulator(std::move(scene), settings);
+    Simulator simulator(std::move(scene), settings);
     FrameResult last;
     for (const std::size_t frame : frames) last = simulator.advance_to(0.0, frame);
     return std::pair(fingerprint(simulator.scene(), last.links), last.work.sequences_proposed);
@@ -401,7 +403,7 @@ TEST_CASE("a frame is the same from wherever the scene came: moving there and ba
     Device rider = device_at("rider", Vec3(0.0));
     rider.attachment = Attachment{"trolley", Vec3(0.1, 0, 1.2), false};
     scene.add_receiver(rider);
-    Simulator<> simulator(std::move(scene), settings_for(2, 2));
+    Simulator simulator(std::move(scene), settings_for(2, 2));
     std::string last;
     for (const double time_s : times_s) last = fingerprint(simulator.scene(), simulator.advance_to(time_s).links);
     return last;
@@ -411,13 +413,13 @@ TEST_CASE("a frame is the same from wherever the scene came: moving there and ba
 }
 
 TEST_CASE("empty scenes, and scenes without devices, are no special case") {
-  Simulator<> nothing(Scene{}, settings_for(2, 2));
+  Simulator nothing(Scene{}, settings_for(2, 2));
   CHECK(nothing.advance_to(0.0).links.empty());
   CHECK(nothing.radio_maps({"area", Vec3(0.0), {1, 1}, {2, 2}, {}}).empty());
   Scene scene;
   scene.add_transmitter(device_at("t", Vec3(0, 0, 1)));
   scene.add_receiver(device_at("r", Vec3(3, 0, 1)));
-  Simulator<> space(std::move(scene), settings_for(2, 2));
+  Simulator space(std::move(scene), settings_for(2, 2));
   const FrameResult result = space.advance_to(0.0);
   REQUIRE(result.links.size() == 1);
   CHECK(kinds_of(result.links[0]) == Strings{""});
@@ -427,18 +429,18 @@ TEST_CASE("empty scenes, and scenes without devices, are no special case") {
 TEST_CASE("settings out of range and materials without values are refused at once") {
   SimulationSettings settings;
   settings.propagation.rays = 0;
-  CHECK_THROWS_AS(Simulator<>(Scene{}, settings), std::invalid_argument);
+  CHECK_THROWS_AS(Simulator(Scene{}, settings), std::invalid_argument);
   Scene scene;
   scene.add_material({"odd", ItuMaterial{"concrete", std::nullopt}});
   settings = {};
   settings.frequency_hz = 1e12;  // the table ends at 100 GHz
-  CHECK_THROWS_AS(Simulator<>(std::move(scene), settings), std::invalid_argument);
+  CHECK_THROWS_AS(Simulator(std::move(scene), settings), std::invalid_argument);
 }
 
 TEST_CASE("a progress callback's exception reaches the caller") {
   Scene scene = office();
   scene.add_transmitter(device_at("t", Vec3(1, 1.2, 2)));
-  Simulator<> simulator(std::move(scene), settings_for(1, 1, 3));
+  Simulator simulator(std::move(scene), settings_for(1, 1, 3));
   const ReceiverGrid grid{"area", Vec3(0.25, 0.31, 1.2), {0.9, 0.83}, {4, 7}, {}};
   CHECK_THROWS_AS(simulator.radio_maps(grid, [](std::size_t) { throw std::runtime_error("stop"); }),
                   std::runtime_error);

@@ -7,6 +7,7 @@
 
 #include "dcem/paths/path_id.hpp"
 #include "dcem/sim/simulator.hpp"
+#include "dcem/sim/verify/same_bits.hpp"
 #include "dcem/sim/verify/verifier.hpp"
 #include "tests/paths/small_scenes.hpp"
 
@@ -59,7 +60,7 @@ std::vector<PathContribution> paths_in_yard(const Mat3& turn) {
   };
   scene.add_transmitter(device("tx", Vec3(-6, 2, 3), PolarizationKind::right_circular, {0.2, 0.1, 0.4}));
   scene.add_receiver(device("rx", Vec3(8, -3.1, 1.2), PolarizationKind::vertical, {2.8, -0.1, 0.3}));
-  return std::move(Simulator<>(std::move(scene), settings_for(2, 2)).advance_to(0.0).links.at(0).paths);
+  return std::move(Simulator(std::move(scene), settings_for(2, 2)).advance_to(0.0).links.at(0).paths);
 }
 
 }  // namespace
@@ -77,7 +78,7 @@ TEST_CASE("the beam of an antenna on a roof turns with the car") {
     if (std::string(id) == "left") device.antenna = sector(PolarizationKind::vertical, {looks_left});
     scene.add_receiver(device);
   }
-  Simulator<> simulator(std::move(scene), settings_for(0, 0));
+  Simulator simulator(std::move(scene), settings_for(0, 0));
   for (double time_s = 0.0; time_s <= 2.0; time_s += 0.125) {
     const FrameResult frame = simulator.advance_to(time_s);
     const double yaw_deg = 85.0 * time_s;
@@ -121,9 +122,9 @@ TEST_CASE("links between arrays and turned antennas are the same to the bit for 
                                    sector(PolarizationKind::slant, {2.8, 0.1 * index, 0.3}, {1, 3})));
     }
     const SimulationSettings settings = settings_for(2, 1, threads);
-    Simulator<> simulator(scene, settings);
+    Simulator simulator(scene, settings);
     FrameResult result = simulator.advance_to(0.0);
-    Verifier<> verifier(scene, settings, MaterialTable({scene.materials().begin(), scene.materials().end()}, 28e9));
+    Verifier verifier(scene, settings);
     verifier.check(scene.frame_at(0.0), result);
     CHECK(verifier.report().passed());
     return result;
@@ -145,7 +146,7 @@ TEST_CASE("a path in the null of a pattern stays a path without power, and nothi
   // Straight above each other: along the wires. The ground's reflection leaves along the wire, too.
   scene.add_transmitter(device_at("tx", Vec3(-6, 2, 3), 0.0, {0.0, {PolarizationKind::vertical}, HalfWaveDipole{}}));
   scene.add_receiver(device_at("rx", Vec3(-6, 2, 8)));
-  Simulator<> simulator(std::move(scene), settings_for(0, 0));
+  Simulator simulator(std::move(scene), settings_for(0, 0));
   const LinkResult link = simulator.advance_to(0.0).links.at(0);
   REQUIRE(link.paths.size() == 1);
   CHECK(link.paths[0].power_ratio == 0.0);

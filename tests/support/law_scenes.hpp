@@ -129,7 +129,7 @@ inline std::vector<PathContribution> paths_between(Scene scene, const Vec3& tran
                                                    PolarizationKind polarization = PolarizationKind::dual) {
   scene.add_transmitter(device_at("tx", transmitter_m, 0.0, antenna(polarization)));
   scene.add_receiver(device_at("rx", receiver_m, 0.0, antenna(polarization)));
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   return std::move(simulator.advance_to(0.0).links.at(0).paths);
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "dcem/geometry/surfaces/facet_builder.hpp"
+#include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/world/world_geometry.hpp"
 
 using namespace dcem;

@@ -15,8 +15,8 @@
 
 namespace dcem::detail {
 
-/// Near child first; a subtree is left out when the ray enters it beyond the closest_hit hit so far. Subtrees that
-/// touch the closest_hit hit are visited, so that the callback sees every candidate of a tie.
+/// Near child first; a subtree is left out when the ray enters it beyond the closest hit so far. Subtrees that
+/// touch the closest hit are visited, so that the callback sees every candidate of a tie.
 template <std::floating_point Scalar, class Leaf>
 TraversalCounters walk_closest(const BvhArrays<Scalar>& arrays, const Ray<Scalar>& ray, Leaf& leaf) {
   struct Pending {

@@ -11,90 +11,9 @@
 
 #include "dcem/accel/brute_force.hpp"
 #include "dcem/accel/bvh.hpp"
+#include "dcem/accel/tree_settings.hpp"
 
 namespace dcem {
-
-/// What is done in a frame in which something moved. Where nothing moved, nothing is done.
-enum class TreePolicy {
-  rebuild_always,  ///< a new tree over everything: the best tree and the highest price
-  refit_only,      ///< boxes above what moved are made tight again; the tree's shape stays as it was built
-  adaptive         ///< refit, and then rebuild the subtrees that are degraded
-};
-
-/// How a tree is kept. The defaults need no knowledge of the scene: both limits compare a subtree with itself.
-struct TreeUpdateSettings {
-  TreePolicy policy = TreePolicy::adaptive;
-  /// A subtree is degraded when its Σ cost · surface is this many times what it was when it was built (no unit, above
-  /// 1; infinity switches the measure off).
-  double sah_growth_limit = 1.2;
-  /// A subtree is degraded when the mean growth of its nodes' surface over their children's exceeds this (no unit,
-  /// above 0; infinity switches the measure off). RT-DEFORM's 40 %.
-  double deformation_limit = 0.4;
-  /// Neither measure sees a tree that might be better than it ever was, as when objects gather. The level above the
-  /// objects is therefore built anew whenever refits have visited this many times as many nodes as it has (no unit,
-  /// above 0; infinity switches it off). At 64 that adds about a quarter to the cost of the refits.
-  /// Of the wide tree: all above leaves and objects, nodes and leaves being counted, where that makes Σ cost · surface
-  /// fall; for the first time when something moves for the first time. It adds a fortieth.
-  double renewal_ratio = 64.0;
-  /// Of the wide tree: an object that moved is hung elsewhere when the node around it has grown to more than this many
-  /// times what it was when the object came there (no unit, at least 1; infinity switches it off).
-  double reinsertion_growth = 1.1;
-  /// Of the wide tree: in each frame one in this many of the objects that moved is hung anew in turn, whatever its node
-  /// has grown (number; 0 switches it off).
-  std::uint32_t reinsertion_turn = 50;
-  /// Of the wide tree: around each node that motion has touched, at most so many entries change their place in a frame
-  /// where Σ cost · surface falls (number; 0 switches rotations off).
-  std::uint32_t rotations_per_node = 0;
-  /// Of the wide tree: only in one frame of so many, of those in which something moved, rotations are done and the two
-  /// measures are looked at, for all that has moved since (number, at least 1).
-  std::uint32_t check_interval = 25;
-  /// Of the wide tree: whether a subtree that is degraded by either measure is built anew in place, its leaves and
-  /// objects untouched. Otherwise the whole tree is built anew when its SAH cost has grown by `sah_growth_limit`.
-  bool subtree_rebuilds = true;
-  /// Of the wide tree, with `subtree_rebuilds`: all above leaves and objects is built anew once rays have visited this
-  /// many nodes more for each leaf than they would have at the steps per ray that followed the last time (number, above
-  /// 0; infinity switches it off). Counts only where the updater is told what rays spend. 12 is about what building it
-  /// takes: who has spent as much on rays buys it, and so never spends twice what the best moment would have cost.
-  double subtree_rebuild_price = 12.0;
-  /// Of the wide tree, with `subtree_rebuilds`: the whole tree is built anew, leaves included, when its SAH cost has
-  /// grown to this many times what it was when last built whole (no unit, above 1; infinity switches it off). For what
-  /// subtrees cannot mend: leaves whose triangles have drifted apart.
-  double rebuild_growth_limit = 2.0;
-};
-
-/// Throws std::invalid_argument for limits outside the ranges written above.
-inline void validate(const TreeUpdateSettings& settings) {
-  if (!(settings.sah_growth_limit > 1.0)) throw std::invalid_argument("sah_growth_limit: expected a number above 1");
-  if (!(settings.deformation_limit > 0.0)) throw std::invalid_argument("deformation_limit: expected a number above 0");
-  if (!(settings.renewal_ratio > 0.0)) throw std::invalid_argument("renewal_ratio: expected a number above 0");
-  if (!(settings.reinsertion_growth >= 1.0)) {
-    throw std::invalid_argument("reinsertion_growth: expected a number of at least 1");
-  }
-  if (settings.check_interval < 1) throw std::invalid_argument("check_interval: expected at least 1");
-  if (!(settings.subtree_rebuild_price > 0.0))
-    throw std::invalid_argument("subtree_rebuild_price: expected a number above 0");
-  if (!(settings.rebuild_growth_limit > 1.0)) {
-    throw std::invalid_argument("rebuild_growth_limit: expected a number above 1");
-  }
-}
-
-/// What keeping a tree took in one frame. Every node is kept, refit or rebuilt; one that was both counts as rebuilt. An
-/// object that a wide tree hung elsewhere counts as one rebuilt subtree of one node.
-struct TreeUpdateReport {
-  std::uint64_t nodes_kept = 0;
-  std::uint64_t nodes_refit = 0;
-  std::uint64_t nodes_rebuilt = 0;
-  std::uint64_t subtrees_rebuilt = 0;  ///< the whole tree counts as one
-  bool root_rebuilt = false;           ///< the whole tree was built anew, or the last part of all that can be in place
-  double sah_cost = 0.0;               ///< after the frame's tree_update, no unit
-  double sah_cost_at_build = 0.0;      ///< after the last build of the whole tree, no unit
-  // Of a wide tree:
-  std::uint64_t reinserted = 0;  ///< objects that were hung elsewhere
-  std::uint64_t rotated = 0;     ///< entries that changed their place by rotation; such nodes count as kept or refit
-  std::uint64_t rebuilt_in_place = 0;  ///< subtrees that were built anew in place
-
-  friend bool operator==(const TreeUpdateReport&, const TreeUpdateReport&) = default;
-};
 
 /// Decides for one `Bvh`, whose objects are the objects of a scene.
 template <std::floating_point Scalar>

@@ -10,10 +10,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "dcem/accel/wide/build/collapse.hpp"
-#include "dcem/accel/wide/build/quads.hpp"
 #include "dcem/accel/wide/node.hpp"
-#include "dcem/accel/wide/trace/quad_planes.hpp"
+#include "dcem/accel/wide/quad.hpp"
+#include "dcem/accel/wide/settings.hpp"
 #include "dcem/accel/wide/update/leaf_numbers.hpp"
 #include "dcem/core/huge_pages.hpp"
 #include "dcem/geometry/aabb.hpp"
@@ -38,7 +37,6 @@ struct WideArrays {
   HugePageVector<QuadLeaf> leaves;
   std::vector<NodeLane> lane_of_leaf;
   std::vector<std::uint32_t> object_rooted_at_leaf;  ///< the object whose root it is, or no_object
-  std::vector<std::uint32_t> object_of_leaf;
   std::vector<VertexRun> run_of_leaf;
   std::vector<std::uint32_t> free_nodes;
 
@@ -53,6 +51,7 @@ struct WideArrays {
   Vec3 origin_m{0.0};
   float extent_m = 0.0F;  ///< no finite bound is larger, from the origin; grows only
   WideCosts costs;
+  bool fetch_ahead = true;        ///< WideBuildSettings::fetch_ahead
   double weighted_area_m2 = 0.0;  ///< Σ cost · half surface over all nodes and leaves but the root
   double largest_area_m2 = 0.0;   ///< that this has had since it was last summed
 
@@ -149,8 +148,8 @@ struct WideArrays {
 
 inline void WideArrays::clear() {
   const auto empty = [](auto&... lists) { (lists.clear(), ...); };
-  empty(nodes, lane_of_node, object_rooted_at_node, leaves, lane_of_leaf, object_rooted_at_leaf, object_of_leaf,
-        run_of_leaf, free_nodes, quads, planes, quad_of_triangle, vertices_m, triangles, is_there, object_root);
+  empty(nodes, lane_of_node, object_rooted_at_node, leaves, lane_of_leaf, object_rooted_at_leaf, run_of_leaf,
+        free_nodes, quads, planes, quad_of_triangle, vertices_m, triangles, is_there, object_root);
   origin_m = Vec3(0.0);
   extent_m = 0.0F;
   weighted_area_m2 = largest_area_m2 = 0.0;
@@ -179,9 +178,9 @@ inline std::uint32_t WideArrays::take_node() {
 
 inline std::uint32_t WideArrays::add_leaf(std::uint32_t object) {
   leaves.emplace_back();
+  leaves.back().object = object;
   lane_of_leaf.emplace_back();
   object_rooted_at_leaf.push_back(no_object);
-  object_of_leaf.push_back(object);
   run_of_leaf.emplace_back();
   quads.resize(quads.size() + simd_lanes);
   planes.resize(planes.size() + simd_lanes);

@@ -4,12 +4,12 @@
 #include <cstdint>
 
 #include "dcem/accel/wide/arrays.hpp"
-#include "dcem/accel/wide/build/binner.hpp"
+#include "dcem/accel/wide/node.hpp"
 
 namespace dcem::detail {
 
 /// Nodes of a built level lie on no deeper depth, its root being on depth 1: below them there are leaves.
-inline constexpr std::uint32_t wide_level_depth_limit = WideBinner::depths - 1;
+inline constexpr std::uint32_t wide_level_depth_limit = wide_build_depth_limit - 1;
 
 /// Whether a child is a node of the same level as the node in which it hangs.
 inline bool is_level_node(const WideArrays& arrays, WideChild child) {

@@ -11,6 +11,19 @@
 
 namespace dcem {
 
+namespace detail {
+
+/// Depths of nodes and leaves, that of the root being 1. The tree over all and the tree of an object are no deeper than
+/// the binary trees they are made from, each wide node standing for one of their nodes at least; an edit makes nodes
+/// only above `wide_edit_depth_limit`, so that what it pushes down, a leaf or an object, is pushed no further than a
+/// built tree reaches.
+inline constexpr std::uint32_t wide_build_depth_limit = 56;
+inline constexpr std::uint32_t wide_depth_limit = 2 * wide_build_depth_limit + 1;
+inline constexpr std::uint32_t wide_edit_depth_limit = 40;
+static_assert(wide_edit_depth_limit < wide_build_depth_limit);
+
+}  // namespace detail
+
 /// What an entry of a node leads to: another node, a leaf of quads, or nothing.
 struct WideChild {
   static constexpr std::uint32_t leaf_flag = 0x80000000U;
@@ -97,16 +110,17 @@ struct alignas(64) WideNode {
 /// The numbers serve to say of a ray that it surely misses a quad or surely hits it; where neither is sure, double
 /// precision decides. The quads of leaf b have the numbers 8 b + lane.
 struct alignas(64) QuadLeaf {
+  /// [corner][axis][lane], from the centre. First, so that no row of eight lies across two lines of memory.
+  std::array<std::array<std::array<float, simd_lanes>, 3>, 4> corner_m{};
   std::array<float, 3> centre_m{};  ///< from the tree's origin, exact
   float size_m = 0.0F;              ///< no corner has a larger coordinate, from the centre
   float reach_m = 0.0F;             ///< edge_error_factor · the longest distance between two corners of a quad
   float bend_m = 0.0F;              ///< how far d is from the plane of a, b, c, at most
   std::uint32_t lanes = 0;          ///< bit i: there is a quad in lane i, and it is in the scene
+  std::uint32_t object = 0;         ///< whose quads they are
   std::array<std::array<float, simd_lanes>, 3> normal{};  ///< of a, b, c; zero where they have none
-  /// [corner][axis][lane], from the centre.
-  std::array<std::array<std::array<float, simd_lanes>, 3>, 4> corner_m{};
 
-  /// Room for the rounding of the edge functions: see WideRay::meets(const QuadLeaf&).
+  /// Room for the rounding of the edge functions: see WideRay::meets(const QuadLeaf&, …).
   static constexpr double edge_error_factor = 10.0;
 };
 static_assert(sizeof(WideNode) == 256 && sizeof(QuadLeaf) == 512, "lines of memory are what rays wait for");

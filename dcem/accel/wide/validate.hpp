@@ -9,7 +9,7 @@
 
 #include "dcem/accel/detail/box_check.hpp"
 #include "dcem/accel/wide/arrays.hpp"
-#include "dcem/accel/wide/trace/traversal.hpp"
+#include "dcem/accel/wide/node.hpp"
 
 namespace dcem::detail {
 

@@ -87,6 +87,11 @@ inline JonesVector turned_jones(const JonesVector& own, const Mat3& rotation, co
 inline JonesVector Antenna::port_jones(const Vec3& direction, std::size_t port, const Mat3& rotation) const {
   DCEM_ASSERT(port < port_count());
   const Vec3 local_direction = direction * rotation;  // the transpose times the direction
+  if (const auto* own = std::get_if<UserPattern>(&pattern)) {
+    const double gain = db_to_amplitude_ratio(gain_dbi);
+    const JonesVector field = own->model->field(glm::normalize(local_direction), port);
+    return detail::turned_jones({gain * field[0], gain * field[1]}, rotation, local_direction, direction);
+  }
   const double amplitude = db_to_amplitude_ratio(gain_dbi) * std::sqrt(power_gain(pattern, local_direction));
   const JonesVector vertical_or_horizontal{port == 0 ? 1.0 : 0.0, port == 0 ? 0.0 : 1.0};
   const JonesVector jones = jones_vector(polarization).value_or(vertical_or_horizontal);
@@ -103,6 +108,10 @@ inline void validate(const Antenna& antenna) {
   const auto* tabulated = std::get_if<TabulatedPattern>(&antenna.pattern);
   if (tabulated != nullptr && tabulated->table == nullptr)
     throw std::invalid_argument("antenna: its tabulated pattern has no table");
+  const auto* own = std::get_if<UserPattern>(&antenna.pattern);
+  if (own != nullptr && own->model == nullptr) throw std::invalid_argument("antenna: its own pattern has no model");
+  if (own != nullptr && !(own->model->peak_power_gain() >= 0.0 && std::isfinite(own->model->peak_power_gain())))
+    throw std::invalid_argument("antenna: the peak gain of its own pattern must be finite and not negative");
   validate(antenna.array);
 }
 

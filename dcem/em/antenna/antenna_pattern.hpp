@@ -17,6 +17,7 @@
 #include "dcem/core/units.hpp"
 #include "dcem/em/antenna/pattern_table.hpp"
 #include "dcem/em/antenna/polarization.hpp"
+#include "dcem/em/antenna/user_pattern.hpp"
 #include "dcem/geometry/vector.hpp"
 
 namespace dcem {
@@ -49,8 +50,8 @@ struct TabulatedPattern {
   friend bool operator==(const TabulatedPattern&, const TabulatedPattern&) = default;
 };
 
-/// The closed set of patterns.
-using AntennaPattern = std::variant<IsotropicPattern, HalfWaveDipole, Tr38901Element, TabulatedPattern>;
+/// The built-in patterns, and one for those of the caller's own.
+using AntennaPattern = std::variant<IsotropicPattern, HalfWaveDipole, Tr38901Element, TabulatedPattern, UserPattern>;
 
 /// Directivity of the half-wave dipole, 4/Cin(2π).
 inline constexpr double half_wave_dipole_directivity = 1.6409223769845851836;
@@ -63,6 +64,7 @@ double power_gain(const AntennaPattern& pattern, const Vec3& local_direction);
 
 /// The largest power gain (linear) of all directions.
 inline double peak_power_gain(const AntennaPattern& pattern) {
+  if (const auto* own = std::get_if<UserPattern>(&pattern)) return own->model->peak_power_gain();
   const auto* tabulated = std::get_if<TabulatedPattern>(&pattern);
   // The others look along +x, or are the same all around z.
   return tabulated ? db_to_power_ratio(tabulated->table->peak_dbi()) : power_gain(pattern, 0.0, 0.5 * pi);
@@ -108,6 +110,15 @@ inline double pattern_gain(const Tr38901Element&, double azimuth_rad, double zen
 inline double pattern_gain(const TabulatedPattern& pattern, double azimuth_rad, double zenith_rad) {
   DCEM_ASSERT(pattern.table != nullptr);
   return db_to_power_ratio(pattern.table->gain_dbi(azimuth_rad, zenith_rad));
+}
+
+/// Of port 0.
+inline double pattern_gain(const UserPattern& pattern, double azimuth_rad, double zenith_rad) {
+  DCEM_ASSERT(pattern.model != nullptr);
+  const double sine = std::sin(zenith_rad);
+  const Vec3 direction(sine * std::cos(azimuth_rad), sine * std::sin(azimuth_rad), std::cos(zenith_rad));
+  const JonesVector field = pattern.model->field(direction, 0);
+  return std::norm(field[0]) + std::norm(field[1]);
 }
 
 }  // namespace detail

@@ -27,17 +27,11 @@
 
 #include "dcem/core/constants.hpp"
 #include "dcem/em/complex.hpp"
+#include "dcem/em/diffraction/lossy_wedge.hpp"
 #include "dcem/em/diffraction/utd.hpp"
 #include "dcem/em/surface/fresnel.hpp"
 
 namespace dcem {
-
-/// How the reflection of lossy faces enters the coefficient. All agree for a perfect conductor.
-enum class LossyWedge : std::uint8_t {
-  holm_reciprocal,  ///< Holm 2000, El-Sallabi & Vainikainen 2005, with angles as in `reciprocal`: best in the shadow
-  reciprocal,       ///< azimuths min(φ, φ') and min(nπ − φ, nπ − φ')
-  luebbers84        ///< azimuth φ' at the face nearer to the source, nπ − φ at the other; not reciprocal
-};
 
 /// Field coefficients of a face for cos θ in 0…1: reflection, or insertion coefficients of a crossing. Any callable,
 /// for example [&](double cos_incidence) { return table.response(material, cos_incidence).reflection; }. A reduction

@@ -3,7 +3,9 @@
 /// charging the loss of the first metre for every leg would add about 62 dB per bounce at 30 GHz.
 #include <cmath>
 #include <concepts>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 #include <variant>
 
 #include "dcem/core/constants.hpp"
@@ -49,9 +51,26 @@ inline void validate(const CloseIn& model) {
     throw std::invalid_argument("close-in path loss: the attenuation must be finite and not negative");
 }
 
-/// One of the built-in models, chosen at run time; models the same concept.
+/// A model of the caller's own, from any type that models the concept above. Called from several threads at once.
+class UserPathLoss {
+ public:
+  template <PathLossModel Model>
+  requires(!std::same_as<Model, UserPathLoss>) explicit UserPathLoss(Model model)
+      : model_(std::make_shared<const Model>(std::move(model))), ask_([](const void* own, double total_length_m) {
+          return static_cast<const Model*>(own)->excess_amplitude(total_length_m);
+        }) {}
+
+  double excess_amplitude(double total_length_m) const { return ask_(model_.get(), total_length_m); }
+  friend bool operator==(const UserPathLoss& one, const UserPathLoss& other) { return one.model_ == other.model_; }
+
+ private:
+  std::shared_ptr<const void> model_;
+  double (*ask_)(const void* model, double total_length_m);
+};
+
+/// A built-in model or one of the caller's own, chosen at run time; models the same concept.
 struct AnyPathLoss {
-  std::variant<FreeSpace, CloseIn> model{};
+  std::variant<FreeSpace, CloseIn, UserPathLoss> model{};
 
   double excess_amplitude(double total_length_m) const {
     return std::visit([total_length_m](const auto& chosen) { return chosen.excess_amplitude(total_length_m); }, model);

@@ -14,13 +14,9 @@
 #include <string_view>
 #include <vector>
 
-namespace dcem {
+#include "dcem/em/surface/itu_settings.hpp"
 
-/// Which table is used and whether it may be used outside its frequency intervals.
-struct ItuSettings {
-  int revision = 3;                  ///< 3 or 4
-  bool allow_extrapolation = false;  ///< outside the intervals: an error, or the nearest interval's formula
-};
+namespace dcem {
 
 /// Properties of one material at one frequency.
 struct ItuProperties {

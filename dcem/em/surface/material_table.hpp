@@ -14,10 +14,14 @@
 
 #include "dcem/core/error.hpp"
 #include "dcem/core/ids.hpp"
+#include "dcem/core/units.hpp"
+#include "dcem/em/surface/itu_p2040.hpp"
+#include "dcem/em/surface/itu_settings.hpp"
 #include "dcem/em/surface/material.hpp"
 #include "dcem/em/surface/multilayer.hpp"
 #include "dcem/em/surface/roughness.hpp"
 #include "dcem/em/surface/slab.hpp"
+#include "dcem/em/surface/user_surface.hpp"
 
 namespace dcem {
 
@@ -74,7 +78,11 @@ class MaterialTable {
     std::vector<Layer> layers;
     bool opaque;
   };
-  using PreparedSurface = std::variant<SurfaceResponse, HalfSpace, Slab, Stack>;
+  struct OwnModel {
+    const UserSurfaceModel* model;  ///< kept by the material
+    double frequency_hz;
+  };
+  using PreparedSurface = std::variant<SurfaceResponse, HalfSpace, Slab, Stack, OwnModel>;
 
   PreparedSurface prepare(const PerfectConductor&) const { return SurfaceResponse{perfect_conductor_reflection(), {}}; }
   PreparedSurface prepare(const ConstantReflection& model) const;
@@ -82,7 +90,9 @@ class MaterialTable {
   PreparedSurface prepare(const ItuMaterial& model) const;
   PreparedSurface prepare(const Multilayer& model) const;
   PreparedSurface prepare(const Foliage&) const { return SurfaceResponse{{}, {1.0, 1.0}}; }
+  PreparedSurface prepare(const UserSurface& surface) const { return OwnModel{surface.model.get(), frequency_hz_}; }
   void prepare_all();
+  static void check_own(const Material& material, const OwnModel& own);
   bool extrapolates(const Material& material) const;
   double phase_spread_at_normal_rad(const Material& material) const;
   static bool representable(const PreparedSurface& surface);
@@ -98,6 +108,9 @@ class MaterialTable {
   static SurfaceResponse respond(const SurfaceResponse& constant, double) { return constant; }
   static SurfaceResponse respond(const HalfSpace& half_space, double cos_incidence) {
     return {half_space_reflection(half_space.permittivity, cos_incidence), {}};
+  }
+  static SurfaceResponse respond(const OwnModel& own, double cos_incidence) {
+    return own.model->response(own.frequency_hz, cos_incidence);
   }
   static SurfaceResponse respond(const Slab& slab, double cos_incidence);
   static SurfaceResponse respond(const Stack& stack, double cos_incidence);
@@ -125,8 +138,26 @@ inline void MaterialTable::prepare_all() {
     surfaces_.push_back(std::visit([this](const auto& model) { return prepare(model); }, material.model));
     if (!representable(surfaces_.back()))
       throw std::invalid_argument("material '" + material.name + "': its permittivity at this frequency is too large");
+    if (const auto* own = std::get_if<OwnModel>(&surfaces_.back())) check_own(material, *own);
     phase_spreads_at_normal_rad_.push_back(phase_spread_at_normal_rad(material));
     if (extrapolates(material)) extrapolated_.push_back(id);
+  }
+}
+
+/// A model of the caller's own is tried at some angles: what would be a silent mistake is an error.
+inline void MaterialTable::check_own(const Material& material, const OwnModel& own) {
+  constexpr int steps = 16;
+  for (int step = 0; step <= steps; ++step) {
+    const SurfaceResponse response = respond(own, static_cast<double>(step) / steps);
+    const auto require = [&](bool holds, const char* what) {
+      if (!holds) throw std::invalid_argument("material '" + material.name + "': its own model " + what);
+    };
+    for (const Complex& value :
+         {response.reflection.te, response.reflection.tm, response.transmission.te, response.transmission.tm}) {
+      require(is_finite(value), "gives a coefficient that is not finite");
+    }
+    require(transmits(material) || (response.transmission.te == 0.0 && response.transmission.tm == 0.0),
+            "lets a wave through, but is not said to transmit");
   }
 }
 

@@ -28,10 +28,10 @@ struct DiffuseKey {
 };
 
 /// Computes links one after the other; one per thread. Everything named must outlive it.
-template <typename Tree, SurfaceModel Surface, PathLossModel Loss>
+template <typename Index, SurfaceModel Surface, PathLossModel Loss>
 class DiffuseIntegral {
  public:
-  DiffuseIntegral(const SceneTracer<Tree>& tracer, const ScatteredPower<Surface, Loss>& scattered,
+  DiffuseIntegral(const SceneTracer<Index>& tracer, const ScatteredPower<Surface, Loss>& scattered,
                   const DiffuseSettings& settings, int max_transmissions)
       : tracer_(tracer),
         scene_(tracer.scene()),
@@ -42,7 +42,7 @@ class DiffuseIntegral {
 
   DiffusePower evaluate(const LinkEnd& transmitter, const RadioEnd& from, const LinkEnd& receiver, const RadioEnd& to,
                         const DiffuseKey& key) {
-    Integrand integrand{*this, transmitter, from, receiver, to, TileSight<Tree>(tracer_, transmitter, receiver)};
+    Integrand integrand{*this, transmitter, from, receiver, to, TileSight<Index>(tracer_, transmitter, receiver)};
     AdaptiveTiles<Integrand> tiles(
         {relative_tolerance(), settings_.tile_max_m.value_or(std::numeric_limits<double>::infinity()),
          settings_.tile_budget},
@@ -69,7 +69,7 @@ class DiffuseIntegral {
     const RadioEnd& from;
     const LinkEnd& receiver;
     const RadioEnd& to;
-    TileSight<Tree> sight;
+    TileSight<Index> sight;
     std::vector<std::pair<std::size_t, DiffuseContribution>> seen{};  ///< by tile; only those that bring power
     std::vector<FacetId> sheets{};
     TraversalCounters traversal{};
@@ -163,12 +163,12 @@ class DiffuseIntegral {
     return result;
   }
 
-  const SceneTracer<Tree>& tracer_;
+  const SceneTracer<Index>& tracer_;
   const Scene& scene_;
   const ScatteredPower<Surface, Loss>& scattered_;
   DiffuseSettings settings_;
   std::size_t max_transmissions_;
-  ScatterSolver<Tree> solver_;
+  ScatterSolver<Index> solver_;
 };
 
 }  // namespace dcem

@@ -16,10 +16,10 @@
 namespace dcem {
 
 /// For the tiles of one link, whose sources are triangles of the scene. The ends and the tracer must outlive it.
-template <typename Tree>
+template <typename Index>
 class TileSight {
  public:
-  TileSight(const SceneTracer<Tree>& tracer, const LinkEnd& transmitter, const LinkEnd& receiver)
+  TileSight(const SceneTracer<Index>& tracer, const LinkEnd& transmitter, const LinkEnd& receiver)
       : tracer_(tracer), ends_{&transmitter, &receiver}, ignored_{transmitter.ignored_body, receiver.ignored_body} {}
 
   /// The sheets that every path over the tile crosses, each once. False where an opaque triangle hides the tile from
@@ -62,7 +62,7 @@ class TileSight {
     return !hidden;
   }
 
-  const SceneTracer<Tree>& tracer_;
+  const SceneTracer<Index>& tracer_;
   std::array<const LinkEnd*, 2> ends_;
   IgnoredBodies ignored_;
 };

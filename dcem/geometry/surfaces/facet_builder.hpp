@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/core/units.hpp"
 #include "dcem/geometry/surfaces/convex_hull.hpp"
 #include "dcem/geometry/surfaces/disjoint_sets.hpp"
 #include "dcem/geometry/surfaces/mesh_cleaning.hpp"
@@ -24,19 +23,7 @@
 
 namespace dcem {
 
-/// Builds the surfaces of a mesh. Throws std::invalid_argument on a vertex that is not finite, or an index out of
-/// range.
-SurfaceMesh build_surface_mesh(const TriangleMesh& mesh, const SurfaceSettings& settings = {});
-
-// ---------------------------------------------------------------------------------------------------------------------
-
 namespace detail {
-
-/// Normals of one facet differ by less than this from triangle to triangle.
-inline const double coplanar_cosine = std::cos(degrees_to_radians(0.1));
-
-/// A coplanar set may stray this many planarity tolerances from its mean plane before it falls back to its triangles.
-inline constexpr double stray_tolerances = 5.0;
 
 /// Steps 3 to 6, on a clean mesh.
 class FacetBuilder {
@@ -157,14 +144,5 @@ class FacetBuilder {
 };
 
 }  // namespace detail
-
-inline SurfaceMesh build_surface_mesh(const TriangleMesh& mesh, const SurfaceSettings& settings) {
-  SurfaceMesh surface = detail::FacetBuilder(clean_mesh(mesh, settings), settings).build();
-  surface.wedges = build_wedges(surface, settings);
-  const auto free = std::count_if(surface.wedges.begin(), surface.wedges.end(), is_free);
-  surface.report.free_edges = static_cast<std::size_t>(free);
-  surface.report.wedges = surface.wedges.size() - surface.report.free_edges;
-  return surface;
-}
 
 }  // namespace dcem

@@ -21,4 +21,14 @@ inline void validate(const SurfaceSettings& settings) {
     throw std::invalid_argument("planarity_tolerance_m: expected 1e-9 to 1");
 }
 
+namespace detail {
+
+/// Normals of one facet differ by less than this from triangle to triangle.
+inline constexpr double coplanar_cosine = 0.99999847691328769880;  // cos(0.1°)
+
+/// A coplanar set may stray this many planarity tolerances from its mean plane before it falls back to its triangles.
+inline constexpr double stray_tolerances = 5.0;
+
+}  // namespace detail
+
 }  // namespace dcem

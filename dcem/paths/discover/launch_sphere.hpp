@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/accel/wide/trace/ray_order.hpp"
+#include "dcem/accel/ray_order.hpp"
 #include "dcem/core/constants.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/ray.hpp"

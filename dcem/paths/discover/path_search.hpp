@@ -73,10 +73,10 @@ inline std::size_t most_mirrors_of_a_half(const PathSearchSettings& settings) {
   return static_cast<std::size_t>(std::max(0, std::min(settings.max_reflections, settings.max_interactions - 1)));
 }
 
-template <typename Tree>
+template <typename Index>
 class PathSearch {
  public:
-  PathSearch(const SceneTracer<Tree>& tracer, const PathSearchSettings& settings, const LinkEnd& receiver,
+  PathSearch(const SceneTracer<Index>& tracer, const PathSearchSettings& settings, const LinkEnd& receiver,
              std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters)
       : tracer_(tracer),
         settings_(settings),
@@ -111,7 +111,7 @@ class PathSearch {
   /// Solves what rays propose in this frame and, with a memory, what they proposed in the frames before.
   void shoot(const SphereKey& key, std::uint32_t rays, ProposalMemory* memory, EdgeReach* reach) {
     if (memory != nullptr) try_again(*memory);
-    RayLauncher<Tree> launcher(tracer_, {rays, settings_.max_reflections, settings_.max_transmissions});
+    RayLauncher<Index> launcher(tracer_, {rays, settings_.max_reflections, settings_.max_transmissions});
     if (reach != nullptr) launcher.note_edges(*reach, settings_.edges, most_mirrors_of_a_half(settings_));
     launcher.for_each_sequence(receiver_, launch_rotation(settings_.seed, key.id, key.frame),
                                [&](const Sequence& sequence, const std::vector<Vec3>& images_m) {
@@ -176,12 +176,12 @@ class PathSearch {
     return path.has_value();
   }
 
-  const SceneTracer<Tree>& tracer_;
+  const SceneTracer<Index>& tracer_;
   const PathSearchSettings& settings_;
   const LinkEnd& receiver_;
   std::span<const std::optional<LinkEnd>> transmitters_;
   SearchCounters& counters_;
-  PathSolver<Tree> solver_;
+  PathSolver<Index> solver_;
   std::vector<LinkPaths> links_;
   std::vector<SequenceTable> tried_;  ///< per transmitter: the sequences that were remembered
 };

@@ -5,16 +5,24 @@
 /// reflected at what it hits and, at a sheet, also goes straight on. The facets a ray was reflected at, in order, are a
 /// sequence; each new one is handed on once. Where edges are wanted, the edges at the rim of what a ray meets are noted
 /// as within reach. The number of rays does not depend on the transmitters.
-#include <array>
+///
+/// Rays go together, a block of neighbours at a time and one leg after another: many questions at once are answered
+/// faster.
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "dcem/paths/discover/edge_reach.hpp"
 #include "dcem/paths/discover/launch_sphere.hpp"
+#include "dcem/paths/discover/sequence_tree.hpp"
 #include "dcem/paths/query/link_end.hpp"
+#include "dcem/paths/query/surface_hits.hpp"
 #include "dcem/paths/sequence.hpp"
 #include "dcem/paths/solve/edge_rules.hpp"
-#include "dcem/paths/solve/image_method.hpp"
 
 namespace dcem {
 
@@ -24,10 +32,11 @@ struct LaunchSettings {
   int max_transmissions = 2;
 };
 
-template <typename Tree>
+template <typename Index>
 class RayLauncher {
  public:
-  RayLauncher(const SceneTracer<Tree>& tracer, const LaunchSettings& settings) : tracer_(tracer), settings_(settings) {}
+  RayLauncher(const SceneTracer<Index>& tracer, const LaunchSettings& settings)
+      : tracer_(tracer), settings_(settings) {}
 
   /// From now on the edges that rays come by over at most so many mirrors are noted, by rules that say which edges
   /// count. Both outlive the launcher.
@@ -40,15 +49,18 @@ class RayLauncher {
   /// Calls `visit(sequence, images_m)` once for the direct path and for each sequence that a ray followed.
   template <typename Visit>
   void for_each_sequence(const LinkEnd& receiver, const Mat3& rotation, Visit&& visit) {
-    table_ = {};
-    sequence_.clear();
-    images_m_.assign(1, receiver.position_m);
+    ways_ = SequenceTree(receiver.position_m);
     ignored_ = {receiver.ignored_body, std::nullopt};
-    visit(sequence_, images_m_);
+    show(0, visit);
     if (settings_.max_reflections == 0 && reach_ == nullptr) return;
-    for (const Vec3& direction : launch_directions(settings_.rays)) {
-      shoot(receiver.position_m, rotation * direction, LegEnd{receiver.mounted_on, {}}, settings_.max_transmissions,
-            visit);
+    const std::span<const Vec3> sphere = launch_directions(settings_.rays);
+    for (std::size_t first = 0; first < sphere.size(); first += block_rays) {
+      rays_on_their_way_.clear();
+      for (const Vec3& direction : sphere.subspan(first, std::min(block_rays, sphere.size() - first))) {
+        rays_on_their_way_.push_back(
+            {receiver.position_m, rotation * direction, 0, settings_.max_transmissions, std::nullopt});
+      }
+      while (!rays_on_their_way_.empty()) go_one_leg(receiver, visit);
     }
   }
 
@@ -56,44 +68,79 @@ class RayLauncher {
   const TraversalCounters& traversal() const { return traversal_; }
 
  private:
-  template <typename Visit>
-  void shoot(const Vec3& origin_m, const Vec3& direction, const LegEnd& start, int crossings_left, Visit&& visit) {
-    ++rays_;
-    const Ray<double> ray{origin_m, direction};
-    const std::optional<SurfaceHit> hit = tracer_.closest_hit(ray, start, ignored_, traversal_);
-    if (!hit) return;
-    const FacetId mirror = hit->facet;
-    const WorldFacet& facet = tracer_.scene().facet(mirror);
-    const LegEnd here{{&mirror, 1}, {&facet.plane, nullptr}};
-    const Vec3 point_m = ray.at(hit->t);
-    if (reach_ != nullptr && sequence_.size() <= most_mirrors_) note_edges_of(mirror);
-    if (facet.transmits && crossings_left > 0) shoot(point_m, direction, here, crossings_left - 1, visit);
-    if (sequence_.size() == static_cast<std::size_t>(settings_.max_reflections)) return;
-    sequence_.push_back(mirror);
-    append_image(images_m_, facet.plane);
-    if (table_.insert(sequence_)) visit(sequence_, images_m_);
-    // After the last reflection a ray has only edges to find.
-    const bool looks_for_edges = reach_ != nullptr && sequence_.size() <= most_mirrors_;
-    if (looks_for_edges || sequence_.size() < static_cast<std::size_t>(settings_.max_reflections)) {
-      const Vec3 reflected = direction - 2.0 * glm::dot(direction, facet.plane.normal) * facet.plane.normal;
-      shoot(point_m, reflected, here, crossings_left, visit);
-    }
-    images_m_.pop_back();
-    sequence_.pop_back();
+  /// What one block asks and is told fits into the second cache.
+  static constexpr std::size_t block_rays = 1024;
+
+  struct FlyingRay {
+    Vec3 origin_m, direction;
+    std::uint32_t way;  ///< node of `ways_`
+    int crossings_left;
+    std::optional<FacetId> from;  ///< the facet that it leaves; none: the receiver
+  };
+
+  LegEnd start_of(const FlyingRay& ray, const LinkEnd& receiver) const {
+    if (!ray.from) return {receiver.mounted_on, {}};
+    return {{&*ray.from, 1}, {&tracer_.scene().facet(*ray.from).plane, nullptr}};
   }
 
-  void note_edges_of(FacetId facet) {
+  /// All rays of the block go to what they meet, and become those that go on from there.
+  template <typename Visit>
+  void go_one_leg(const LinkEnd& receiver, Visit& visit) {
+    hits_.clear();
+    for (const FlyingRay& ray : rays_on_their_way_) {
+      hits_.add(tracer_.scene(), {ray.origin_m, ray.direction}, start_of(ray, receiver), ignored_);
+    }
+    hits_.find(tracer_, traversal_);
+    rays_ += hits_.size();
+    next_rays_.clear();
+    for (std::size_t index = 0; index < hits_.size(); ++index) {
+      if (hits_.hit(index)) go_on(rays_on_their_way_[index], *hits_.hit(index), visit);
+    }
+    std::swap(rays_on_their_way_, next_rays_);
+  }
+
+  /// What becomes of a ray where it meets a facet.
+  template <typename Visit>
+  void go_on(const FlyingRay& ray, const TriangleHit& hit, Visit& visit) {
+    const FacetId mirror = tracer_.scene().facet_of_triangle(hit.triangle);
+    const WorldFacet& facet = tracer_.scene().facet(mirror);
+    const Vec3 point_m = ray.origin_m + hit.t * ray.direction;
+    const std::size_t depth = ways_.depth(ray.way);
+    const auto [way, is_new] = ways_.step(ray.way, mirror, facet.plane);
+    if (is_new && reach_ != nullptr && depth <= most_mirrors_) note_edges_of(mirror, ray.way);
+    if (facet.transmits && ray.crossings_left > 0) {
+      next_rays_.push_back({point_m, ray.direction, ray.way, ray.crossings_left - 1, mirror});
+    }
+    if (depth == static_cast<std::size_t>(settings_.max_reflections)) return;
+    if (is_new) show(way, visit);
+    // After the last reflection a ray has only edges to find.
+    const bool looks_for_edges = reach_ != nullptr && depth + 1 <= most_mirrors_;
+    if (!looks_for_edges && depth + 1 >= static_cast<std::size_t>(settings_.max_reflections)) return;
+    const Vec3 reflected = ray.direction - 2.0 * glm::dot(ray.direction, facet.plane.normal) * facet.plane.normal;
+    next_rays_.push_back({point_m, reflected, way, ray.crossings_left, mirror});
+  }
+
+  template <typename Visit>
+  void show(std::uint32_t way, Visit& visit) {
+    ways_.unfold(way, sequence_, images_m_);
+    visit(std::as_const(sequence_), std::as_const(images_m_));
+  }
+
+  void note_edges_of(FacetId facet, std::uint32_t way) {
+    ways_.unfold(way, sequence_, images_m_);
     for (const WedgeId edge : tracer_.scene().wedges_of_facet(facet)) {
       if (diffracts(tracer_.scene().wedge(edge), *rules_) && !is_embedded(edge, *rules_)) reach_->add(sequence_, edge);
     }
   }
 
-  const SceneTracer<Tree>& tracer_;
+  const SceneTracer<Index>& tracer_;
   LaunchSettings settings_;
   EdgeReach* reach_ = nullptr;
   const EdgeRules* rules_ = nullptr;
   std::size_t most_mirrors_ = 0;
-  SequenceTable table_;
+  SequenceTree ways_{Vec3(0.0)};
+  std::vector<FlyingRay> rays_on_their_way_, next_rays_;
+  SurfaceHits hits_;
   Sequence sequence_;
   std::vector<Vec3> images_m_;
   IgnoredBodies ignored_;

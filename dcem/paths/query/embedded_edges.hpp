@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dcem/accel/counters.hpp"
-#include "dcem/core/parallel_for.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/geometry/triangle.hpp"
 #include "dcem/scene/scene.hpp"
 
@@ -63,8 +63,8 @@ class EdgeEmbedding {
 };
 
 /// Triangles of third facets of an edge's own body within reach of a box.
-template <typename Tree>
-std::vector<std::uint32_t> third_triangles(const Scene& scene, const Tree& tree, const WorldWedge& wedge,
+template <typename Index>
+std::vector<std::uint32_t> third_triangles(const Scene& scene, const Index& index, const WorldWedge& wedge,
                                            const Aabb<double>& box) {
   std::vector<std::uint32_t> triangles;
   TraversalCounters counters;
@@ -73,19 +73,19 @@ std::vector<std::uint32_t> third_triangles(const Scene& scene, const Tree& tree,
     const bool own_face = facet == wedge.facets[0] || facet == wedge.facets[1];
     if (!own_face && scene.facet(facet).body == wedge.body) triangles.push_back(triangle);
   };
-  tree.overlapping(box, collect, &counters);
+  index.overlapping(box, collect, &counters);
   return triangles;
 }
 
-template <typename Tree>
-bool is_embedded_all_along(const Scene& scene, const Tree& tree, const WorldWedge& wedge) {
+template <typename Index>
+bool is_embedded_all_along(const Scene& scene, const Index& index, const WorldWedge& wedge) {
   const double reach_m = 0.999 * (scene.settings().weld_tolerance_m + wedge.edge.stray_m);
   // Most edges are free in the middle, and touch others at their ends alone.
   const Vec3 middle_m = 0.5 * (wedge.edge.start_m + wedge.edge.end_m);
-  if (third_triangles(scene, tree, wedge, inflated(Aabb<double>{middle_m, middle_m}, reach_m)).empty()) return false;
+  if (third_triangles(scene, index, wedge, inflated(Aabb<double>{middle_m, middle_m}, reach_m)).empty()) return false;
   Aabb<double> box{wedge.edge.start_m, wedge.edge.start_m};
   box.extend(wedge.edge.end_m);
-  const std::vector<std::uint32_t> triangles = third_triangles(scene, tree, wedge, inflated(box, reach_m));
+  const std::vector<std::uint32_t> triangles = third_triangles(scene, index, wedge, inflated(box, reach_m));
   return EdgeEmbedding(scene, wedge.edge, triangles, reach_m).is_complete();
 }
 
@@ -94,12 +94,12 @@ bool is_embedded_all_along(const Scene& scene, const Tree& tree, const WorldWedg
 /// For each edge of the scene, whether third facets of its own body touch it all along, in the sense of the contact
 /// rule: within the weld tolerance and the edge's own dirt, less a thousandth for rounding. (A link for which the facet
 /// does not exist, because a device rides on that body, then has no such edge either.)
-template <typename Tree>
-std::vector<char> embedded_edges(const Scene& scene, const Tree& tree, unsigned threads) {
+template <typename Index>
+std::vector<char> embedded_edges(const Scene& scene, const Index& index, ThreadPool& pool) {
   std::vector<char> covered(scene.wedges().size());
-  parallel_for(scene.wedges().size(), threads, [&](std::size_t index, unsigned) {
-    const WorldWedge& wedge = scene.wedges()[index];
-    covered[index] = wedge.present && detail::is_embedded_all_along(scene, tree, wedge) ? 1 : 0;
+  pool.for_each(scene.wedges().size(), [&](std::size_t number, unsigned) {
+    const WorldWedge& wedge = scene.wedges()[number];
+    covered[number] = wedge.present && detail::is_embedded_all_along(scene, index, wedge) ? 1 : 0;
   });
   return covered;
 }

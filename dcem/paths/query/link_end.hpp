@@ -13,8 +13,8 @@ struct LinkEnd {
   std::vector<FacetId> mounted_on;     ///< facets within the weld tolerance: they neither reflect nor block its legs
 };
 
-template <typename Tree>
-LinkEnd make_link_end(const SceneTracer<Tree>& tracer, const Vec3& position_m, std::optional<BodyId> ignored_body,
+template <typename Index>
+LinkEnd make_link_end(const SceneTracer<Index>& tracer, const Vec3& position_m, std::optional<BodyId> ignored_body,
                       TraversalCounters& counters) {
   const IgnoredBodies ignored{ignored_body, std::nullopt};
   return {position_m, ignored_body,

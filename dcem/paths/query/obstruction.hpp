@@ -27,21 +27,20 @@ inline bool above_foot(const Scene& scene, const Shell& shell, const Vec3& point
 }  // namespace detail
 
 /// Enclosing shells that hold a point, ascending: those that a ray upwards from it crosses an odd number of times.
-template <typename Tree>
-std::vector<Shell> shells_around(const SceneTracer<Tree>& tracer, const Tree& tree, const Vec3& point_m) {
+template <typename Index>
+std::vector<Shell> shells_around(const SceneTracer<Index>& tracer, const Index& index, const Vec3& point_m) {
   // Upwards, because a house may lack its floor; with no relation to any wall, so that the ray meets no edge.
   const Ray<double> ray{point_m, Vec3(0.271'828'182'8, 0.141'421'356'2, 1.0)};
-  const WatertightRay prepared(ray);
   const Scene& scene = tracer.scene();
   std::map<Shell, std::set<FacetId>> crossed;  // a facet is plane: it is crossed once, even on a diagonal
-  tree.all(ray, [&](std::uint32_t triangle) {
-    const std::uint32_t shell = scene.shell_of_triangle(triangle);
-    if (shell == 0) return;
-    const std::optional<double> t = prepared.intersect(scene.corners_m(triangle));
-    if (!t || !(*t > 0.0)) return;
-    const FacetId facet = scene.facet_of_triangle(triangle);
+  const auto note = [&](const TriangleHit& hit) {
+    const std::uint32_t shell = scene.shell_of_triangle(hit.triangle);
+    if (shell == 0 || !(hit.t > 0.0)) return false;
+    const FacetId facet = scene.facet_of_triangle(hit.triangle);
     crossed[{scene.facet(facet).body, shell}].insert(facet);
-  });
+    return false;
+  };
+  index.visit_hits(ray, HitFilter{}, note, nullptr);
   std::vector<Shell> around;
   for (const auto& [shell, facets] : crossed) {
     if (facets.size() % 2 == 1 && detail::above_foot(scene, shell, point_m)) around.push_back(shell);
@@ -51,11 +50,11 @@ std::vector<Shell> shells_around(const SceneTracer<Tree>& tracer, const Tree& tr
 
 /// Points inside closed objects or on a surface are obstructed. A closed shell that holds a transmitter is taken for a
 /// room, any other for a solid body.
-template <typename Tree>
+template <typename Index>
 class ObstructionTest {
  public:
-  ObstructionTest(const SceneTracer<Tree>& tracer, const Tree& tree, const std::vector<Vec3>& transmitters_m)
-      : tracer_(tracer), tree_(tree) {
+  ObstructionTest(const SceneTracer<Index>& tracer, const Index& index, const std::vector<Vec3>& transmitters_m)
+      : tracer_(tracer), index_(index) {
     for (const Vec3& transmitter_m : transmitters_m) add_rooms(transmitter_m);
   }
 
@@ -63,7 +62,7 @@ class ObstructionTest {
     TraversalCounters counters;
     const double tolerance_m = tracer_.scene().settings().weld_tolerance_m;
     if (!tracer_.facets_near(point_m, tolerance_m, {}, counters).empty()) return true;
-    const std::vector<Shell> around = shells_around(tracer_, tree_, point_m);
+    const std::vector<Shell> around = shells_around(tracer_, index_, point_m);
     return std::any_of(around.begin(), around.end(), [&](const Shell& shell) {
       return std::find(rooms_.begin(), rooms_.end(), shell) == rooms_.end();
     });
@@ -73,7 +72,7 @@ class ObstructionTest {
   /// The shells around a transmitter, and those that it is mounted on: what it is mounted on does not hide it.
   void add_rooms(const Vec3& transmitter_m) {
     const Scene& scene = tracer_.scene();
-    const std::vector<Shell> around = shells_around(tracer_, tree_, transmitter_m);
+    const std::vector<Shell> around = shells_around(tracer_, index_, transmitter_m);
     rooms_.insert(rooms_.end(), around.begin(), around.end());
     TraversalCounters counters;
     for (const FacetId id : tracer_.facets_near(transmitter_m, scene.settings().weld_tolerance_m, {}, counters)) {
@@ -82,8 +81,8 @@ class ObstructionTest {
     }
   }
 
-  const SceneTracer<Tree>& tracer_;
-  const Tree& tree_;
+  const SceneTracer<Index>& tracer_;
+  const Index& index_;
   std::vector<Shell> rooms_;
 };
 

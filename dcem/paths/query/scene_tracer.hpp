@@ -1,9 +1,7 @@
 #pragma once
 /// Questions that paths ask of the scene: what does a ray hit, is a leg free and which sheets does it cross, which
-/// facets are at a point. `Tree` is `WideBvh`, `Bvh<double>` or their oracle `BruteForce<double>`, over the scene's
-/// triangles.
+/// facets are at a point. `Index` is a `SpatialIndex` over the scene's triangles, whose objects are the scene's bodies.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -12,6 +10,7 @@
 
 #include "dcem/accel/counters.hpp"
 #include "dcem/geometry/triangle.hpp"
+#include "dcem/paths/query/leg_filter.hpp"
 #include "dcem/scene/scene.hpp"
 
 namespace dcem {
@@ -28,25 +27,16 @@ struct Crossing {
   double t = 0.0;  ///< 0 at the start of the leg, 1 at its end
 };
 
-/// What a leg ignores at one of its ends: the facets it starts or ends on, and what lies along the reflecting one
-/// within the weld tolerance (coplanar duplicates, dirt). A wall that stands on that facet is not ignored, however
-/// close.
-struct LegEnd {
-  std::span<const FacetId> facets;
-  std::array<const Plane*, 2> planes{};  ///< of the reflecting facet or of a wedge's two faces; null at a device
-};
-
-/// Bodies that do not exist for a link: those that its devices ride on.
-using IgnoredBodies = std::array<std::optional<BodyId>, 2>;
-
-template <typename Tree>
+template <typename Index>
 class SceneTracer {
  public:
-  SceneTracer(const Scene& scene, const Tree& tree) : scene_(scene), tree_(tree) {}
+  SceneTracer(const Scene& scene, const Index& index) : scene_(scene), index_(index) {}
 
   const Scene& scene() const { return scene_; }
+  const Index& index() const { return index_; }
 
-  /// The first facet along a ray with t > 0. Of hits at the same distance the facet with the smallest id is the first.
+  /// The first facet along a ray with t > 0. Of hits at the same distance the facet with the smallest id is the first:
+  /// triangles are numbered facet by facet.
   std::optional<SurfaceHit> closest_hit(const Ray<double>& ray, const LegEnd& start, const IgnoredBodies& ignored,
                                         TraversalCounters& counters) const;
 
@@ -63,16 +53,9 @@ class SceneTracer {
   bool any_triangle_between(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end,
                             const IgnoredBodies& ignored, Test&& test, TraversalCounters& counters) const {
     const Ray<double> leg = segment_between(from_m, to_m);
-    const WatertightRay prepared(leg);
-    const auto meets = [&](std::uint32_t triangle) {
-      const std::optional<double> t = prepared.intersect(scene_.corners_m(triangle));
-      if (!t || *t < 0.0 || *t > 1.0) return false;
-      const FacetId facet = scene_.facet_of_triangle(triangle);
-      const Vec3 point_m = leg.at(*t);
-      if (is_ignored(scene_.facet(facet).body, ignored)) return false;
-      return !skips(start, facet, point_m) && !skips(end, facet, point_m) && test(triangle);
-    };
-    return tree_.any(leg, meets, &counters);
+    const LegFilter filter(scene_, leg, start, end, ignored);
+    return index_.visit_hits(
+        leg, filter.hit_filter(), [&](const TriangleHit& hit) { return test(hit.triangle); }, &counters);
   }
 
   /// Facets within `radius_m` of a point, ascending by id.
@@ -110,24 +93,9 @@ class SceneTracer {
            detail::coplanar_cosine;
   }
 
-  /// Whether a facet lies along a plane at one of its points: within the weld tolerance, and hardly tilted.
-  bool lies_along(const WorldFacet& facet, const Plane& plane, const Vec3& point_m) const {
-    return std::abs(signed_distance_m(plane, point_m)) <= scene_.settings().weld_tolerance_m &&
-           std::abs(glm::dot(plane.normal, facet.plane.normal)) > along_cosine;
-  }
-
  private:
   /// Facets of more triangles than this are searched through the tree.
   static constexpr std::uint32_t direct_test_limit = 16;
-  /// Facets within about 6 degrees of a plane lie along it: small patches of a dirty wall are tilted by their rounding.
-  static constexpr double along_cosine = 0.995;
-
-  bool skips(const LegEnd& end, FacetId facet, const Vec3& point_m) const {
-    if (std::find(end.facets.begin(), end.facets.end(), facet) != end.facets.end()) return true;
-    return std::any_of(end.planes.begin(), end.planes.end(), [&](const Plane* plane) {
-      return plane != nullptr && lies_along(scene_.facet(facet), *plane, point_m);
-    });
-  }
 
   /// Where a leg meets the plane of a facet: the same number whichever of the facet's triangles was hit.
   double plane_parameter(const WorldFacet& facet, const Ray<double>& leg, double t_triangle) const {
@@ -153,62 +121,47 @@ class SceneTracer {
   /// facet would have been split.
   template <typename Visit>
   void for_each_triangle_at(const Vec3& point_m, TraversalCounters& counters, Visit&& visit) const {
-    const double reach_m = 1.01 * detail::stray_tolerances * scene_.settings().planarity_tolerance_m;
-    tree_.overlapping(inflated(Aabb<double>{point_m, point_m}, reach_m), visit, &counters);
+    index_.overlapping(inflated(Aabb<double>{point_m, point_m}, facet_reach_m(scene_)), visit, &counters);
   }
 
   const Scene& scene_;
-  const Tree& tree_;
+  const Index& index_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-template <typename Tree>
-std::optional<SurfaceHit> SceneTracer<Tree>::closest_hit(const Ray<double>& ray, const LegEnd& start,
-                                                         const IgnoredBodies& ignored,
-                                                         TraversalCounters& counters) const {
-  const WatertightRay prepared(ray);
-  std::optional<SurfaceHit> best;
-  tree_.closest(
-      ray,
-      [&](std::uint32_t triangle, double& t_max) {
-        const std::optional<double> t = prepared.intersect(scene_.corners_m(triangle));
-        if (!t || !(*t > ray.t_min) || *t > t_max) return;
-        const FacetId facet = scene_.facet_of_triangle(triangle);
-        if (best && *t == best->t && best->facet < facet) return;
-        if (is_ignored(scene_.facet(facet).body, ignored) || skips(start, facet, ray.at(*t))) return;
-        best = SurfaceHit{facet, *t};
-        t_max = *t;
-      },
-      &counters);
-  return best;
+template <typename Index>
+std::optional<SurfaceHit> SceneTracer<Index>::closest_hit(const Ray<double>& ray, const LegEnd& start,
+                                                          const IgnoredBodies& ignored,
+                                                          TraversalCounters& counters) const {
+  const LegFilter filter(scene_, ray, start, ignored);
+  const std::optional<TriangleHit> hit = index_.closest_hit(ray, filter.hit_filter(), &counters);
+  if (!hit) return std::nullopt;
+  return SurfaceHit{scene_.facet_of_triangle(hit->triangle), hit->t};
 }
 
-template <typename Tree>
-bool SceneTracer<Tree>::follow_leg(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end,
-                                   const IgnoredBodies& ignored, std::size_t crossing_limit,
-                                   std::vector<Crossing>& crossings, TraversalCounters& counters) const {
+template <typename Index>
+bool SceneTracer<Index>::follow_leg(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end,
+                                    const IgnoredBodies& ignored, std::size_t crossing_limit,
+                                    std::vector<Crossing>& crossings, TraversalCounters& counters) const {
   crossings.clear();
   const Ray<double> leg = segment_between(from_m, to_m);
-  const WatertightRay prepared(leg);
-  const auto blocks = [&](std::uint32_t triangle) {
-    const std::optional<double> t = prepared.intersect(scene_.corners_m(triangle));
-    if (!t || *t < 0.0 || *t > 1.0) return false;
-    const FacetId id = scene_.facet_of_triangle(triangle);
+  const LegFilter filter(scene_, leg, start, end, ignored);
+  if (crossing_limit == 0 || !scene_.has_sheets()) return !index_.occluded(leg, filter.hit_filter(), &counters);
+  const auto blocks = [&](const TriangleHit& hit) {
+    const FacetId id = scene_.facet_of_triangle(hit.triangle);
     const WorldFacet& facet = scene_.facet(id);
-    const Vec3 point_m = leg.at(*t);
-    if (is_ignored(facet.body, ignored) || skips(start, id, point_m) || skips(end, id, point_m)) return false;
-    if (!facet.transmits || crossing_limit == 0) return true;
-    crossings.push_back({id, plane_parameter(facet, leg, *t)});
+    if (!facet.transmits) return true;
+    crossings.push_back({id, plane_parameter(facet, leg, hit.t)});
     return false;
   };
-  if (tree_.any(leg, blocks, &counters)) return false;
+  if (index_.visit_hits(leg, filter.hit_filter(), blocks, &counters)) return false;
   if (crossings.size() > 1) sort_and_merge(crossings, to_m - from_m);
   return crossings.size() <= crossing_limit;
 }
 
-template <typename Tree>
-void SceneTracer<Tree>::sort_and_merge(std::vector<Crossing>& crossings, const Vec3& leg_m) const {
+template <typename Index>
+void SceneTracer<Index>::sort_and_merge(std::vector<Crossing>& crossings, const Vec3& leg_m) const {
   std::sort(crossings.begin(), crossings.end(),
             [&](const Crossing& a, const Crossing& b) { return a.t != b.t ? a.t < b.t : precedes(a.facet, b.facet); });
   // Sheets are chained to the latest one of their stack, so a leg and its reverse merge the same.
@@ -231,11 +184,11 @@ void SceneTracer<Tree>::sort_and_merge(std::vector<Crossing>& crossings, const V
   for (const Stack& stack : stacks) crossings.push_back(stack.first_by_name);
 }
 
-template <typename Tree>
-std::vector<FacetId> SceneTracer<Tree>::facets_near(const Vec3& point_m, double radius_m, const IgnoredBodies& ignored,
-                                                    TraversalCounters& counters) const {
+template <typename Index>
+std::vector<FacetId> SceneTracer<Index>::facets_near(const Vec3& point_m, double radius_m, const IgnoredBodies& ignored,
+                                                     TraversalCounters& counters) const {
   std::vector<FacetId> near;
-  tree_.overlapping(
+  index_.overlapping(
       inflated(Aabb<double>{point_m, point_m}, radius_m),
       [&](std::uint32_t triangle) {
         const FacetId facet = scene_.facet_of_triangle(triangle);
@@ -248,9 +201,9 @@ std::vector<FacetId> SceneTracer<Tree>::facets_near(const Vec3& point_m, double 
   return near;
 }
 
-template <typename Tree>
-bool SceneTracer<Tree>::reflects_at(FacetId id, const Vec3& point_m, const IgnoredBodies& ignored,
-                                    TraversalCounters& counters) const {
+template <typename Index>
+bool SceneTracer<Index>::reflects_at(FacetId id, const Vec3& point_m, const IgnoredBodies& ignored,
+                                     TraversalCounters& counters) const {
   const WorldFacet& facet = scene_.facet(id);
   bool touches = false, inside = false;
   const auto test = [&](std::uint32_t triangle) {
@@ -268,9 +221,9 @@ bool SceneTracer<Tree>::reflects_at(FacetId id, const Vec3& point_m, const Ignor
   return inside || (touches && covered_rad(id, point_m, ignored, counters) > 2.0 * pi - 1e-3);
 }
 
-template <typename Tree>
-double SceneTracer<Tree>::covered_rad(FacetId id, const Vec3& point_m, const IgnoredBodies& ignored,
-                                      TraversalCounters& counters) const {
+template <typename Index>
+double SceneTracer<Index>::covered_rad(FacetId id, const Vec3& point_m, const IgnoredBodies& ignored,
+                                       TraversalCounters& counters) const {
   double sum_rad = 0.0;
   for_each_triangle_at(point_m, counters, [&](std::uint32_t triangle) {
     const FacetId other = scene_.facet_of_triangle(triangle);

@@ -35,10 +35,10 @@ struct SolverCounters {
 };
 
 /// Holds scratch memory: one per thread.
-template <typename Tree>
+template <typename Index>
 class PathSolver {
  public:
-  PathSolver(const SceneTracer<Tree>& tracer, int max_transmissions, const EdgeRules& rules = {})
+  PathSolver(const SceneTracer<Index>& tracer, int max_transmissions, const EdgeRules& rules = {})
       : tracer_(tracer), max_transmissions_(static_cast<std::size_t>(max_transmissions)), rules_(rules) {}
 
   /// The path over `sequence` (from the receiver outwards). Where facets overlap in one plane, the path that comes back
@@ -109,7 +109,8 @@ class PathSolver {
       if (next >= sequence.size()) continue;
       if (sequence[next].is_edge()) {
         if (holds_edge(facet(id).plane, sequence[next].edge())) return false;  // that is in the wedge's own terms
-      } else if (next > from_receiver && tracer_.lies_along(facet(id), facet(sequence[next].mirror()).plane, point_m)) {
+      } else if (next > from_receiver &&
+                 lies_along(scene(), facet(id), facet(sequence[next].mirror()).plane, point_m)) {
         return false;  // nothing bounces between two coplanar patches that are a hair apart
       }
     }
@@ -269,7 +270,7 @@ class PathSolver {
     return std::nullopt;
   }
 
-  const SceneTracer<Tree>& tracer_;
+  const SceneTracer<Index>& tracer_;
   std::size_t max_transmissions_;
   EdgeRules rules_;
   SolverCounters counters_;

@@ -14,10 +14,10 @@
 namespace dcem {
 
 /// Holds scratch memory: one per thread.
-template <typename Tree>
+template <typename Index>
 class ScatterSolver {
  public:
-  ScatterSolver(const SceneTracer<Tree>& tracer, int max_transmissions)
+  ScatterSolver(const SceneTracer<Index>& tracer, int max_transmissions)
       : tracer_(tracer), max_transmissions_(static_cast<std::size_t>(max_transmissions)) {}
 
   /// Whether a facet can scatter between two ends at all: both on one side of it, neither mounted on it.
@@ -79,7 +79,7 @@ class ScatterSolver {
     });
   }
 
-  const SceneTracer<Tree>& tracer_;
+  const SceneTracer<Index>& tracer_;
   std::size_t max_transmissions_;
   std::size_t left_ = 0;  ///< sheets that may still be crossed
   SolverCounters counters_;

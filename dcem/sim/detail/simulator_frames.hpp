@@ -1,11 +1,11 @@
 #pragma once
-/// How a `Simulator` moves to a frame, and what transmitters reach in it; included by simulator.hpp.
+/// How a `BasicSimulator` moves to a frame, and what transmitters reach in it; included by basic_simulator.hpp.
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
+#include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/link_work.hpp"
-#include "dcem/sim/simulator.hpp"
 
 namespace dcem {
 
@@ -21,12 +21,12 @@ class Stopwatch {
 
 }  // namespace detail
 
-template <SurfaceModel Surface, typename Tree>
-FrameResult Simulator<Surface, Tree>::advance(const Frame& frame) {
+template <SurfaceModel Surface, SpatialIndex Index>
+FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   FrameResult result{frame.index, frame.time_s, {}, {}, {}, {}, 0.0, 0.0};
   const detail::Stopwatch update_watch;
   const ChangeSet changes = scene_.apply(frame);
-  result.tree = update_tree(changes);
+  result.tree = update_index(changes);
   forget_replaced(changes, result.cache);
   frame_ = frame;
   result.update_time_s = update_watch.seconds();
@@ -35,34 +35,35 @@ FrameResult Simulator<Surface, Tree>::advance(const Frame& frame) {
   result.links = std::move(solved.links);
   result.work = solved.work;
   result.cache += solved.cache;
+  index_.note_rays({result.work.nodes_visited, result.work.primitives_tested}, result.work.rays + result.work.legs);
   result.solve_time_s = solve_watch.seconds();
   return result;
 }
 
-template <SurfaceModel Surface, typename Tree>
-TreeUpdateReport Simulator<Surface, Tree>::move_to(const Frame& frame) {
+template <SurfaceModel Surface, SpatialIndex Index>
+TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
   const ChangeSet changes = scene_.apply(frame);
   CacheCounters not_reported;
   forget_replaced(changes, not_reported);
   frame_ = frame;
-  return update_tree(changes);
+  return update_index(changes);
 }
 
-template <SurfaceModel Surface, typename Tree>
-TreeUpdateReport Simulator<Surface, Tree>::update_tree(const ChangeSet& changes) {
+template <SurfaceModel Surface, SpatialIndex Index>
+TreeUpdateReport BasicSimulator<Surface, Index>::update_index(const ChangeSet& changes) {
   for (const BodyId body : changes.moved) {
     const auto [first, last] = scene_.triangle_range(body);
     for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
   }
-  // Kept where this throws (a box too far away): the tree must hear of them in a later frame.
-  const TreeUpdateReport report = dcem::update_tree(updater_, tree_, moved_, scene_);
+  // Kept where this throws (a box too far away): the index must hear of them in a later frame.
+  const TreeUpdateReport report = index_.update(scene_.triangle_view(), scene_.triangle_boxes(), moved_);
   moved_.clear();
   return report;
 }
 
 /// A path over an object that has left its place is not the same path as one over the object that came.
-template <SurfaceModel Surface, typename Tree>
-void Simulator<Surface, Tree>::forget_replaced(const ChangeSet& changes, CacheCounters& counters) {
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::forget_replaced(const ChangeSet& changes, CacheCounters& counters) {
   if (changes.replaced.empty()) return;
   const auto gone = [&](SequenceElement element) {
     const BodyId body = element.is_edge() ? scene_.wedge(element.edge()).body : scene_.facet(element.mirror()).body;
@@ -75,8 +76,8 @@ void Simulator<Surface, Tree>::forget_replaced(const ChangeSet& changes, CacheCo
   }
 }
 
-template <SurfaceModel Surface, typename Tree>
-typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::transmitter_ends(
+template <SurfaceModel Surface, SpatialIndex Index>
+typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::transmitter_ends(
     std::span<EdgeReach> reach, std::vector<char> embedded) const {
   TransmitterEnds ends;
   ends.embedded = std::move(embedded);
@@ -91,16 +92,16 @@ typename Simulator<Surface, Tree>::TransmitterEnds Simulator<Surface, Tree>::tra
   return ends;
 }
 
-template <SurfaceModel Surface, typename Tree>
-void Simulator<Surface, Tree>::find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const {
-  const Tracer tracer(scene_, tree_);
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const {
+  const Tracer tracer(scene_, index_);
   const PathSearchSettings search = search_settings(ends.embedded);
   if (reach.empty()) {
     ends.own_reach.resize(ends.link.size());
     reach = ends.own_reach;
   }
   std::vector<SearchCounters> spent(ends.link.size());
-  parallel_for(ends.link.size(), settings_.threads, [&](std::size_t index, unsigned) {
+  pool_->for_each(ends.link.size(), [&](std::size_t index, unsigned) {
     if (!ends.link[index]) return reach[index].clear();
     const bool known = reach[index].size() > 0;
     reach[index].next_frame(detail::proposal_lifetime_frames(search));
@@ -111,8 +112,8 @@ void Simulator<Surface, Tree>::find_transmitter_reach(TransmitterEnds& ends, std
   for (const SearchCounters& one : spent) detail::add_search_work(one, ends.work);
 }
 
-template <SurfaceModel Surface, typename Tree>
-PathSearchSettings Simulator<Surface, Tree>::search_settings(std::span<const char> embedded_edges) const {
+template <SurfaceModel Surface, SpatialIndex Index>
+PathSearchSettings BasicSimulator<Surface, Index>::search_settings(std::span<const char> embedded_edges) const {
   const PropagationSettings& propagation = settings_.propagation;
   return {discovery_ == Discovery::exact,
           reflection_order(propagation),

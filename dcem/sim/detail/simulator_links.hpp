@@ -1,26 +1,26 @@
 #pragma once
-/// How a `Simulator` solves the links of a frame; included by simulator.hpp.
+/// How a `BasicSimulator` solves the links of a frame; included by basic_simulator.hpp.
 #include <algorithm>
 #include <utility>
 
+#include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/link_work.hpp"
-#include "dcem/sim/simulator.hpp"
 
 namespace dcem {
 
-template <SurfaceModel Surface, typename Tree>
-std::vector<LinkResult> Simulator<Surface, Tree>::solve(std::span<const Device> receivers, WorkCounters* work) const {
+template <SurfaceModel Surface, SpatialIndex Index>
+std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const Device> receivers,
+                                                              WorkCounters* work) const {
   Solved solved = solve_all(receivers, transmitter_ends({}), {});
   if (work != nullptr) *work += solved.work;
   return std::move(solved.links);
 }
 
-template <SurfaceModel Surface, typename Tree>
-typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_all(std::span<const Device> receivers,
-                                                                              const TransmitterEnds& transmitters,
-                                                                              std::span<PathCache> caches) const {
+template <SurfaceModel Surface, SpatialIndex Index>
+typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_all(
+    std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches) const {
   std::vector<Solved> by_receiver(receivers.size());
-  parallel_for(receivers.size(), settings_.threads, [&](std::size_t index, unsigned) {
+  pool_->for_each(receivers.size(), [&](std::size_t index, unsigned) {
     PathCache* cache = caches.empty() ? nullptr : &caches[index];
     by_receiver[index] = solve_receiver(receivers[index], index, transmitters, cache);
   });
@@ -37,8 +37,8 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_all(st
 }
 
 /// The transmitters without the device that the receiver itself is: a device has no link to itself.
-template <SurfaceModel Surface, typename Tree>
-std::span<const std::optional<LinkEnd>> Simulator<Surface, Tree>::ends_beside(
+template <SurfaceModel Surface, SpatialIndex Index>
+std::span<const std::optional<LinkEnd>> BasicSimulator<Surface, Index>::ends_beside(
     const Device& receiver, const TransmitterEnds& transmitters, std::vector<std::optional<LinkEnd>>& others) const {
   const std::span<const Device> devices = scene_.transmitters();
   const auto is_receiver = [&](const Device& device) { return device.id == receiver.id; };
@@ -49,12 +49,10 @@ std::span<const std::optional<LinkEnd>> Simulator<Surface, Tree>::ends_beside(
   return others;
 }
 
-template <SurfaceModel Surface, typename Tree>
-typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiver(const Device& receiver,
-                                                                                   std::size_t index,
-                                                                                   const TransmitterEnds& transmitters,
-                                                                                   PathCache* cache) const {
-  const Tracer tracer(scene_, tree_);
+template <SurfaceModel Surface, SpatialIndex Index>
+typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_receiver(
+    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, PathCache* cache) const {
+  const Tracer tracer(scene_, index_);
   const DeviceState state = scene_.device_state(receiver, frame_);
   Solved solved;
   if (!state.present) {
@@ -85,20 +83,20 @@ typename Simulator<Surface, Tree>::Solved Simulator<Surface, Tree>::solve_receiv
   return solved;
 }
 
-template <SurfaceModel Surface, typename Tree>
-std::vector<DiffusePower> Simulator<Surface, Tree>::diffuse_powers(const std::string& receiver, const LinkEnd& end,
-                                                                   const RadioEnd& to,
-                                                                   const TransmitterEnds& transmitters,
-                                                                   std::span<const std::optional<LinkEnd>> ends,
-                                                                   WorkCounters& work) const {
+template <SurfaceModel Surface, SpatialIndex Index>
+std::vector<DiffusePower> BasicSimulator<Surface, Index>::diffuse_powers(const std::string& receiver,
+                                                                         const LinkEnd& end, const RadioEnd& to,
+                                                                         const TransmitterEnds& transmitters,
+                                                                         std::span<const std::optional<LinkEnd>> ends,
+                                                                         WorkCounters& work) const {
   std::vector<DiffusePower> powers(ends.size());
   const PropagationSettings& propagation = settings_.propagation;
   if (!propagation.diffuse.enabled) return powers;
-  const Tracer tracer(scene_, tree_);
+  const Tracer tracer(scene_, index_);
   const ScatteredPower<Surface, AnyPathLoss> scattered(scene_, surface_, propagation.path_loss, medium_,
                                                        settings_.frequency_hz);
-  DiffuseIntegral<Tree, Surface, AnyPathLoss> integral(tracer, scattered, propagation.diffuse,
-                                                       propagation.max_transmissions);
+  DiffuseIntegral<Index, Surface, AnyPathLoss> integral(tracer, scattered, propagation.diffuse,
+                                                        propagation.max_transmissions);
   for (std::size_t index = 0; index < ends.size(); ++index) {
     if (!ends[index]) continue;
     const DiffuseKey key{propagation.seed, scene_.transmitters()[index].id, receiver};
@@ -108,10 +106,10 @@ std::vector<DiffusePower> Simulator<Surface, Tree>::diffuse_powers(const std::st
   return powers;
 }
 
-template <SurfaceModel Surface, typename Tree>
-LinkResult Simulator<Surface, Tree>::make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter,
-                                               const DeviceEnd& from, const DeviceEnd& to,
-                                               const Evaluator& evaluator) const {
+template <SurfaceModel Surface, SpatialIndex Index>
+LinkResult BasicSimulator<Surface, Index>::make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter,
+                                                     const DeviceEnd& from, const DeviceEnd& to,
+                                                     const Evaluator& evaluator) const {
   const PropagationSettings& propagation = settings_.propagation;
   LinkResult link;
   link.transmitter = transmitter;
@@ -132,31 +130,32 @@ LinkResult Simulator<Surface, Tree>::make_link(LinkPaths&& found, DiffusePower&&
   return link;
 }
 
-template <SurfaceModel Surface, typename Tree>
-void Simulator<Surface, Tree>::trace_elements(std::span<PathContribution> paths, const DeviceEnd& from,
-                                              const DeviceEnd& to, const Evaluator& evaluator) const {
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::trace_elements(std::span<PathContribution> paths, const DeviceEnd& from,
+                                                    const DeviceEnd& to, const Evaluator& evaluator) const {
   if (settings_.propagation.antenna_array != ArrayChannel::exact || !has_array(from.radio, to.radio)) return;
-  const Tracer tracer(scene_, tree_);
+  const Tracer tracer(scene_, index_);
   const PathSearchSettings search = search_settings();
-  PathSolver<Tree> solver(tracer, search.max_transmissions, search.edges);
+  PathSolver<Index> solver(tracer, search.max_transmissions, search.edges);
   TraversalCounters counters;
   const double length_m = wavelength_m(settings_.frequency_hz);
   const ElementEnds from_elements = element_ends(tracer, from.link, from.radio, length_m, counters);
   const ElementEnds to_elements = element_ends(tracer, to.link, to.radio, length_m, counters);
-  ElementPaths<Tree, Surface, AnyPathLoss> elements(solver, evaluator, from_elements, to_elements);
+  ElementPaths<Index, Surface, AnyPathLoss> elements(solver, evaluator, from_elements, to_elements);
   for (PathContribution& path : paths) path.channel = elements.channel(path.path);
 }
 
-template <SurfaceModel Surface, typename Tree>
-std::optional<PathContribution> Simulator<Surface, Tree>::solve_path(std::size_t transmitter, std::size_t receiver,
-                                                                     const Sequence& sequence) const {
+template <SurfaceModel Surface, SpatialIndex Index>
+std::optional<PathContribution> BasicSimulator<Surface, Index>::solve_path(std::size_t transmitter,
+                                                                           std::size_t receiver,
+                                                                           const Sequence& sequence) const {
   const Device& from = scene_.transmitters()[transmitter];
   const Device& to = scene_.receivers()[receiver];
   const DeviceState from_state = scene_.device_state(from, frame_), to_state = scene_.device_state(to, frame_);
   if (!from_state.present || !to_state.present) return std::nullopt;
-  const Tracer tracer(scene_, tree_);
+  const Tracer tracer(scene_, index_);
   const PathSearchSettings search = search_settings();
-  PathSolver<Tree> solver(tracer, search.max_transmissions, search.edges);
+  PathSolver<Index> solver(tracer, search.max_transmissions, search.edges);
   TraversalCounters counters;
   const LinkEnd from_link = link_end(from_state, counters), to_link = link_end(to_state, counters);
   const RadioEnd from_radio = detail::radio_end(from, from_state), to_radio = detail::radio_end(to, to_state);

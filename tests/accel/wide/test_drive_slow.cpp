@@ -118,7 +118,7 @@ class Drive {
   }
 
   void build(WideBvh& tree) const {
-    WideSettings settings;
+    WideBuildSettings settings;
     settings.object_subtree_limit = 100;  // the ground is larger: it is mixed with the objects
     tree.build_objects(mesh.view(), boxes, object_first_, settings);
   }
@@ -289,7 +289,7 @@ TEST_CASE("3,000 frames as the updater keeps it, parts built anew: next to nothi
   Drive drive(50, false, 13);
   WideBvh tree;
   drive.build(tree);
-  TreeUpdateSettings settings;
+  WideUpdateSettings settings;
   settings.renewal_ratio = 8.0;
   settings.check_interval = 5;
   settings.sah_growth_limit = settings.deformation_limit = 1.1;

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "dcem/accel/wide/trace/batch.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
 #include "tests/accel/wide/wide_traffic.hpp"
@@ -170,7 +169,7 @@ class Scene {
   }
 
   WideBvh built(double flatness, WideQuality quality, std::uint32_t object_subtree_limit = 60) const {
-    WideSettings settings;
+    WideBuildSettings settings;
     settings.pair_flatness = flatness;
     settings.quality = quality;
     settings.object_subtree_limit = object_subtree_limit;
@@ -329,19 +328,6 @@ bool is_noise(const TriangleCorners& corners, const Ray<double>& ray) {
          !(std::abs(glm::dot(across, ray.direction)) > 1e-12 * size * size * glm::length(ray.direction));
 }
 
-/// The closest_hit hit through WatertightRay, by whatever hands out the triangles.
-struct Exact {
-  double t = infinity;
-  std::uint32_t triangle = Quad::no_triangle;
-  bool operator==(const Exact&) const = default;
-};
-void offer(const WideMesh& mesh, const Ray<double>& ray, std::uint32_t triangle, Exact& best) {
-  if (is_noise(mesh.corners(triangle), ray)) return;
-  const auto t = WatertightRay(ray).intersect(mesh.corners(triangle));
-  if (!t || !(*t >= ray.t_min) || !(*t <= ray.t_max)) return;
-  if (*t < best.t || (*t == best.t && triangle < best.triangle)) best = {*t, triangle};
-}
-
 struct Tally {
   int hits = 0, misses = 0;
 };
@@ -370,33 +356,15 @@ void check_ray(const Scene& scene, const std::vector<const WideBvh*>& trees, con
   }
   CHECK(occluded == hit.has_value());
   (hit ? tally.hits : tally.misses) += 1;
-  Exact brute, walked;
-  for (std::uint32_t triangle = 0; triangle < scene.mesh.triangles.size(); ++triangle) {
-    if (scene.mesh.is_there(triangle)) offer(scene.mesh, ray, triangle, brute);
-  }
-  tree.closest(ray, [&](std::uint32_t triangle, double& t_max) {
-    offer(scene.mesh, ray, triangle, walked);
-    t_max = std::min(t_max, walked.t);
+  std::vector<TriangleHit> expected = dcem_test::exact_hits(scene.mesh, ray), visited;
+  tree.visit_hits(ray, {}, [&](const TriangleHit& one) { return visited.push_back(one), false; });
+  const auto is_noise_hit = [&](const TriangleHit& one) { return is_noise(scene.mesh.corners(one.triangle), ray); };
+  std::erase_if(expected, is_noise_hit);
+  std::erase_if(visited, is_noise_hit);
+  std::ranges::sort(visited, [](const TriangleHit& one, const TriangleHit& other) {
+    return one.t != other.t ? one.t < other.t : one.triangle < other.triangle;
   });
-  INFO("brute: " << shape_of(scene, brute.triangle));
-  CHECK(walked.t == brute.t);
-  CHECK(walked.triangle == brute.triangle);
-  CHECK(tree.any(ray, [&](std::uint32_t triangle) {
-    Exact one;
-    offer(scene.mesh, ray, triangle, one);
-    return one.t < infinity;
-  }) == (brute.t < infinity));
-  std::vector<int> seen(scene.mesh.triangles.size(), 0);
-  tree.all(ray, [&](std::uint32_t triangle) { ++seen[triangle]; });
-  for (std::uint32_t triangle = 0; triangle < seen.size(); ++triangle) {
-    Exact one;
-    if (scene.mesh.is_there(triangle)) offer(scene.mesh, ray, triangle, one);
-    const bool right =
-        one.t < infinity ? seen[triangle] == 1 : seen[triangle] <= (scene.mesh.is_there(triangle) ? 1 : 0);
-    if (!right)
-      CHECK_MESSAGE(
-          right, "all: triangle " << shape_of(scene, triangle) << " exact t " << one.t << " seen " << seen[triangle]);
-  }
+  CHECK(visited == expected);
 }
 
 void check_boxes(const Scene& scene, const WideBvh& tree, RandomStream& random) {

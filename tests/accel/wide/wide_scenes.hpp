@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <iomanip>
 #include <limits>
 #include <optional>
@@ -14,6 +15,8 @@
 #include <vector>
 
 #include "dcem/accel/brute_force.hpp"
+#include "dcem/accel/exact_hit.hpp"
+#include "dcem/accel/hit_filter.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/triangle.hpp"
@@ -35,10 +38,9 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 struct WideMesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> surface;
   std::vector<bool> absent;  ///< triangles that are not there; empty: all are
 
-  dcem::TriangleView view() const { return {vertices, triangles, surface}; }
+  dcem::TriangleView view() const { return {vertices, triangles}; }
   TriangleCorners corners(std::uint32_t triangle) const { return view().corners_m(triangle); }
   bool is_there(std::uint32_t triangle) const { return absent.empty() || !absent[triangle]; }
 
@@ -293,7 +295,60 @@ inline std::vector<OracleHit> hits_on_line(const WideMesh& mesh, const Ray<doubl
   return hits;
 }
 
-/// What is wrong with an answer to "which is the closest_hit", empty when it is right. A hit whose t could be on either
+/// Whether a triangle is all but a line: in which plane it lies then, rounding alone decides.
+inline bool is_line(const TriangleCorners& corners) {
+  const auto& [a, b, c] = corners;
+  const double size = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+  return !(glm::length(glm::cross(b - a, c - a)) > 1e-12 * size * size);
+}
+
+/// All hits of a ray that pass a filter, by exact_hit_t alone, nearest first: what every index must say, to the last
+/// bit. `object_of`: of a triangle, as the index was built.
+inline std::vector<dcem::TriangleHit> exact_hits(
+    const WideMesh& mesh, const Ray<double>& ray, const dcem::HitFilter& filter = {},
+    const std::function<std::uint32_t(std::uint32_t)>& object_of = [](std::uint32_t) { return 0U; }) {
+  std::vector<dcem::TriangleHit> hits;
+  if (!dcem::has_direction(ray)) return hits;
+  const dcem::WatertightRay prepared(ray);
+  for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+    if (!mesh.is_there(triangle) || filter.ignores(object_of(triangle))) continue;
+    const TriangleCorners corners = mesh.corners(triangle);
+    const auto t = dcem::exact_hit_t(dcem::plane_of(corners), corners, prepared, ray);
+    if (t && filter.passes({*t, triangle})) hits.push_back({*t, triangle});
+  }
+  std::ranges::sort(hits, [](const dcem::TriangleHit& one, const dcem::TriangleHit& other) {
+    return one.t != other.t ? one.t < other.t : one.triangle < other.triangle;
+  });
+  return hits;
+}
+
+/// What is wrong with the answers of an index to one ray, against exact_hits; empty when all are right.
+template <typename Index>
+std::string fault_of_hits(const Index& index, const std::vector<dcem::TriangleHit>& expected, const Ray<double>& ray,
+                          const dcem::HitFilter& filter = {}) {
+  const auto hit = index.closest_hit(ray, filter);
+  if (hit.has_value() != !expected.empty()) return "closest_hit: found or not";
+  if (hit && !(*hit == expected.front())) return "closest_hit: another hit";
+  if (index.occluded(ray, filter) != !expected.empty()) return "occluded";
+  std::vector<dcem::TriangleHit> visited;
+  const bool stopped = index.visit_hits(ray, filter, [&](const dcem::TriangleHit& one) {
+    visited.push_back(one);
+    return false;
+  });
+  const auto by_triangle = [](const dcem::TriangleHit& one, const dcem::TriangleHit& other) {
+    return one.triangle < other.triangle;
+  };
+  auto sorted = expected;
+  std::ranges::sort(sorted, by_triangle);
+  std::ranges::sort(visited, by_triangle);
+  if (stopped || visited != sorted) return "visit_hits: other hits";
+  std::size_t calls = 0;
+  const bool ended = index.visit_hits(ray, filter, [&](const dcem::TriangleHit&) { return ++calls == 1; });
+  if (ended == expected.empty() || calls != (expected.empty() ? 0 : 1)) return "visit_hits: did not stop";
+  return {};
+}
+
+/// What is wrong with an answer to "which is the closest", empty when it is right. A hit whose t could be on either
 /// side of t_min, t_max or of another hit by rounding may be taken or left.
 inline std::string fault_of_closest(const std::vector<OracleHit>& line, const Ray<double>& ray,
                                     const std::optional<dcem::TriangleHit>& found) {

@@ -85,7 +85,7 @@ class WideTraffic {
 
   dcem::WideBvh built() const {
     dcem::WideBvh tree;
-    dcem::WideSettings settings;
+    dcem::WideBuildSettings settings;
     settings.object_subtree_limit = 200;  // the ground is larger
     tree.build_objects(mesh.view(), boxes, object_first, settings);
     return tree;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dcem/core/random.hpp"
-#include "dcem/geometry/surfaces/facet_builder.hpp"
+#include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 
 using namespace dcem;
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dcem/geometry/surfaces/facet_builder.hpp"
+#include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/io/obj_reader.hpp"
 #include "tests/support/shared_data.hpp"
 

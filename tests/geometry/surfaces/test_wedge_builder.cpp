@@ -12,7 +12,8 @@
 
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/pose.hpp"
-#include "dcem/geometry/surfaces/facet_builder.hpp"
+#include "dcem/geometry/surfaces/build_surface_mesh.hpp"
+#include "dcem/geometry/surfaces/wedge_builder.hpp"
 #include "dcem/io/obj_reader.hpp"
 #include "tests/support/shared_data.hpp"
 

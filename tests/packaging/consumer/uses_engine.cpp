@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "dcem/core/parallel_for.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/core/units.hpp"
 #include "dcem/geometry/aabb.hpp"
 

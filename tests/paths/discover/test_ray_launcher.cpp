@@ -27,7 +27,7 @@ struct Proposed {
 Proposed launch(TracedScene<>& traced, const LinkEnd& receiver, const LaunchSettings& settings,
                 const Mat3& rotation = Mat3(1.0)) {
   Proposed proposed;
-  RayLauncher<WideBvh> launcher(traced.tracer, settings);
+  RayLauncher<WideIndex> launcher(traced.tracer, settings);
   launcher.for_each_sequence(receiver, rotation, [&](const Sequence& sequence, const std::vector<Vec3>& images_m) {
     proposed.repeated += !proposed.sequences.insert(sequence).second;
     std::vector<Vec3> expected_m{receiver.position_m};

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "dcem/accel/bvh.hpp"
+#include "dcem/accel/wide_index.hpp"
 #include "dcem/geometry/triangle_mesh.hpp"
 
 using namespace dcem;
@@ -39,14 +39,15 @@ struct Covered {
 
 Covered covered_in(Scene scene) {
   scene.apply(scene.frame_at(0.0));
-  WideBvh tree;
-  build_tree(tree, scene);
+  WideIndex index;
+  index.build(scene.triangle_view(), scene.triangle_boxes(), scene.first_triangles());
+  ThreadPool pool(1);
   Covered result;
-  const std::vector<char> covered = embedded_edges(scene, tree, 1);
+  const std::vector<char> covered = embedded_edges(scene, index, pool);
   REQUIRE(covered.size() == scene.wedges().size());
-  for (std::size_t index = 0; index < covered.size(); ++index) {
-    if (covered[index] == 0) continue;
-    const Wedge& edge = scene.wedges()[index].edge;
+  for (std::size_t wedge = 0; wedge < covered.size(); ++wedge) {
+    if (covered[wedge] == 0) continue;
+    const Wedge& edge = scene.wedges()[wedge].edge;
     ++result.edges;
     result.all_in_ground = result.all_in_ground && std::abs(edge.start_m.z) < 1e-3 && std::abs(edge.end_m.z) < 1e-3;
   }

@@ -16,6 +16,9 @@
 #include "dcem/paths/path_id.hpp"
 #include "dcem/paths/query/foliage_length.hpp"
 #include "dcem/paths/query/obstruction.hpp"
+#include "dcem/sim/discovery.hpp"
+#include "dcem/sim/simulator.hpp"
+#include "dcem/sim/verify/same_bits.hpp"
 #include "dcem/sim/verify/verifier.hpp"
 #include "tests/paths/small_scenes.hpp"
 
@@ -568,7 +571,7 @@ void add_crowns(Scene& scene) {
 
 const std::vector<Vec3> receivers_m{{14, -2, 1.5}, {12, 3, 2.2}, {-3, 20, 1.5}, {0.5, -3, 1.2}, {11, 11, 1.5}};
 
-Simulator<> street_simulator(bool with_crowns, const SimulationSettings& settings, double db_per_m = leaves_db_per_m) {
+Simulator street_simulator(bool with_crowns, const SimulationSettings& settings, double db_per_m = leaves_db_per_m) {
   Scene scene;
   for (const char* name : {"opaque", "metal", "glass"}) {
     Material material{name, ConstantReflection{0.8, std::nullopt}};
@@ -618,8 +621,8 @@ std::string geometry_of(const Scene& scene, const Path& path) {
 TEST_CASE("foliage neither reflects, blocks nor diffracts, and is nowhere listed: the paths are those without it") {
   for (const Discovery discovery : {Discovery::exact, Discovery::sampled}) {
     CAPTURE(static_cast<int>(discovery));
-    Simulator<> bare = street_simulator(false, street_settings(discovery));
-    Simulator<> green = street_simulator(true, street_settings(discovery));
+    Simulator bare = street_simulator(false, street_settings(discovery));
+    Simulator green = street_simulator(true, street_settings(discovery));
     const FrameResult without = bare.advance_to(0.0), with = green.advance_to(0.0);
     REQUIRE(without.links.size() == receivers_m.size());
     REQUIRE(with.links.size() == receivers_m.size());
@@ -646,7 +649,7 @@ TEST_CASE("foliage neither reflects, blocks nor diffracts, and is nowhere listed
 }
 
 TEST_CASE("a path's foliage is that of its legs, each clipped on its own") {
-  Simulator<> green = street_simulator(true, street_settings(Discovery::exact));
+  Simulator green = street_simulator(true, street_settings(Discovery::exact));
   const FrameResult frame = green.advance_to(0.0);
   const Scene& scene = green.scene();
   for (const LinkResult& link : frame.links) {
@@ -684,7 +687,7 @@ TEST_CASE("foliage does not scatter, and foliage of 0 dB/m changes no diffuse po
   settings.propagation.diffuse.enabled = true;
   settings.propagation.diffuse.list_paths = true;
   settings.propagation.diffuse.tolerance_db = 0.5;
-  Simulator<> bare = street_simulator(false, settings), green = street_simulator(true, settings, 0.0);
+  Simulator bare = street_simulator(false, settings), green = street_simulator(true, settings, 0.0);
   const FrameResult without = bare.advance_to(0.0), with = green.advance_to(0.0);
   CHECK(with.work.diffuse_tiles == without.work.diffuse_tiles);
   CHECK(with.work.diffuse_tiles > 0);
@@ -719,17 +722,17 @@ TEST_CASE("foliage that claims to scatter, or to be rough, stays without surface
   scene.add_receiver(device_at("rx", Vec3(10, 0.2, 1)));
   SimulationSettings settings = street_settings(Discovery::exact);
   settings.propagation.diffuse.enabled = true;
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   const FrameResult frame = simulator.advance_to(0.0);
   CHECK(frame.links.at(0).diffuse.tiles.empty());
   CHECK_FALSE(frame.links[0].statistics.power_diffuse_dbm.has_value());
 }
 
 TEST_CASE("rays and the exact search find the same paths where foliage stands") {
-  Simulator<> exact = street_simulator(true, street_settings(Discovery::exact));
+  Simulator exact = street_simulator(true, street_settings(Discovery::exact));
   SimulationSettings many = street_settings(Discovery::sampled);
   many.propagation.rays = 100'000;
-  Simulator<> rays = street_simulator(true, many);
+  Simulator rays = street_simulator(true, many);
   const FrameResult all = exact.advance_to(0.0), found = rays.advance_to(0.0);
   Recall recall;
   for (std::size_t link = 0; link < all.links.size(); ++link) {
@@ -767,7 +770,7 @@ TEST_CASE("a ray goes through foliage as if it were not there") {
     if (with_crowns) add_crowns(scene);
     TracedScene<> traced(std::move(scene));
     std::set<Sequence> proposed;
-    RayLauncher<WideBvh> launcher(traced.tracer, {5000, 2, 2});
+    RayLauncher<WideIndex> launcher(traced.tracer, {5000, 2, 2});
     launcher.for_each_sequence(traced.end(receivers_m[0]), Mat3(1.0),
                                [&](const Sequence& sequence, const std::vector<Vec3>&) { proposed.insert(sequence); });
     return std::pair(proposed, launcher.rays());
@@ -786,7 +789,7 @@ TEST_CASE("no tree, a tree without anything in it and a tree with all in it give
   scene.add_receiver(device_at("rx", Vec3(11, 0.5, 1)));
   SimulationSettings settings = street_settings(Discovery::sampled);
   settings.propagation.rays = 500;
-  Simulator<> simulator(std::move(scene), settings);
+  Simulator simulator(std::move(scene), settings);
   const LinkResult link = simulator.advance_to(0.0).links.at(0);
   REQUIRE(link.paths.size() == 1);
   REQUIRE(link.paths[0].path.foliage.size() == 1);
@@ -800,7 +803,7 @@ TEST_CASE("no point of a map is hidden by foliage: not within a crown, not on it
   scene.set_scenery(ground);
   scene.add_object("hedge", make_box(Vec3(6, 2, 2), "leaves"), LinearMotion{});
   TracedScene<> traced(std::move(scene));
-  const ObstructionTest<WideBvh> test(traced.tracer, traced.tree, {Vec3(-20, 0, 5)});
+  const ObstructionTest<WideIndex> test(traced.tracer, traced.index, {Vec3(-20, 0, 5)});
   for (const Vec3& point_m : {Vec3(0, 0, 1), Vec3(3, 0.5, 1), Vec3(1, 1, 1), Vec3(1, 0.5, 2), Vec3(3, 1, 2)}) {
     CHECK_FALSE(test.obstructed(point_m));
     CHECK(traced.end(point_m).mounted_on.empty());
@@ -808,7 +811,7 @@ TEST_CASE("no point of a map is hidden by foliage: not within a crown, not on it
   CHECK(test.obstructed(Vec3(1, 0.5, 0)));  // the ground under it is a surface
   Scene same = traced.scene;
   same.add_transmitter(device_at("tx", Vec3(-20, 0.3, 1)));
-  Simulator<> simulator(std::move(same), street_settings(Discovery::exact));
+  Simulator simulator(std::move(same), street_settings(Discovery::exact));
   const RadioMap map = simulator.radio_maps({"area", Vec3(-3, 0.3, 1), {1.0, 1.0}, {7, 1}, {}}).at(0);
   for (std::size_t column = 0; column < 7; ++column) {
     const RadioMapPoint& point = map.points.at(column);
@@ -851,15 +854,15 @@ TEST_CASE("memory from frame to frame holds no foliage: a run gives what each fr
     SimulationSettings settings = street_settings(Discovery::sampled);
     settings.propagation.rays = 3000;
     settings.propagation.cache = cache;
-    return Simulator<>(std::move(scene), settings);
+    return Simulator(std::move(scene), settings);
   };
-  Simulator<> run = make(CacheMode::seed);
+  Simulator run = make(CacheMode::seed);
   std::size_t compared = 0;
   std::set<double> lengths_m;
   for (std::size_t index = 0; index < 8; ++index) {
     const double time_s = 0.2 * double(index);
     const FrameResult remembered = run.advance_to(time_s, index);
-    Simulator<> fresh = make(CacheMode::off);
+    Simulator fresh = make(CacheMode::off);
     fresh.advance_to(time_s, index);
     for (const PathContribution& path : remembered.links.at(0).paths) {
       const auto again = fresh.solve_path(0, 0, sequence_of(path.path));
@@ -902,7 +905,7 @@ TEST_CASE("for a device that rides in foliage, that foliage does not exist unles
     scene.add_receiver(device);
   }
   scene.add_transmitter(device_at("tx", Vec3(20, 0.25, 1)));
-  Simulator<> simulator(std::move(scene), street_settings(Discovery::exact));
+  Simulator simulator(std::move(scene), street_settings(Discovery::exact));
   const FrameResult frame = simulator.advance_to(0.0);
   const auto length_m = [&](std::size_t link) { return frame.links.at(link).paths.at(0).path.foliage.at(0).length_m; };
   CHECK(length_m(0) == doctest::Approx(1.0));

@@ -15,7 +15,7 @@ namespace {
 using Points = std::vector<Vec3>;
 
 bool obstructed(TracedScene<>& traced, const Points& transmitters_m, const Vec3& point_m) {
-  return ObstructionTest<WideBvh>(traced.tracer, traced.tree, transmitters_m).obstructed(point_m);
+  return ObstructionTest<WideIndex>(traced.tracer, traced.index, transmitters_m).obstructed(point_m);
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ TEST_CASE("shells of two bodies, one inside the other, are told apart") {
   scene.add_object("garage", make_box(Vec3(8, 6, 3), "opaque"), {});
   scene.add_object("car", make_box(Vec3(4, 2, 1.5), "metal"), LinearMotion{{Vec3(0, 0, 0.1)}, Vec3(0.0), 0});
   TracedScene<> traced(std::move(scene));
-  const auto count = [&](const Vec3& p) { return shells_around(traced.tracer, traced.tree, p).size(); };
+  const auto count = [&](const Vec3& p) { return shells_around(traced.tracer, traced.index, p).size(); };
   CHECK(count(Vec3(0.1, 0.2, 0.7)) == 2);
   CHECK(count(Vec3(3.1, 2.2, 0.7)) == 1);
   CHECK(count(Vec3(9, 0, 0.7)) == 0);

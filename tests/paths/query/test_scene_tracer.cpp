@@ -20,9 +20,9 @@ struct Leg {
   std::vector<double> at;
 };
 
-template <typename Tree>
-Leg follow(TracedScene<Tree>& traced, const Vec3& from_m, const Vec3& to_m, std::size_t limit, const LegEnd& start = {},
-           const LegEnd& end = {}, const IgnoredBodies& ignored = {}) {
+template <typename Index>
+Leg follow(TracedScene<Index>& traced, const Vec3& from_m, const Vec3& to_m, std::size_t limit,
+           const LegEnd& start = {}, const LegEnd& end = {}, const IgnoredBodies& ignored = {}) {
   std::vector<Crossing> crossings;
   Leg leg;
   leg.free = traced.tracer.follow_leg(from_m, to_m, start, end, ignored, limit, crossings, traced.counters);
@@ -248,7 +248,7 @@ TEST_CASE("finely cut facets and whole ones give the same answers, with the tree
   add_tiled_sheet(coarse, Vec3(30, -20, 10), 3.0 * u, 2.0 * v, 1, "glass");
   add_tiled_sheet(fine, Vec3(30, -20, 10), 3.0 * u, 2.0 * v, 8, "glass");
   TracedScene<> one(scene_of(coarse)), tree(scene_of(fine));
-  TracedScene<BruteForce<double>> brute(scene_of(fine));
+  TracedScene<BruteForceIndex> brute(scene_of(fine));
   REQUIRE(tree.scene.facets().size() == 1);
   REQUIRE(tree.scene.facet(FacetId(0)).triangle_count == 128);
   int inside = 0;

@@ -40,7 +40,7 @@ struct Question {
   }
 
   TracedScene<> traced;
-  PathSolver<WideBvh> solver;
+  PathSolver<WideIndex> solver;
 };
 
 /// A floor at z = 0, a glass sheet across the leg that comes down and a wall sheet across the one that goes up.

@@ -55,7 +55,7 @@ struct Question {
 std::optional<Path> scattered(TracedScene<>& world, const Question& question,
                               const std::array<std::optional<BodyId>, 2>& rides = {}) {
   const LinkEnd from = world.end(question.from_m, rides[0]), to = world.end(question.to_m, rides[1]);
-  ScatterSolver<WideBvh> solver(world.tracer, question.sheets);
+  ScatterSolver<WideIndex> solver(world.tracer, question.sheets);
   const FacetId facet = world.facet_at(question.point_m, question.material);
   Path path;
   if (!solver.may_scatter(from, to, facet)) return std::nullopt;
@@ -247,7 +247,7 @@ TEST_CASE("scatter solver: patches that overlap in one plane scatter once, the o
     }
     TracedScene<> world(rough_scene(mesh));
     const LinkEnd from = world.end(Vec3(0, 1, 1)), to = world.end(Vec3(2, -3, 2));
-    ScatterSolver<WideBvh> solver(world.tracer, 2);
+    ScatterSolver<WideIndex> solver(world.tracer, 2);
     std::multiset<std::string> found;
     Path path;
     for (std::uint32_t id = 0; id < world.scene.facets().size(); ++id) {
@@ -306,7 +306,7 @@ TEST_CASE("scatter solver: both legs add up what they run through foliage") {
   CHECK(lengths_m["hedge"] == doctest::Approx(0.2 * first_m + 0.1 * second_m).epsilon(1e-12));
   CHECK(lengths_m["tree"] == doctest::Approx(0.05 * second_m).epsilon(1e-12));
   // An end within it counts from there; what was found before is forgotten.
-  ScatterSolver<WideBvh> solver(world.tracer, 0);
+  ScatterSolver<WideIndex> solver(world.tracer, 0);
   Path reused = *path;
   REQUIRE(solver.solve(world.end(Vec3(4, -6, 1)), world.end(Vec3(8, 5, 1)), world.facet_at(point_m, "rough"), point_m,
                        reused));
@@ -324,7 +324,7 @@ TEST_CASE("scatter solver: an absent object neither scatters nor blocks") {
   const Vec3 from_m(0, -4, 0), to_m(0, 4, 0), point_m(10, 0, 0);
   CHECK(scattered(world, {from_m, to_m, point_m}));
   const LinkEnd from = world.end(from_m), to = world.end(to_m);
-  ScatterSolver<WideBvh> solver(world.tracer, 2);
+  ScatterSolver<WideIndex> solver(world.tracer, 2);
   std::size_t scattering = 0;
   for (std::uint32_t id = 0; id < world.scene.facets().size(); ++id)
     scattering += solver.may_scatter(from, to, FacetId(id));
@@ -405,7 +405,7 @@ TEST_CASE("scatter solver: in random scenes of sheets it sees what a loop over a
       const bool rough = world.scene.material(world.scene.facet(facet).material).scattering.coefficient > 0.0;
       const bool expected = rough && side > 0.0 && !first.blocked && !second.blocked && sheets <= 2;
       const LinkEnd from = world.end(from_m), to = world.end(to_m);
-      ScatterSolver<WideBvh> solver(world.tracer, 2);
+      ScatterSolver<WideIndex> solver(world.tracer, 2);
       Path path;
       const bool found = solver.may_scatter(from, to, facet) && solver.solve(from, to, facet, point_m, path);
       CHECK(found == expected);

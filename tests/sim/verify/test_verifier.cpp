@@ -1,4 +1,6 @@
 /// The verifier passes what is right and finds whatever is not: each way in which a frame can be false is tried.
+#include "dcem/paths/path_id.hpp"
+#include "dcem/sim/simulator.hpp"
 #include "dcem/sim/verify/verifier.hpp"
 
 #include <doctest/doctest.h>
@@ -48,11 +50,11 @@ SimulationSettings settings_for(Discovery discovery, CacheMode cache = CacheMode
 /// A run and its verifier.
 struct Verified {
   Scene scene = office();
-  Simulator<> simulator;
-  Verifier<> verifier;
+  Simulator simulator;
+  Verifier verifier;
 
   explicit Verified(const SimulationSettings& settings)
-      : simulator(scene, settings), verifier(simulator.scene(), settings, simulator.surface()) {}
+      : simulator(scene, settings), verifier(simulator.scene(), settings) {}
 
   void frame(std::size_t index, const std::function<void(FrameResult&)>& falsify = {}) {
     const Frame frame = scene.frame_at(0.2 * double(index), index);
@@ -232,7 +234,7 @@ TEST_CASE("a path beyond the declared orders is extra, though it is there") {
   // Found with three reflections, smuggled into a run with two.
   SimulationSettings three = settings_for(Discovery::exact);
   three.propagation.max_reflections = 3;
-  Simulator<> deeper(office(), three);
+  Simulator deeper(office(), three);
   const FrameResult all = deeper.advance_to(0.0, 0);
   const auto& paths = all.links[0].paths;
   const auto third =
@@ -332,9 +334,9 @@ TEST_CASE("where the scene is too large for exhaustive search, paths alone are c
   scene.add_receiver(device_at("r", Vec3(20.1, 20.2, 2)));
   SimulationSettings settings;
   settings.propagation.rays = 300;
-  Simulator<> simulator(scene, settings);
+  Simulator simulator(scene, settings);
   REQUIRE(simulator.cache() == CacheMode::seed);
-  Verifier<> verifier(scene, settings, simulator.surface());
+  Verifier verifier(scene, settings);
   for (std::size_t index = 0; index < 2; ++index) {
     const Frame frame = scene.frame_at(0.0, index);
     verifier.check(frame, simulator.advance(frame));

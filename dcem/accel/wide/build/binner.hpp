@@ -9,23 +9,23 @@
 
 #include "dcem/accel/wide/build/item.hpp"
 #include "dcem/accel/wide/build/splitter.hpp"
-#include "dcem/core/parallel_for.hpp"
+#include "dcem/accel/wide/node.hpp"
+#include "dcem/core/thread_pool.hpp"
 
 namespace dcem {
 
 /// Builds one tree over a list of items, which it reorders.
 class WideBinner {
  public:
-  static constexpr std::uint32_t depths = 56;  ///< a tree has no more
-
-  /// The root comes first; no items: no nodes. A leaf holds one item, or up to `leaf_limit` of one kind where splitting
-  /// them gains little. With one thread nothing is allocated once the lists have grown.
+  /// No deeper than `detail::wide_build_depth_limit`. The root comes first; no items: no nodes. A leaf holds one item,
+  /// or up to `leaf_limit` of one kind where splitting them gains little. With one thread nothing is allocated once the
+  /// lists have grown.
   void build(std::span<WideItem> items, std::uint32_t leaf_limit, unsigned threads, std::vector<WideSplit>& nodes) {
     nodes.clear();
     if (items.empty()) return;
     if (spare_.size() < items.size()) spare_.resize(items.size());
     branches_.clear();
-    open_.assign(1, {0, depths, {}});
+    open_.assign(1, {0, detail::wide_build_depth_limit, {}});
     nodes.push_back(leaf(items, 0, items.size(), open_.front().centres));
     // The top is divided here; what hangs below it is independent, and its order does not depend on who builds it.
     const std::size_t enough = std::max<std::size_t>(items.size() / 16, 1024);
@@ -53,8 +53,8 @@ class WideBinner {
  private:
   struct Branch {
     std::uint32_t node;
-    std::uint32_t depths;      ///< that may still be used, the node's own included
-    detail::FloatBox centres;  ///< around twice the centres of its items
+    std::uint32_t levels_left;  ///< that may still be used, the node's own included
+    detail::FloatBox centres;   ///< around twice the centres of its items
   };
 
   static WideSplit leaf(std::span<const WideItem> items, std::size_t first, std::size_t last,
@@ -113,14 +113,14 @@ class WideBinner {
     const WideSplit node = nodes[branch.node];
     if (node.count == 1) return;
     const std::span<WideItem> own = items.subspan(node.first, node.count);
-    // Halving needs this many depths more.
-    const bool must_halve = branch.depths <= static_cast<std::uint32_t>(std::bit_width(own.size())) + 1;
+    // Halving needs this many levels more.
+    const bool must_halve = branch.levels_left <= static_cast<std::uint32_t>(std::bit_width(own.size())) + 1;
     const std::size_t to_left = must_halve
                                     ? WideSplitter::halve(own, branch.centres.high - branch.centres.low)
                                     : WideSplitter::divide(own, spare.subspan(node.first, node.count), branch.centres);
     const std::size_t middle = node.first + to_left;
     const auto next = static_cast<std::uint32_t>(nodes.size());
-    Branch one{next, branch.depths - 1, {}}, other{next + 1, branch.depths - 1, {}};
+    Branch one{next, branch.levels_left - 1, {}}, other{next + 1, branch.levels_left - 1, {}};
     const WideSplit left = leaf(items, node.first, middle, one.centres);
     const WideSplit right = leaf(items, middle, node.first + node.count, other.centres);
     if (node.count <= leaf_limit && left.half_area_m2 + right.half_area_m2 >= 0.95F * node.half_area_m2 &&

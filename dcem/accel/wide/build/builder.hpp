@@ -15,58 +15,15 @@
 #include "dcem/accel/wide/build/leaf_optimizer.hpp"
 #include "dcem/accel/wide/build/quads.hpp"
 #include "dcem/accel/wide/build/reinsertion_optimizer.hpp"
-#include "dcem/core/parallel_for.hpp"
+#include "dcem/accel/wide/settings.hpp"
+#include "dcem/core/thread_pool.hpp"
 
 namespace dcem {
-
-/// How long a build may take. Answers are the same.
-enum class WideQuality {
-  fast,  ///< what the splits give: for what is built again in every frame
-  good,  ///< a third longer, 5 % fewer steps a ray
-  high   ///< several times as long, 9 % fewer: scenery that stands still
-};
-
-/// How a wide tree is built.
-struct WideSettings {
-  /// Relative costs of nodes and leaves, by which the binary tree is collapsed.
-  WideCosts costs{};
-  /// Two triangles become one quad where the fourth corner is no further from the plane of the others than this times
-  /// the shared edge (no unit). Default 1e-3; negative switches pairing off.
-  double pair_flatness = 1e-3;
-  /// An object of at most this many quads owns a subtree that moves as a whole; a larger one, such as a city, is mixed
-  /// with its surroundings (number). Default 512.
-  std::uint32_t object_subtree_limit = 512;
-  /// Splitting ends at this many quads of one object where it gains little (number, 1 … 8). Default 8; 1 leaves it to
-  /// the collapse alone.
-  std::uint32_t leaf_limit = 8;
-  /// Threads of a build (number); 0: as many as the machine has. The tree does not depend on it. Default 1.
-  unsigned threads = 1;
-  /// How long a build may take. Default good.
-  WideQuality quality = WideQuality::good;
-  /// Whether the system is asked for huge pages where the tree is large (HugePageAllocator). Default true.
-  bool huge_pages = true;
-  /// Whether many items are divided by their size, too (WideItem::note_size). Default true.
-  bool divide_by_size = true;
-  /// Whether memory is asked for before it is needed: by rays in large trees, and for what moves. Default true.
-  bool fetch_ahead = true;
-};
-
-/// Throws std::invalid_argument for settings outside the ranges written above.
-inline void validate(const WideSettings& settings) {
-  const auto positive = [](double cost) { return cost >= 1e-9 && cost <= 1e9; };
-  if (!positive(settings.costs.node) || !positive(settings.costs.leaf)) {
-    throw std::invalid_argument("costs of a wide tree: expected numbers from 1e-9 to 1e9");
-  }
-  if (std::isnan(settings.pair_flatness)) throw std::invalid_argument("pair_flatness: expected a number");
-  if (settings.leaf_limit < 1 || settings.leaf_limit > simd_lanes) {
-    throw std::invalid_argument("leaf_limit: expected 1 to 8");
-  }
-}
 
 /// Fills the arrays of one tree.
 class WideBuilder {
  public:
-  explicit WideBuilder(const WideSettings& settings) : settings_(settings) {}
+  explicit WideBuilder(const WideBuildSettings& settings) : settings_(settings) {}
 
   /// Group i has the quads [first_quad[i], first_quad[i + 1]). Corners, origin and presence are set in `arrays`.
   void build(WideArrays& arrays, std::span<const Quad> quads, std::span<const std::uint32_t> first_quad) {
@@ -228,7 +185,7 @@ class WideBuilder {
 
   static constexpr std::size_t leaves_at_a_time = 256;
 
-  WideSettings settings_;
+  WideBuildSettings settings_;
   WideArrays* arrays_ = nullptr;
   std::span<const Quad> quads_;
 };

@@ -9,15 +9,10 @@
 #include <vector>
 
 #include "dcem/accel/wide/build/binner.hpp"
+#include "dcem/accel/wide/settings.hpp"
 #include "dcem/core/simd.hpp"
 
 namespace dcem {
-
-/// What a wide tree costs; no unit, only the ratio matters.
-struct WideCosts {
-  double node = 1.0;  ///< visiting a node: eight boxes at once
-  double leaf = 1.0;  ///< a leaf of up to eight quads at once
-};
 
 /// Decides which binary nodes become wide nodes, which become leaves, and which vanish.
 ///

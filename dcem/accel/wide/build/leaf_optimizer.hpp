@@ -25,7 +25,7 @@ class LeafOptimizer {
   static constexpr int most_visits = 16;      ///< nodes that one search looks into: boxes may all overlap
 
   /// Changes a binary tree, and the order of its items, so that its collapse shows the better leaves. A tree that would
-  /// get deeper than WideBinner::depths stays as it is.
+  /// get deeper than detail::wide_build_depth_limit stays as it is.
   static void optimize(std::vector<WideSplit>& splits, std::span<WideItem> items, const WideCosts& costs,
                        int most_passes) {
     const WideCollapse plan(splits, items, costs);
@@ -237,7 +237,7 @@ class LeafOptimizer {
     }
     std::vector<WideItem> placed(items.size());
     std::vector<WideSplit> result = detail::in_order(nodes, made[0], held, placed);
-    if (detail::depth_of_tree(result) > WideBinner::depths) return;
+    if (detail::depth_of_tree(result) > detail::wide_build_depth_limit) return;
     splits = std::move(result);
     std::copy(placed.begin(), placed.end(), items.begin());
   }

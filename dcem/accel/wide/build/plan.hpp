@@ -52,7 +52,7 @@ class WidePlan {
   WidePlan& operator=(const WidePlan&) { return *this; }
   ~WidePlan() = default;
 
-  /// `by_size`: see WideSettings::divide_by_size. With one thread nothing is allocated once the lists have grown.
+  /// `by_size`: see WideBuildSettings::divide_by_size. With one thread nothing is allocated once the lists have grown.
   void make(const WideArrays& arrays, std::uint32_t node, unsigned threads, bool by_size = true) {
     leaves_.clear();
     collect(arrays, node);

@@ -9,51 +9,14 @@
 #include <span>
 #include <vector>
 
+#include "dcem/accel/wide/quad.hpp"
 #include "dcem/core/radix_sort.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/triangle.hpp"
+#include "dcem/geometry/triangle_view.hpp"
 #include "dcem/geometry/vector.hpp"
 
 namespace dcem {
-
-/// Triangles as a tree sees them: corners by number into common vertices, metres.
-struct TriangleView {
-  std::span<const Vec3> vertices_m;
-  std::span<const std::array<std::uint32_t, 3>> triangles;
-  /// Per triangle the surface it belongs to: triangles of different surfaces are never paired. Empty: all are of one.
-  std::span<const std::uint32_t> surface_of_triangle{};
-
-  std::size_t size() const { return triangles.size(); }
-  bool same_surface(std::uint32_t one, std::uint32_t other) const {
-    return surface_of_triangle.empty() || surface_of_triangle[one] == surface_of_triangle[other];
-  }
-  TriangleCorners corners_m(std::uint32_t triangle) const {
-    const auto& [a, b, c] = triangles[triangle];
-    return {vertices_m[a], vertices_m[b], vertices_m[c]};
-  }
-};
-
-/// One triangle, or two that share the edge from corner c to corner a.
-struct Quad {
-  static constexpr std::uint32_t no_triangle = 0xffffffffU;
-
-  std::array<std::uint32_t, 2> triangle{no_triangle, no_triangle};
-  /// Vertices: a, b, c of the first triangle, d of the second. A triangle alone has a in place of d.
-  std::array<std::uint32_t, 4> corner{};
-  /// Which of a, b, c is the first corner of the first triangle, and which of a, c, d of the second: 0, 1 or 2.
-  std::array<std::uint32_t, 2> begin{};
-
-  static Quad alone(std::uint32_t triangle, const std::array<std::uint32_t, 3>& vertices) {
-    return {{triangle, no_triangle}, {vertices[0], vertices[1], vertices[2], vertices[0]}, {}};
-  }
-  bool is_none() const { return triangle[0] == no_triangle; }
-  bool is_pair() const { return triangle[1] != no_triangle; }
-  std::span<const std::uint32_t> triangles() const { return {triangle.data(), is_pair() ? 2U : 1U}; }
-  /// The first corner of a triangle.
-  std::uint32_t first_vertex(std::size_t side) const {
-    return side == 0 || begin[1] == 0 ? corner[begin[side]] : corner[begin[1] + 1];
-  }
-};
 
 namespace detail {
 
@@ -214,7 +177,7 @@ class QuadBuilder {
   void try_pair(const Edge& edge, const Edge& same) {
     const std::uint32_t one = edge.triangle, other = same.triangle;
     const std::uint32_t b = opposite(edge), d = opposite(same);
-    if (one == other || b == 3 || d == 3 || !mesh_.same_surface(one, other)) return;
+    if (one == other || b == 3 || d == 3) return;
     const Vec3& low_m = mesh_.vertices_m[edge.low];
     const EdgePair ways{mesh_.vertices_m[edge.high] - low_m, at(one, b) - low_m, at(other, d) - low_m};
     if (!ways.is_flat(flatness_) || !ways.is_convex()) return;

@@ -10,7 +10,7 @@
 
 #include "dcem/accel/wide/build/binary_tree.hpp"
 #include "dcem/accel/wide/build/binner.hpp"
-#include "dcem/core/parallel_for.hpp"
+#include "dcem/core/thread_pool.hpp"
 
 namespace dcem {
 
@@ -29,8 +29,8 @@ class ReinsertionOptimizer {
   /// A search looks at no more nodes: boxes that all overlap would make it look at all of them.
   static constexpr int most_visits = 200;
 
-  /// Changes the tree and the order of its items. It gets no deeper than WideBinner::depths: a pass that makes it
-  /// deeper is taken back, and the last one.
+  /// Changes the tree and the order of its items. It gets no deeper than detail::wide_build_depth_limit: a pass that
+  /// makes it deeper is taken back, and the last one.
   static void optimize(std::vector<WideSplit>& splits, std::span<WideItem> items, unsigned threads) {
     if (splits.size() < 5) return;  // three leaves at least
     ReinsertionOptimizer work(detail::with_boxes(splits, items), threads);
@@ -41,7 +41,7 @@ class ReinsertionOptimizer {
       const double sum_m2 = work.sum_m2();
       const double gain_m2 = work.pass();
       std::vector<WideSplit> better = detail::in_order(work.nodes_, 0, before, placed);
-      if (!(gain_m2 > 0.0) || detail::depth_of_tree(better) > WideBinner::depths) break;
+      if (!(gain_m2 > 0.0) || detail::depth_of_tree(better) > detail::wide_build_depth_limit) break;
       splits = std::move(better);
       std::copy(placed.begin(), placed.end(), items.begin());
       if (gain_m2 < least_gain * sum_m2) break;

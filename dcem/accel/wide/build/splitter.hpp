@@ -9,7 +9,7 @@
 #include <span>
 
 #include "dcem/accel/wide/build/item.hpp"
-#include "dcem/accel/wide/trace/lane_keys.hpp"
+#include "dcem/core/lane_keys.hpp"
 #include "dcem/core/simd.hpp"
 
 namespace dcem {
@@ -150,10 +150,14 @@ class WideSplitter {
     std::array<std::array<float, simd_lanes>, 3> places;
     for (auto& axis : places) axis.fill(std::numeric_limits<float>::infinity());
     for (std::size_t item = 0; item < items.size(); ++item) {
+      // Keys have the order of numbers from zero on; a zero with a sign, and what rounding takes below, would come
+      // last.
       const Float4 centre = items[item].twice_centre() - low;
-      for (int axis = 0; axis < 3; ++axis) places[static_cast<std::size_t>(axis)][item] = centre[axis];
+      for (int axis = 0; axis < 3; ++axis) {
+        places[static_cast<std::size_t>(axis)][item] = centre[axis] > 0.0F ? centre[axis] : 0.0F;
+      }
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) ranks[axis] = detail::LaneKeys(Float8(places[axis])).ranks();
+    for (std::size_t axis = 0; axis < 3; ++axis) ranks[axis] = LaneKeys(Float8(places[axis])).ranks();
   }
 
   /// What tracing so many items takes, up to a factor: they come in leaves of eight, so that a split that fills them is

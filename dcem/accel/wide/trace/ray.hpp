@@ -2,11 +2,12 @@
 /// A ray prepared for nodes of eight boxes and leaves of eight quads, in single precision.
 ///
 /// Single precision never decides against double precision: a box that the double ray meets is met, and of a quad the
-/// answer is "surely not", "surely" or "ask".
+/// answer is a certain miss, a certain hit, or undecided.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -17,12 +18,30 @@
 
 namespace dcem {
 
-/// What single precision knows of a ray and a quad that it may meet.
-enum class QuadKnowledge : std::uint8_t {
-  nothing,
+/// Whether a ray meets a quad, and in which triangle.
+enum class QuadCertainty : std::uint8_t {
+  undecided,
   met,    ///< the line of the ray meets the quad
   first,  ///< it meets the first triangle of the quad
   second
+};
+
+inline namespace DCEM_ISA {
+
+/// What is known of a ray and the quads of a leaf.
+struct QuadHits {
+  Float8 first;           ///< a quad is met no earlier than here
+  Float8 last;            ///< and no later than here
+  std::uint32_t certain;  ///< bit i: quad i is met, not before t_min
+  /// Bit i: if quad i is met, then it is its first, or its second triangle, by the side of the diagonal on which the
+  /// ray passes; neither where that is undecided.
+  std::array<std::uint32_t, 2> side;
+
+  bool is_certain(std::uint32_t lane) const { return (certain >> lane & 1U) != 0; }
+  QuadCertainty certainty(std::uint32_t lane) const {
+    const auto bit = [lane](std::uint32_t lanes) { return lanes >> lane & 1U; };
+    return static_cast<QuadCertainty>(bit(certain) * (1 + bit(side[0]) + 2 * bit(side[1])));
+  }
 };
 
 class WideRay {
@@ -34,35 +53,30 @@ class WideRay {
   /// 1e-12, an origin farther away than 1e5 times the size of the tree, t_min below 0 or above t_max.
   bool usable() const { return usable_; }
 
-  /// The largest entry that still counts as reaching `t`, from zero on: a zero without a sign.
-  static float padded(double t) { return static_cast<float>(std::min(t, 1e30)) * (1.0F + 8 * unit) + 0.0F; }
+  /// Where the ray begins, rounded down, and ends, rounded up: an entry that reaches t_max is within `t_max()`. Zeros
+  /// have no sign.
+  float t_min() const { return t_min_; }
+  float t_max() const { return t_max_; }
+  static float padded(double t) { return static_cast<float>(std::min(t, 1e30)) * (1.0F + 8 * rounding) + 0.0F; }
 
-  /// Which boxes of the node the ray may meet between t_min and `t_max` (padded). `entry`: where it enters them, from
-  /// t_min on.
-  ///
-  /// Formula: the slab method, each bound as b·r − o·r with one multiply_add. o·r is rounded: an error of the origin by
-  /// a few units of its last place. Therefore the origin is moved outwards for the near and for the far planes, by
-  /// 4 units of |o| + extent on that axis, which holds without fused operations too; the far bounds are scaled by
-  /// 1 + 12 units for the roundings of r, of the direction and of the product. A direction that is all but zero on an
-  /// axis is taken for 1e-25. That leads astray by at most 1e-13 of the way, because the longest axis has 1e-12 or
-  /// more, and no way ends beyond 4e5 extents: a sixth of the 4 units.
-  Mask8 meets(const WideNode& node, float t_max, Float8& entry) const;
+  /// What a run of node tests keeps in registers.
+  struct BoxTest {
+    Float8 near_origin_m[3], far_origin_m[3], minus_reciprocal[3];
+    std::size_t near_row[3], far_row[3];  ///< byte offsets in WideNode::bounds_m
+    Float8 t_min, t_max;
 
-  /// What is known of a ray and the quads of a leaf.
-  struct QuadHits {
-    Float8 first;           ///< a quad is met no earlier than here
-    Float8 last;            ///< and no later than here
-    std::uint32_t certain;  ///< bit i: quad i is met, not before t_min
-    /// Bit i: if quad i is met, then it is its first, or its second triangle, by the side of the diagonal on which the
-    /// ray passes; neither where that is not sure.
-    std::array<std::uint32_t, 2> side;
+    /// `t_max` padded.
+    [[gnu::always_inline]] BoxTest(const WideRay& ray, float t_max);
 
-    QuadKnowledge known(std::uint32_t lane) const {
-      const auto bit = [lane](std::uint32_t lanes) { return lanes >> lane & 1U; };
-      constexpr std::array answers{QuadKnowledge::nothing, QuadKnowledge::met, QuadKnowledge::first,
-                                   QuadKnowledge::second};
-      return answers[bit(certain) * (1 + bit(side[0]) + 2 * bit(side[1]))];
-    }
+    /// Which boxes of the node the ray misses between t_min and t_max. `entry`: where it enters the others, from t_min
+    /// on.
+    ///
+    /// Formula: the slab method, each bound as (o − b)·(−r) with r = 1/d. Errors: o, d, r, difference and product are
+    /// each rounded by a unit u = 2⁻²⁴, so a bound is off by less than 5 u (|o| + extent) of the axis, as if the box
+    /// were moved. Therefore the origin is moved outwards by 8 u (|o| + extent), for the near and for the far planes. A
+    /// direction that is all but zero on an axis is taken for 1e-25; that leads astray by at most 1e-13 of the way,
+    /// because the longest axis has 1e-12 or more, and no way ends beyond 4e5 extents: 0.7 u extents.
+    [[gnu::always_inline]] Mask8 misses(const WideNode& node, Float8& entry) const;
   };
 
   /// Bit i: the ray may meet quad i of the leaf between t_min and `t_max` (padded).
@@ -73,45 +87,41 @@ class WideRay {
   /// quadrilateral that holds the origin by at most 10·diameter·δ + 2δ² (its corners are within two diameters); a bent
   /// pair adds its bend to δ. Diameter and bend are the largest of the leaf. The plane is off by 2δ + bend along its
   /// normal, which t feels divided by the slope.
-  std::uint32_t meets(const QuadLeaf& leaf, float t_max, QuadHits& hits) const;
+  [[gnu::always_inline]] std::uint32_t meets(const QuadLeaf& leaf, float t_max, QuadHits& hits) const;
 
  private:
-  static constexpr float unit = 0x1p-24F;  ///< relative error of one rounding
+  friend struct BoxTest;
+  static constexpr float rounding = 0x1p-24F;  ///< relative error of one rounding
   static constexpr float least_slope = 1e-25F;
 
-  /// A corner as the ray sees it: moved so that the ray runs through 0, 0.
-  struct Sheared {
-    Float8 x, y;
+  /// The axes in the order in which quads see them: the last one is the ray's main axis.
+  struct AxisOrder {
+    Int4 order;                        ///< which axis comes first, second, last
+    std::array<std::uint32_t, 3> row;  ///< byte offsets of their rows in QuadLeaf::corner_m[corner]
   };
-  Sheared shear(const QuadLeaf& leaf, std::size_t corner, float x_shift, float y_shift) const {
-    const auto& at_m = leaf.corner_m[corner];
-    const Float8 z(at_m[axis_[2]]);
-    return {simd::multiply_add(z, -shear_[axis_[0]], Float8(at_m[axis_[0]])) + x_shift,
-            simd::multiply_add(z, -shear_[axis_[1]], Float8(at_m[axis_[1]])) + y_shift};
-  }
-  /// Positive on one side of the edge between two corners.
-  static Float8 edge(const Sheared& p, const Sheared& q) { return simd::multiply_add(q.x, p.y, -(q.y * p.x)); }
-
-  using Axes = std::array<float, 4>;  ///< x, y, z and one more to fill the register
-  template <typename Numbers, typename Vector>
-  [[gnu::always_inline]] static void keep(Numbers& numbers, const Vector& vector) {
-    std::memcpy(numbers.data(), &vector, sizeof vector);
-  }
 
   // Left without initial values: each ray would pay for them.
-  alignas(16) Axes near_offset_, far_offset_, reciprocal_, far_reciprocal_;
-  alignas(16) Axes direction_, leaf_origin_, leaf_origin_low_;
-  alignas(16) Axes shear_;                         ///< direction over that along the main axis
-  alignas(16) std::array<std::uint32_t, 4> near_;  ///< rows of WideNode::bounds_m that face the ray
-  alignas(16) std::array<std::uint32_t, 4> axis_;  ///< x, y and z as the quads see them; z is the ray's main axis
-  float t_min_;
+  Float4 near_origin_m_, far_origin_m_;
+  Float4 minus_reciprocal_;
+  Float4 origin_m_, origin_low_m_;  ///< from the tree's origin: rounded, and what the rounding has left
+  Float4 direction_;                ///< in the order of the axes, as the next
+  Float4 minus_shear_;              ///< direction over that along the main axis, times −1
+  const std::uint32_t* rows_;
+  const AxisOrder* axes_;
+  float t_min_, t_max_;
   float far_error_m_;  ///< of double precision: origin and corners are counted from the tree's origin
   bool usable_;
 };
 
+}  // namespace DCEM_ISA
+
 // ---------------------------------------------------------------------------------------------------------------------
 
 namespace detail {
+
+inline namespace DCEM_ISA {
+
+using Double4 = double __attribute__((vector_size(32)));
 
 [[gnu::always_inline]] inline Float4 absolute(const Float4& value) {
   return std::bit_cast<Float4>(std::bit_cast<Int4>(value) & std::int32_t{0x7fffffff});
@@ -119,102 +129,192 @@ namespace detail {
 [[gnu::always_inline]] inline Float4 with_sign(const Float4& size, const Int4& sign) {
   return std::bit_cast<Float4>(std::bit_cast<Int4>(size) | sign);
 }
-
-[[gnu::always_inline]] inline bool is_zero(const Int4& lanes) {
-  const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(lanes);
-  return (halves[0] | halves[1]) == 0;
+/// The number `lane` in all four lanes.
+template <int lane>
+[[gnu::always_inline]] inline Float4 spread(const Float4& value) {
+  return __builtin_shufflevector(value, value, lane, lane, lane, lane);
 }
+/// The lanes that `order` names.
+[[gnu::always_inline]] inline Float4 permuted(const Float4& value, const Int4& order) {
+#if defined(__AVX__)
+  return __builtin_ia32_vpermilvarps(value, order);
+#else
+  return Float4{value[order[0]], value[order[1]], value[order[2]], value[order[3]]};
+#endif
+}
+/// Bit i is the sign of lane i.
+[[gnu::always_inline]] inline std::uint32_t sign_bits(const Int4& value) {
+#if defined(__SSE2__)
+  return static_cast<std::uint32_t>(__builtin_ia32_movmskps(std::bit_cast<Float4>(value)));
+#else
+  std::uint32_t bits = 0;
+  for (std::size_t lane = 0; lane < 4; ++lane) bits |= (value[lane] < 0 ? 1U : 0U) << lane;
+  return bits;
+#endif
+}
+[[gnu::always_inline]] inline Float4 narrowed(const Double4& value) {
+  return __builtin_convertvector(value, Float4);
+}
+/// What is left of numbers when their rounded ones are taken away.
+[[gnu::always_inline]] inline Float4 remainder(const Double4& value, const Float4& rounded) {
+#if defined(__AVX__)
+  return narrowed(value - __builtin_ia32_cvtps2pd256(rounded));  // g++ 12 makes four steps of the portable form
+#else
+  return narrowed(value - __builtin_convertvector(rounded, Double4));
+#endif
+}
+[[gnu::always_inline]] inline Float4 load_four(const void* numbers) {
+  Float4 result;
+  std::memcpy(&result, numbers, sizeof result);
+  return result;
+}
+[[gnu::always_inline]] inline float float_at(const Float4& numbers, std::size_t lane) {
+  float result;
+  std::memcpy(&result, reinterpret_cast<const char*>(&numbers) + lane * sizeof(float), sizeof result);
+  return result;
+}
+
+}  // namespace DCEM_ISA
 
 }  // namespace detail
 
+inline namespace DCEM_ISA {
+
 [[gnu::always_inline]] inline WideRay::WideRay(const Ray<double>& ray, const Vec3& tree_origin_m, float extent_m) {
-  using Double4 = double __attribute__((vector_size(32)));
-  const Double4 origin = Double4{ray.origin.x, ray.origin.y, ray.origin.z, 0.0} -
-                         Double4{tree_origin_m.x, tree_origin_m.y, tree_origin_m.z, 0.0};
-  const Float4 from = __builtin_convertvector(origin, Float4);
-  const Float4 from_low = __builtin_convertvector(origin - __builtin_convertvector(from, Double4), Float4);
-  const Float4 direction =
-      __builtin_convertvector((Double4{ray.direction.x, ray.direction.y, ray.direction.z, 0.0}), Float4);
+  // The rows of a node, by the signs of a direction: near bounds of x, y, z, and far ones.
+  static constexpr std::array<std::array<std::uint32_t, 8>, 8> rows_by_sign = [] {
+    std::array<std::array<std::uint32_t, 8>, 8> rows{};
+    for (std::uint32_t signs = 0; signs < 8; ++signs) {
+      for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        rows[signs][axis] = (2 * axis + (signs >> axis & 1U)) * 32;
+        rows[signs][axis + 3] = (2 * axis + 1 - (signs >> axis & 1U)) * 32;
+      }
+    }
+    return rows;
+  }();
+  // By the bits x ≥ y, y ≥ z, z ≥ x.
+  static constexpr AxisOrder x_last{{1, 2, 0, 0}, {32, 64, 0}}, y_last{{2, 0, 1, 0}, {64, 0, 32}},
+      z_last{{0, 1, 2, 0}, {0, 32, 64}};
+  static constexpr std::array<AxisOrder, 8> axes_by_length{z_last, x_last, y_last, x_last,
+                                                           z_last, z_last, y_last, x_last};
+  static_assert(sizeof(ray) == 64);
+  detail::Double4 first, last;
+  std::memcpy(&first, &ray.origin.x, sizeof first);   // origin x y z, direction x
+  std::memcpy(&last, &ray.direction.y, sizeof last);  // direction y z, t_min, t_max
+  const detail::Double4 origin = first - detail::Double4{tree_origin_m.x, tree_origin_m.y, tree_origin_m.z, 0.0};
+  const Float4 from = detail::narrowed(origin), rest = detail::narrowed(last);
+  origin_m_ = from;
+  origin_low_m_ = detail::remainder(origin, from);
+  const Float4 direction = __builtin_shufflevector(from, rest, 3, 4, 5, 3);
   const Float4 size = detail::absolute(direction), distance = detail::absolute(from);
   const Int4 sign = std::bit_cast<Int4>(direction) & std::int32_t{-0x7fffffff - 1};
   const Float4 least = Float4{} + least_slope;
-  const Float4 reciprocal = 1.0F / detail::with_sign(size > least ? size : least, sign);
-  const Float4 far_reciprocal = reciprocal * (1.0F + 12 * unit);
+  minus_reciprocal_ = -1.0F / detail::with_sign(size > least ? size : least, sign);
+  const Float4 step = detail::with_sign((distance + extent_m) * (8 * rounding) + 1e-20F, sign);
+  near_origin_m_ = from + step;
+  far_origin_m_ = from - step;
+  rows_ = rows_by_sign[detail::sign_bits(sign) & 7U].data();
+  const Float4 next = __builtin_shufflevector(size, size, 1, 2, 0, 3);
+  axes_ = &axes_by_length[detail::sign_bits(size >= next) & 7U];
+  const Int4 order = axes_->order;
+  direction_ = detail::permuted(direction, order);
+  minus_shear_ = direction_ * detail::spread<2>(detail::permuted(minus_reciprocal_, order));
   const float farthest = std::max(distance[0], std::max(distance[1], distance[2]));
-  const Float4 step = detail::with_sign((distance + extent_m) * (4 * unit) + 1e-20F, sign);
-  keep(near_offset_, -(from + step) * reciprocal);
-  keep(far_offset_, -(from - step) * far_reciprocal);
-  keep(reciprocal_, reciprocal);
-  keep(far_reciprocal_, far_reciprocal);
-  keep(direction_, direction);
-  keep(leaf_origin_, from);
-  keep(leaf_origin_low_, from_low);
-  keep(near_, Int4{0, 2, 4, 0} - (sign >> 31));
-  const std::uint32_t z_is_longest = size[2] > std::max(size[0], size[1]) ? 1U : 0U;
-  const std::uint32_t z = 2 * z_is_longest + (1 - z_is_longest) * (size[1] > size[0] ? 1U : 0U);
-  static constexpr std::array<std::array<std::uint32_t, 4>, 3> turned{{{1, 2, 0, 0}, {2, 0, 1, 0}, {0, 1, 2, 0}}};
-  axis_ = turned[z];
-  keep(shear_, direction * reciprocal_[z]);
   far_error_m_ = (farthest + extent_m) * 0x1p-48F;
-  t_min_ = static_cast<float>(std::min(ray.t_min, 1e30)) * (1.0F - 8 * unit) + 0.0F;
-  // Without branches, because rays point everywhere; NaN fails every comparison.
-  const bool is_in_range = detail::is_zero(~((size < 1e12F) & (distance < 1e12F)));
-  const bool leads_nowhere = detail::is_zero(size > 1e-12F);
-  usable_ = (is_in_range & !leads_nowhere & (farthest <= 1e5F * extent_m) & (ray.t_min >= 0.0) &
-             (ray.t_min <= ray.t_max)) != 0;
+  const Float4 ends = rest * Float4{1.0F, 1.0F, 1.0F - 8 * rounding, 1.0F + 8 * rounding} + 0.0F;
+  t_min_ = ends[2];
+  t_max_ = std::min(ends[3], 1e30F);
+  // NaN fails every comparison.
+  const Float4 largest = Float4{} + 1e12F, farthest_m = Float4{} + std::min(1e12F, 1e5F * extent_m);
+  const bool is_in_range = (detail::sign_bits((size < largest) & (distance <= farthest_m)) & 7U) == 7U;
+  const bool leads_somewhere = (detail::sign_bits(size > 1e-12F) & 7U) != 0U;
+  usable_ = is_in_range && leads_somewhere && ray.t_min >= 0.0 && ray.t_min <= ray.t_max;
 }
 
-[[gnu::always_inline]] inline Mask8 WideRay::meets(const WideNode& node, float t_max, Float8& entry) const {
-  const auto bound = [&](std::size_t axis, std::uint32_t turned) {
-    return Float8(node.bounds_m[near_[axis] ^ turned]);
-  };
+[[gnu::always_inline]] inline WideRay::BoxTest::BoxTest(const WideRay& ray, float limit)
+    : t_min(ray.t_min_), t_max(limit) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    near_origin_m[axis] = detail::float_at(ray.near_origin_m_, axis);
+    far_origin_m[axis] = detail::float_at(ray.far_origin_m_, axis);
+    minus_reciprocal[axis] = detail::float_at(ray.minus_reciprocal_, axis);
+    near_row[axis] = ray.rows_[axis];
+    far_row[axis] = ray.rows_[axis + 3];
+  }
+}
+
+[[gnu::always_inline]] inline Mask8 WideRay::BoxTest::misses(const WideNode& node, Float8& entry) const {
+  const auto* const bounds = reinterpret_cast<const char*>(node.bounds_m.data());
   const auto near = [&](std::size_t axis) {
-    return simd::multiply_add(bound(axis, 0), reciprocal_[axis], near_offset_[axis]);
+    return (near_origin_m[axis] - Float8::load(bounds + near_row[axis])) * minus_reciprocal[axis];
   };
   const auto far = [&](std::size_t axis) {
-    return simd::multiply_add(bound(axis, 1), far_reciprocal_[axis], far_offset_[axis]);
+    return (far_origin_m[axis] - Float8::load(bounds + far_row[axis])) * minus_reciprocal[axis];
   };
-  entry = simd::later(simd::later(near(0), near(1)), simd::later(near(2), t_min_));
-  return simd::not_later(entry, simd::earlier(simd::earlier(far(0), far(1)), simd::earlier(far(2), t_max)));
+  entry = simd::later(simd::later(near(0), near(1)), simd::later(near(2), t_min));
+  return simd::is_later(entry, simd::earlier(simd::earlier(far(0), far(1)), simd::earlier(far(2), t_max)));
 }
 
 [[gnu::always_inline]] inline std::uint32_t WideRay::meets(const QuadLeaf& leaf, float t_max, QuadHits& hits) const {
+  const AxisOrder& axes = *axes_;
+  const std::size_t x = axes.row[0], y = axes.row[1], z = axes.row[2];
   // From the ray's origin to the centre: rounded relative to their distance, because the centre is exact.
-  const auto [x, y, z, unused] = axis_;
-  const float x0 = (leaf.centre_m[x] - leaf_origin_[x]) - leaf_origin_low_[x];
-  const float y0 = (leaf.centre_m[y] - leaf_origin_[y]) - leaf_origin_low_[y];
-  const float z0 = (leaf.centre_m[z] - leaf_origin_[z]) - leaf_origin_low_[z];
-  const float distance_m = std::max(std::abs(x0), std::max(std::abs(y0), std::abs(z0)));
-  const float error_m = 16 * unit * distance_m + (16 * unit * leaf.size_m + far_error_m_);
-  const float x_shift = x0 - shear_[x] * z0, y_shift = y0 - shear_[y] * z0;
-  const Sheared a = shear(leaf, 0, x_shift, y_shift), b = shear(leaf, 1, x_shift, y_shift);
-  const Sheared c = shear(leaf, 2, x_shift, y_shift), d = shear(leaf, 3, x_shift, y_shift);
+  const Float4 centre_m =
+      detail::permuted((detail::load_four(leaf.centre_m.data()) - origin_m_) - origin_low_m_, axes.order);
+  const Float4 apart_m = detail::absolute(centre_m);
+  const float distance_m = std::max(apart_m[0], std::max(apart_m[1], apart_m[2]));
+  const float error_m = 16 * rounding * distance_m + (16 * rounding * leaf.size_m + far_error_m_);
+  const Float4 shift_m = centre_m + minus_shear_ * detail::spread<2>(centre_m);
+  const Float8 x_shift_m(shift_m[0]), y_shift_m(shift_m[1]);
+  const Float8 minus_x_shear(detail::float_at(minus_shear_, 0)), minus_y_shear(detail::float_at(minus_shear_, 1));
+  const auto row = [corners = reinterpret_cast<const char*>(leaf.corner_m.data())](std::size_t corner, std::size_t at) {
+    return Float8::load(corners + corner * sizeof leaf.corner_m[0] + at);
+  };
+  /// A corner as the ray sees it: moved so that the ray runs through 0, 0.
+  struct Sheared {
+    Float8 x, y;
+  };
+  const auto shear = [&](std::size_t corner) __attribute__((always_inline)) {
+    const Float8 along = row(corner, z);
+    return Sheared{(along * minus_x_shear + row(corner, x)) + x_shift_m,
+                   (along * minus_y_shear + row(corner, y)) + y_shift_m};
+  };
+  const Sheared a = shear(0), b = shear(1), c = shear(2), d = shear(3);
+  /// Positive on one side of the edge between two corners.
+  const auto edge = [](const Sheared& p, const Sheared& q) __attribute__((always_inline)) {
+    return q.x * p.y - q.y * p.x;
+  };
   const Float8 ab = edge(a, b), bc = edge(b, c), cd = edge(c, d), da = edge(d, a);
-  const float reach = leaf.reach_m;
-  const Float8 error((reach + 2 * error_m) * (leaf.bend_m + error_m));
+  const float reach_m = leaf.reach_m, room = (reach_m + 2 * error_m) * (leaf.bend_m + error_m);
+  const Float8 error(room), minus_error(-room);
   const Float8 low = simd::minimum(simd::minimum(ab, bc), simd::minimum(cd, da));
   const Float8 high = simd::maximum(simd::maximum(ab, bc), simd::maximum(cd, da));
   // Refusals are asked for, not passes: NaN, from numbers near the limits, refuses nothing.
-  const std::uint32_t candidates = leaf.lanes & ~((low < -error) & (high > error)).bits();
+  const std::uint32_t candidates = leaf.lanes & ~((low < minus_error) & (high > error)).bits();
   if (candidates == 0) return 0;
-  const Float8 nx(leaf.normal[x]), ny(leaf.normal[y]), nz(leaf.normal[z]);
-  const Float8 steepness = Float8(1.0F) / (nx * direction_[x] + ny * direction_[y] + nz * direction_[z]);
-  const auto& corner_m = leaf.corner_m[0];
-  const Float8 ax(corner_m[x]), ay(corner_m[y]), az(corner_m[z]);
-  const Float8 t = (nx * (ax + x0) + ny * (ay + y0) + nz * (az + z0)) * steepness;
+  const auto normal = [rows = reinterpret_cast<const char*>(leaf.normal.data())](std::size_t at) {
+    return Float8::load(rows + at);
+  };
+  const Float8 nx = normal(x), ny = normal(y), nz = normal(z);
+  const Float8 steepness = Float8(1.0F) / (nx * direction_[0] + ny * direction_[1] + nz * direction_[2]);
+  const Float8 height =
+      nx * (row(0, x) + centre_m[0]) + ny * (row(0, y) + centre_m[1]) + nz * (row(0, z) + centre_m[2]);
+  const Float8 t = height * steepness;
   const Float8 margin = simd::absolute(Float8(leaf.bend_m + 2 * error_m) * steepness);
   hits.first = t - margin;
   hits.last = t + margin;
+  const std::uint32_t met = candidates & ~((hits.first > Float8(t_max)) | (hits.last < Float8(t_min_))).bits();
+  if (met == 0) return 0;
   // Far beside a quad the products are rounded by more than the error allows for.
-  const Mask8 is_near = (simd::absolute(a.x) < reach) & (simd::absolute(a.y) < reach);
+  const Mask8 is_near = (simd::absolute(a.x) < Float8(reach_m)) & (simd::absolute(a.y) < Float8(reach_m));
   // A triangle's fourth corner lies on an edge: that edge's two functions have the triangle's sign as well.
-  hits.certain = candidates & (((low > error) | (high < -error)) & is_near & (hits.first > t_min_)).bits();
+  hits.certain = met & (((low > error) | (high < minus_error)) & is_near & (hits.first > Float8(t_min_))).bits();
   // The diagonal turns with the edges of the first triangle, and against those of the second.
   const Float8 ca = edge(c, a);
-  const std::uint32_t left = (ca > error).bits(), right = (ca < -error).bits(), turn = (low > error).bits();
-  hits.side[0] = (left & turn) | (right & ~turn);
-  hits.side[1] = (right & turn) | (left & ~turn);
-  return candidates & ~((hits.first > t_max) | (hits.last < t_min_)).bits();
+  const std::uint32_t left = (ca > error).bits(), right = (ca < minus_error).bits(), turn = (low > error).bits();
+  hits.side = {(left & turn) | (right & ~turn), (right & turn) | (left & ~turn)};
+  return met;
 }
+
+}  // namespace DCEM_ISA
 
 }  // namespace dcem

@@ -6,9 +6,6 @@ namespace dcem {
 
 inline void WideBvh::require_input(const TriangleView& mesh, Boxes boxes) {
   if (mesh.size() != boxes.size()) throw std::invalid_argument("one box per triangle is needed");
-  if (!mesh.surface_of_triangle.empty() && mesh.surface_of_triangle.size() != mesh.size()) {
-    throw std::invalid_argument("one surface per triangle is needed, or none at all");
-  }
   require_valid_boxes(boxes);
   std::uint32_t highest = 0;
   for (const auto& [a, b, c] : mesh.triangles) highest = std::max({highest, a, b, c});
@@ -25,7 +22,7 @@ inline void WideBvh::require_corners(const TriangleView& mesh, std::uint32_t tri
 }
 
 inline void WideBvh::build_objects(const TriangleView& mesh, Boxes boxes, std::span<const std::uint32_t> object_first,
-                                   const WideSettings& settings) {
+                                   const WideBuildSettings& settings) {
   require_input(mesh, boxes);
   require_valid_objects(object_first, boxes.size());
   dcem::validate(settings);
@@ -54,6 +51,7 @@ inline void WideBvh::rebuild(const TriangleView& mesh, Boxes boxes) {
 inline void WideBvh::build_all(const TriangleView& mesh, Boxes boxes) {
   arrays_.clear_for(settings_.huge_pages);
   arrays_.costs = settings_.costs;
+  arrays_.fetch_ahead = settings_.fetch_ahead;
   arrays_.vertices_m.assign(mesh.vertices_m.begin(), mesh.vertices_m.end());
   arrays_.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
   arrays_.is_there.resize(boxes.size());
@@ -107,7 +105,7 @@ inline WideRefitReport WideBvh::refit(std::span<const std::uint32_t> moved, cons
       report.nodes_visited += arrays_.tighten_above(place.node());
       degradation_.touch(place.node());
     }
-    note_moved_object(arrays_.object_of_leaf[leaf]);
+    note_moved_object(arrays_.leaves[leaf].object);
   }
   dirty_leaves_.clear();
   if (arrays_.is_area_imprecise()) sum_anew();

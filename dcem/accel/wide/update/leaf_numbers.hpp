@@ -10,8 +10,8 @@
 #include <span>
 #include <utility>
 
-#include "dcem/accel/wide/build/quads.hpp"
 #include "dcem/accel/wide/node.hpp"
+#include "dcem/accel/wide/quad.hpp"
 #include "dcem/accel/wide/update/double_lanes.hpp"
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"

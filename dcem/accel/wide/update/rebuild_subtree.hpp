@@ -4,11 +4,11 @@
 /// The leaves of its level (wide levels.hpp) stay what they are: their boxes are known, and nothing in them is written.
 /// So the price is that of the nodes alone.
 ///
-/// How deep that may get: leaves of a built level lie on depth WideBinner::depths at most, its root being on depth 1,
-/// and no edit pushes a leaf further down: hanging makes nodes above `wide_edit_depth_limit` only, and rotations lower
-/// leaves only there. A rebuilt_in_place part has the depths of its plan, which are counted before anything changes.
-/// Where they do not fit below the node, the node above is rebuilt_in_place instead; at the level's root they always
-/// fit, because the binner makes no more.
+/// How deep that may get: leaves of a built level lie on depth detail::wide_build_depth_limit at most, its root being
+/// on depth 1, and no edit pushes a leaf further down: hanging makes nodes above `wide_edit_depth_limit` only, and
+/// rotations lower leaves only there. A rebuilt_in_place part has the depths of its plan, which are counted before
+/// anything changes. Where they do not fit below the node, the node above is rebuilt_in_place instead; at the level's
+/// root they always fit, because the binner makes no more.
 #include "dcem/accel/wide_bvh.hpp"
 
 namespace dcem {

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "dcem/accel/binary/updater.hpp"
 #include "dcem/accel/counters.hpp"
+#include "dcem/accel/wide/settings.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 
 namespace dcem {
@@ -69,9 +69,9 @@ class WideStepMeter {
 /// 7. The whole tree, leaves included, where the others do not help.
 class WideUpdater {
  public:
-  explicit WideUpdater(const TreeUpdateSettings& settings = {}) : settings_(settings) { validate(settings); }
+  explicit WideUpdater(const WideUpdateSettings& settings = {}) : settings_(settings) { validate(settings); }
 
-  const TreeUpdateSettings& settings() const { return settings_; }
+  const WideUpdateSettings& settings() const { return settings_; }
   const WideStepMeter& steps() const { return steps_; }
 
   /// Tells what rays have spent since the last update. Without it, steps per ray decide nothing.
@@ -211,7 +211,7 @@ class WideUpdater {
   /// cost are as good as a plan that says it gains less.
   static constexpr double worth_writing = 0.97;
 
-  TreeUpdateSettings settings_;
+  WideUpdateSettings settings_;
   WideStepMeter steps_;
   std::uint64_t frames_moved_ = 0;           ///< frames in which something moved
   double visited_since_renewal_ = infinity;  ///< nodes and leaves, by refits; infinite after a whole build
@@ -220,14 +220,5 @@ class WideUpdater {
   double wanted_of_parts_ = infinity;        ///< as WideBvh::rebuild_subtree has it
   bool is_renewed_ = false;                  ///< whether one of them has changed anything
 };
-
-namespace detail {
-
-template <>
-struct UpdaterOf<WideBvh> {
-  using type = WideUpdater;
-};
-
-}  // namespace detail
 
 }  // namespace dcem

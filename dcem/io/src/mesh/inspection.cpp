@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "dcem/em/surface/material_table.hpp"
-#include "dcem/geometry/surfaces/facet_builder.hpp"
+#include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/io/input_error.hpp"
 
 namespace dcem::io {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dcem/accel/bvh.hpp"
-#include "dcem/geometry/surfaces/facet_builder.hpp"
+#include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/io/inspection.hpp"
 
 namespace dcem::io {

@@ -40,6 +40,9 @@ inline nlohmann::ordered_json model_json(const Multilayer& model) {
   return {{"model", "multilayer"}, {"layers", std::move(layers)}};
 }
 
+inline nlohmann::ordered_json model_json(const UserSurface& surface) {
+  return {{"model", "user"}, {"transmits", surface.transmits}};
+}
 inline nlohmann::ordered_json model_json(const Foliage& model) {
   if (model.attenuation_db_per_m) return {{"foliage_db_per_m", *model.attenuation_db_per_m}};
   return {{"foliage_db_per_m", "auto"},

@@ -1,4 +1,5 @@
 #include "dcem/io/result_writer.hpp"
+#include "dcem/core/naming.hpp"
 
 #include "dcem/channel/coherence.hpp"
 #include "dcem/channel/doppler_spectrum.hpp"

@@ -5,9 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "dcem/core/parallel_for.hpp"
 #include "dcem/core/statistics.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/src/results/fact_json.hpp"
+#include "dcem/io/src/scenario/enum_words.hpp"
 #include "dcem/io/src/scenario/settings_json.hpp"
 #include "dcem/io/text_table.hpp"
 #include "dcem/sim/discovery.hpp"
@@ -170,7 +171,7 @@ std::vector<double> RunSummary::frame_times_s() const {
 
 std::string RunSummary::cache_text(const CacheCounters& cache) const {
   if (facts_.cache == CacheMode::off) return "off";
-  return std::string(name_of(facts_.cache)) + ": " + std::to_string(cache.reused) + " paths reused, " +
+  return std::string(word_of(facts_.cache)) + ": " + std::to_string(cache.reused) + " paths reused, " +
          std::to_string(cache.born) + " born, " + std::to_string(cache.died) + " died";
 }
 
@@ -250,7 +251,7 @@ std::string RunSummary::table(const std::filesystem::path& folder) const {
   table.add_row({"time per frame", milliseconds(median(times_s)) + " median, " + milliseconds(quantile(times_s, 0.95)) +
                                        " 95 %, " + milliseconds(quantile(times_s, 1.0)) + " max"});
   table.add_row({"real-time factor", factor ? format_fixed(*factor, *factor < 10.0 ? 3 : 1) : "-"});
-  table.add_row({"discovery", name_of(facts_.discovery)});
+  table.add_row({"discovery", word_of(facts_.discovery)});
   table.add_row({"cache", cache_text(sum.cache)});
   if (facts_.settings.propagation.diffuse.enabled) table.add_row({"diffuse", diffuse_text(sum)});
   table.add_row({"tree", std::to_string(sum.tree.nodes_refit) + " nodes refit, " +

@@ -1,4 +1,5 @@
 #include "dcem/io/src/scenario/material_keys.hpp"
+#include "dcem/em/surface/itu_p2040.hpp"
 
 #include <algorithm>
 #include <array>

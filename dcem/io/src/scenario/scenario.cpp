@@ -66,6 +66,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   result.name = file.stem().string();
   result.settings.frequency_hz = root.at("frequency_hz").number({0.0, 1e15, true});
   result.settings.itu = read_itu(root);
+  result.settings.tree = read_tree(root);
   result.settings.propagation = read_propagation(root, command_line);
   result.time = read_time(root);
   result.output = read_output(root, command_line);
@@ -89,7 +90,7 @@ Scenario load_scenario(const std::filesystem::path& file, const ScenarioOverride
   const JsonDocument command_line("command line", command_line_values(overrides, document.root().raw()));
   const JsonObject root =
       document.root().object({"format", "scene", "materials", "itu", "frequency_hz", "time", "objects", "transmitters",
-                              "receivers", "propagation", "output", "mobility", "links", "noise", "geo"});
+                              "receivers", "propagation", "output", "mobility", "links", "noise", "geo", "tree"});
   return read_scenario(file, root,
                        command_line.root().object({"--discovery", "--cache", "--rays", "--seed", "--output"}));
 }

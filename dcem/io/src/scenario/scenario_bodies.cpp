@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "dcem/em/surface/itu_p2040.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/text_input.hpp"

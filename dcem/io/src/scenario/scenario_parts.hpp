@@ -35,6 +35,7 @@ auto reported_at(const JsonValue& place, const Action& action) {
 
 TimeSettings read_time(const JsonObject& scenario);
 ItuSettings read_itu(const JsonObject& scenario);
+WideTreeSettings read_tree(const JsonObject& scenario);
 SurfaceSettings read_surface_settings(const JsonObject& scene);
 /// `command_line` holds what overrides the file: `--discovery`, `--rays`, …
 PropagationSettings read_propagation(const JsonObject& scenario, const JsonObject& command_line);

@@ -2,6 +2,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <set>
 
+#include "dcem/io/src/scenario/enum_words.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/viewer_writer.hpp"
 
@@ -28,14 +29,9 @@ std::optional<JsonObject> find_object(const JsonObject& parent, const std::strin
   return value ? std::optional(value->object(known_keys)) : std::nullopt;
 }
 
-Discovery read_discovery(const JsonValue& value) {
-  return value.one_of({"exact", "sampled"}) == "exact" ? Discovery::exact : Discovery::sampled;
-}
-
 CacheMode read_cache(const JsonValue& value) {
-  const std::string mode = value.one_of({"off", "seed", "exact"});
-  if (mode == "exact") value.not_in_this_version("off or seed");
-  return mode == "seed" ? CacheMode::seed : CacheMode::off;
+  if (value.one_of({"off", "seed", "exact"}) == "exact") value.not_in_this_version("off or seed");
+  return read_word<CacheMode>(value);
 }
 
 AnyPathLoss read_path_loss(const JsonValue& value) {
@@ -54,16 +50,8 @@ AnyPathLoss read_path_loss(const JsonValue& value) {
 DiffractionSettings read_diffraction(const JsonValue& value) {
   const JsonObject object = value.object({"lossy_wedge", "region", "free_edges", "min_exterior_angle_deg"});
   DiffractionSettings settings;
-  if (const auto variant = object.find("lossy_wedge")) {
-    const std::string name = variant->one_of({"holm_reciprocal", "reciprocal", "luebbers84"});
-    settings.lossy_wedge = name == "reciprocal"   ? LossyWedge::reciprocal
-                           : name == "luebbers84" ? LossyWedge::luebbers84
-                                                  : LossyWedge::holm_reciprocal;
-  }
-  if (const auto region = object.find("region")) {
-    const bool shadow = region->one_of({"everywhere", "shadow"}) == "shadow";
-    settings.region = shadow ? DiffractionRegion::shadow : DiffractionRegion::everywhere;
-  }
+  settings.lossy_wedge = read_word(object, "lossy_wedge", settings.lossy_wedge);
+  settings.region = read_word(object, "region", settings.region);
   settings.free_edges = object.boolean("free_edges", settings.free_edges);
   settings.min_exterior_angle_deg =
       object.number("min_exterior_angle_deg", settings.min_exterior_angle_deg, {180.0, 360.0, true});
@@ -79,10 +67,7 @@ DiffuseSettings read_diffuse(const JsonValue& value) {
     settings.tile_max_m = longest->number({1e-3, 1e6});
   }
   settings.tolerance_db = object.number("tolerance_db", settings.tolerance_db, {1e-4, 10.0});
-  if (const auto phases = object.find("phases")) {
-    const bool seeded = phases->one_of({"incoherent", "seeded"}) == "seeded";
-    settings.phases = seeded ? DiffusePhases::seeded : DiffusePhases::incoherent;
-  }
+  settings.phases = read_word(object, "phases", settings.phases);
   settings.list_paths = object.boolean("list_paths", settings.list_paths);
   settings.tile_budget = static_cast<std::size_t>(
       object.integer("tile_budget", static_cast<long long>(settings.tile_budget), 1, 100'000'000));
@@ -107,12 +92,7 @@ void read_pdp(const JsonValue& value, OutputSettings& output) {
   if (value.is_boolean()) return;
   const JsonObject object = value.object({"bin_s", "mode"});
   output.pdp_bin_s = object.number("bin_s", output.pdp_bin_s, {1e-15, 1.0});
-  const auto mode = object.find("mode");
-  if (!mode) return;
-  const std::string name = mode->one_of({"incoherent", "coherent", "band_limited"});
-  output.pdp_mode = name == "coherent"       ? PdpMode::coherent
-                    : name == "band_limited" ? PdpMode::band_limited
-                                             : PdpMode::incoherent;
+  output.pdp_mode = read_word(object, "mode", PdpMode::incoherent);
 }
 
 void read_cfr(const JsonValue& value, OutputSettings& output) {
@@ -211,6 +191,17 @@ ItuSettings read_itu(const JsonObject& scenario) {
   return itu;
 }
 
+WideTreeSettings read_tree(const JsonObject& scenario) {
+  WideTreeSettings tree;
+  const auto object = find_object(scenario, "tree", {"policy", "quality", "build_threads", "huge_pages"});
+  if (!object) return tree;
+  tree.policy = read_word(*object, "policy", tree.policy);
+  tree.build.quality = read_word(*object, "quality", tree.build.quality);
+  tree.build.threads = static_cast<unsigned>(object->integer("build_threads", tree.build.threads, 0, 4096));
+  tree.build.huge_pages = object->boolean("huge_pages", tree.build.huge_pages);
+  return tree;
+}
+
 SurfaceSettings read_surface_settings(const JsonObject& scene) {
   const NumberRange tolerance_m{1e-9, 1.0};
   SurfaceSettings settings;
@@ -241,8 +232,7 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
       settings.rays_steady = static_cast<std::uint32_t>(value->integer(1, 100'000'000));
     }
     if (const auto value = file->find("antenna_array"); value && !value->is_null()) {
-      const bool exact = value->one_of({"plane_wave", "exact"}) == "exact";
-      settings.antenna_array = exact ? ArrayChannel::exact : ArrayChannel::plane_wave;
+      settings.antenna_array = read_word<ArrayChannel>(*value);
     }
     if (const auto value = file->find("diffuse")) settings.diffuse = read_diffuse(*value);
     if (const auto value = file->find("atmosphere"); value && !value->is_null()) {
@@ -257,7 +247,7 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
     settings.cache = read_cache(*value);
   }
   if (const auto value = chosen(command_line, "--discovery", file, "discovery")) {
-    settings.discovery = read_discovery(*value);
+    settings.discovery = read_word<Discovery>(*value);
   }
   if (const auto value = chosen(command_line, "--rays", file, "rays")) {
     settings.rays = static_cast<std::uint32_t>(value->integer(1, 100'000'000));

@@ -3,50 +3,16 @@
 #include <optional>
 #include <string>
 
-#include "dcem/core/parallel_for.hpp"
+#include "dcem/core/instruction_set.hpp"
+#include "dcem/core/thread_pool.hpp"
+#include "dcem/io/src/scenario/enum_words.hpp"
 #include "dcem/sim/discovery.hpp"
 
 namespace dcem::io {
 
-const char* name_of(Discovery discovery) {
-  switch (discovery) {
-    case Discovery::exact:
-      return "exact";
-    case Discovery::sampled:
-      return "sampled";
-    case Discovery::automatic:
-      break;
-  }
-  return "automatic";
-}
-
-const char* name_of(CacheMode cache) {
-  switch (cache) {
-    case CacheMode::off:
-      return "off";
-    case CacheMode::seed:
-      return "seed";
-    case CacheMode::automatic:
-      break;
-  }
-  return "automatic";
-}
-
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-const char* policy_name(TreePolicy policy) {
-  switch (policy) {
-    case TreePolicy::rebuild_always:
-      return "rebuild_always";
-    case TreePolicy::refit_only:
-      return "refit_only";
-    case TreePolicy::adaptive:
-      break;
-  }
-  return "adaptive";
-}
 
 template <typename Value>
 Json optional_json(const std::optional<Value>& value) {
@@ -55,35 +21,23 @@ Json optional_json(const std::optional<Value>& value) {
 
 Json path_loss_json(const AnyPathLoss& path_loss) {
   const auto* close_in = std::get_if<CloseIn>(&path_loss.model);
+  if (std::holds_alternative<UserPathLoss>(path_loss.model)) return {{"model", "user"}};
   if (close_in == nullptr) return {{"model", "free_space"}};
   return {{"model", "close_in"},
           {"exponent", close_in->exponent},
           {"attenuation_db_per_m", close_in->attenuation_db_per_m}};
 }
 
-const char* variant_name(LossyWedge variant) {
-  switch (variant) {
-    case LossyWedge::reciprocal:
-      return "reciprocal";
-    case LossyWedge::luebbers84:
-      return "luebbers84";
-    case LossyWedge::holm_reciprocal:
-      break;
-  }
-  return "holm_reciprocal";
-}
-
 Json diffraction_json(const DiffractionSettings& settings) {
-  return {{"lossy_wedge", variant_name(settings.lossy_wedge)},
-          {"region", settings.region == DiffractionRegion::shadow ? "shadow" : "everywhere"},
+  return {{"lossy_wedge", word_of(settings.lossy_wedge)},
+          {"region", word_of(settings.region)},
           {"free_edges", settings.free_edges},
           {"min_exterior_angle_deg", settings.min_exterior_angle_deg}};
 }
 
 Json diffuse_json(const DiffuseSettings& settings) {
-  const bool seeded = settings.phases == DiffusePhases::seeded;
   return {{"enabled", settings.enabled},           {"tile_max_m", optional_json(settings.tile_max_m)},
-          {"tolerance_db", settings.tolerance_db}, {"phases", seeded ? "seeded" : "incoherent"},
+          {"tolerance_db", settings.tolerance_db}, {"phases", word_of(settings.phases)},
           {"list_paths", settings.list_paths},     {"tile_budget", settings.tile_budget}};
 }
 
@@ -106,13 +60,13 @@ Json propagation_json(const RunFacts& facts) {
           {"max_diffractions", settings.max_diffractions},
           {"max_interactions", interaction_order(settings)},
           {"diffraction", diffraction_json(settings.diffraction)},
-          {"discovery", name_of(facts.discovery)},
-          {"discovery_asked_for", name_of(settings.discovery)},
+          {"discovery", word_of(facts.discovery)},
+          {"discovery_asked_for", word_of(settings.discovery)},
           {"rays", sampled ? Json(settings.rays) : Json(nullptr)},
           {"rays_steady", cached ? Json(steady_rays(settings)) : Json(nullptr)},
           {"seed", sampled ? Json(settings.seed) : Json(nullptr)},
-          {"cache", name_of(facts.cache)},
-          {"antenna_array", settings.antenna_array == ArrayChannel::exact ? "exact" : "plane_wave"},
+          {"cache", word_of(facts.cache)},
+          {"antenna_array", word_of(settings.antenna_array)},
           {"diffuse", diffuse_json(settings.diffuse)},
           {"path_loss", path_loss_json(settings.path_loss)},
           {"atmosphere", atmosphere_json(settings.atmosphere)},
@@ -127,7 +81,12 @@ nlohmann::ordered_json settings_json(const RunFacts& facts) {
   return {{"frequency_hz", settings.frequency_hz},
           {"itu", {{"revision", settings.itu.revision}, {"allow_extrapolation", settings.itu.allow_extrapolation}}},
           {"threads", resolve_thread_count(settings.threads)},
-          {"tree_policy", policy_name(settings.tree_update.policy)},
+          {"tree_policy", word_of(settings.tree.policy)},
+          {"tree",
+           {{"quality", word_of(settings.tree.build.quality)},
+            {"build_threads", settings.tree.build.threads},
+            {"huge_pages", settings.tree.build.huge_pages}}},
+          {"instructions", name_of(instruction_set())},
           {"time", {{"start_s", facts.time.start_s}, {"step_s", facts.time.step_s}, {"frames", facts.time.frames}}},
           {"propagation", propagation_json(facts)},
           {"defaults_of_this_version",

@@ -6,10 +6,6 @@
 
 namespace dcem::io {
 
-/// The words of the scenario file.
-const char* name_of(Discovery discovery);
-const char* name_of(CacheMode cache);
-
 /// What was really in force, with the defaults of this version.
 nlohmann::ordered_json settings_json(const RunFacts& facts);
 

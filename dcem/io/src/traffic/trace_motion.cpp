@@ -80,8 +80,8 @@ void TraceMotion::interpolate(double time_s) {
     if (a.id != b.id || a.type != b.type) continue;
     const Pose &start = a.placement.pose, &end = b.placement.pose;
     const Pose pose{start.position_m + share * (end.position_m - start.position_m),
-                    start.yaw_rad + share * detail::shortest_arc_rad(start.yaw_rad, end.yaw_rad),
-                    start.pitch_rad + share * detail::shortest_arc_rad(start.pitch_rad, end.pitch_rad), 0.0};
+                    start.yaw_rad + share * shortest_arc_rad(start.yaw_rad, end.yaw_rad),
+                    start.pitch_rad + share * shortest_arc_rad(start.pitch_rad, end.pitch_rad), 0.0};
     const double speed_mps = before_.speeds_mps[from] + share * (after_.speeds_mps[to] - before_.speeds_mps[from]);
     between_.push_back({a.id, a.type, {pose, velocity_along(pose, speed_mps)}});
   }

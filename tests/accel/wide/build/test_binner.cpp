@@ -82,7 +82,7 @@ TEST_CASE("every item is in one leaf, leaves share a kind, no tree is deeper tha
         std::vector<WideItem> items = items_of(dcem_test::random_boxes<double>(count, count + kinds), kinds);
         const auto nodes = WideBinner().build(items, leaf_limit, 1);
         std::vector<int> seen(count, 0);
-        CHECK(check_below(nodes, items, 0, leaf_limit, seen) <= WideBinner::depths);
+        CHECK(check_below(nodes, items, 0, leaf_limit, seen) <= detail::wide_build_depth_limit);
         CHECK(std::ranges::all_of(seen, [](int times) { return times == 1; }));
       }
     }
@@ -114,7 +114,7 @@ TEST_CASE("places that no plane divides are halved: equal boxes, a geometric row
       depth[nodes[slot].left] = depth[nodes[slot].right] = depth[slot] + 1;
     }
     CHECK(leaves == boxes.size());
-    CHECK(deepest <= WideBinner::depths);
+    CHECK(deepest <= detail::wide_build_depth_limit);
   }
 }
 

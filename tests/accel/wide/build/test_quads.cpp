@@ -38,7 +38,6 @@ void check_promises(const WideMesh& mesh, const std::vector<Quad>& quads, double
     REQUIRE(quad.first_vertex(0) == own[0]);
     if (!quad.is_pair()) continue;
     REQUIRE(quad.first_vertex(1) == mesh.triangles[quad.triangle[1]][0]);
-    REQUIRE(mesh.view().same_surface(quad.triangle[0], quad.triangle[1]));
     // The second triangle is c, a, d in some order.
     std::multiset<std::uint32_t> second(mesh.triangles[quad.triangle[1]].begin(),
                                         mesh.triangles[quad.triangle[1]].end());
@@ -113,14 +112,6 @@ TEST_CASE("concave and overlapping neighbours stay apart") {
   CHECK(pairs_with(Vec3(1, 2, 0)) == 0);    // the same triangle again
   CHECK(pairs_with(Vec3(3, 2, 0)) == 0);    // as high on the same side: the areas cancel to the bit
   CHECK(pairs_with(Vec3(2, 0, 0)) == 0);    // no area
-}
-
-TEST_CASE("triangles of different surfaces stay apart") {
-  WideMesh mesh = dcem_test::box_mesh(Vec3(0), Vec3(1, 2, 3));
-  for (std::uint32_t triangle = 0; triangle < 12; ++triangle) mesh.surface.push_back(triangle);
-  CHECK(pair_count(quads_of(mesh)) == 0);
-  for (std::uint32_t triangle = 0; triangle < 12; ++triangle) mesh.surface[triangle] = triangle / 2;
-  CHECK(pair_count(quads_of(mesh)) == 6);
 }
 
 TEST_CASE("winding, vertex numbers and what stands elsewhere in the mesh do not change the pairs") {

@@ -108,7 +108,7 @@ void check_tree(const Binary& binary, std::size_t count, std::uint32_t leaf_limi
     REQUIRE(right.first == split.first + left.count);
     REQUIRE(left.count + right.count == split.count);
   }
-  REQUIRE(binary.depths() <= WideBinner::depths);
+  REQUIRE(binary.depths() <= detail::wide_build_depth_limit);
 }
 
 bool is_same(const Binary& one, const Binary& other) {
@@ -147,8 +147,8 @@ Binary interleaved() {
   return binary;
 }
 
-WideSettings with_quality(WideQuality quality) {
-  WideSettings settings;
+WideBuildSettings with_quality(WideQuality quality) {
+  WideBuildSettings settings;
   settings.quality = quality;
   return settings;
 }
@@ -329,7 +329,7 @@ TEST_CASE("objects, absent triangles and threads: a tree of high quality keeps i
   const std::vector<Aabb<double>> boxes = mesh.boxes();
   std::vector<double> costs;
   for (const unsigned threads : {1U, 2U, 5U}) {
-    WideSettings settings = with_quality(WideQuality::high);
+    WideBuildSettings settings = with_quality(WideQuality::high);
     settings.threads = threads;
     settings.object_subtree_limit = 100;
     WideBvh tree;

@@ -21,8 +21,7 @@ namespace {
 bool same_leaves(const WideArrays& one, const WideArrays& other) {
   const std::size_t bytes = one.leaves.size() * sizeof(QuadLeaf);
   return one.leaves.size() == other.leaves.size() && std::memcmp(one.leaves.data(), other.leaves.data(), bytes) == 0 &&
-         one.quad_of_triangle == other.quad_of_triangle && one.object_root == other.object_root &&
-         one.object_of_leaf == other.object_of_leaf;
+         one.quad_of_triangle == other.quad_of_triangle && one.object_root == other.object_root;
 }
 
 bool same_nodes(const WideArrays& one, const WideArrays& other) {
@@ -124,7 +123,7 @@ TEST_CASE("where every object is a leaf, the root rebuilt_in_place is as good as
 TEST_CASE("rebuilt_in_place twice the same way: the same tree, whatever the number of threads") {
   WideTraffic traffic({300, 40.0, true, true, true}, 7);
   WideBvh one = traffic.built();
-  WideSettings settings = one.settings();
+  WideBuildSettings settings = one.settings();
   settings.threads = 2;
   WideBvh other;
   other.build_objects(traffic.mesh.view(), traffic.boxes, traffic.object_first, settings);

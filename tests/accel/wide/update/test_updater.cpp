@@ -51,7 +51,7 @@ class Traffic {
     REQUIRE(report.subtrees_rebuilt >= report.rebuilt_in_place);
     return report;
   }
-  TreeUpdateReport follow(WideBvh& tree, const TreeUpdateSettings& settings) const {
+  TreeUpdateReport follow(WideBvh& tree, const WideUpdateSettings& settings) const {
     WideUpdater updater(settings);
     return follow(tree, updater);
   }
@@ -65,15 +65,15 @@ class Traffic {
   std::vector<Vec3> speed_;
 };
 
-TreeUpdateSettings with(TreePolicy policy) {
-  TreeUpdateSettings settings;
+WideUpdateSettings with(TreePolicy policy) {
+  WideUpdateSettings settings;
   settings.policy = policy;
   return settings;
 }
 
 /// Adaptive, with everything switched off that can be.
-TreeUpdateSettings nothing_mends() {
-  TreeUpdateSettings settings;
+WideUpdateSettings nothing_mends() {
+  WideUpdateSettings settings;
   settings.sah_growth_limit = settings.deformation_limit = settings.renewal_ratio = infinity;
   settings.reinsertion_growth = settings.subtree_rebuild_price = settings.rebuild_growth_limit = infinity;
   settings.reinsertion_turn = settings.rotations_per_node = 0;
@@ -98,9 +98,9 @@ TEST_CASE("nothing moved: nothing is touched, whatever the policy") {
 TEST_CASE("a drive: refit alone degrades out, reinsertion stays near a new tree, and all hit the same bits") {
   Traffic traffic(200, 2);
   WideBvh refitted = traffic.built(), adaptive = traffic.built();
-  TreeUpdateSettings never_anew = nothing_mends();  // but by reinsertion
-  never_anew.reinsertion_growth = TreeUpdateSettings{}.reinsertion_growth;
-  never_anew.reinsertion_turn = TreeUpdateSettings{}.reinsertion_turn;
+  WideUpdateSettings never_anew = nothing_mends();  // but by reinsertion
+  never_anew.reinsertion_growth = WideUpdateSettings{}.reinsertion_growth;
+  never_anew.reinsertion_turn = WideUpdateSettings{}.reinsertion_turn;
   RandomStream random(3);
   std::uint64_t reinserted = 0;
   for (int frame = 0; frame < 200; ++frame) {
@@ -134,7 +134,7 @@ TEST_CASE("a drive: refit alone degrades out, reinsertion stays near a new tree,
 TEST_CASE("every trick has a switch: all off, adaptive is refit") {
   Traffic traffic(100, 4);
   WideBvh refitted = traffic.built(), switched_off = traffic.built(), off_and_whole = traffic.built();
-  TreeUpdateSettings whole = nothing_mends();
+  WideUpdateSettings whole = nothing_mends();
   whole.subtree_rebuilds = false;
   for (int frame = 0; frame < 50; ++frame) {
     traffic.step();
@@ -147,17 +147,17 @@ TEST_CASE("every trick has a switch: all off, adaptive is refit") {
 }
 
 TEST_CASE("each trick by itself mends what refit degrades, and says what it did") {
-  using Change = void (*)(TreeUpdateSettings&);
-  const std::vector<Change> changes{[](TreeUpdateSettings& settings) { settings.rotations_per_node = 1; },
-                                    [](TreeUpdateSettings& settings) { settings.sah_growth_limit = 1.2; },
-                                    [](TreeUpdateSettings& settings) { settings.deformation_limit = 0.4; },
-                                    [](TreeUpdateSettings& settings) { settings.renewal_ratio = 16.0; },
-                                    [](TreeUpdateSettings& settings) { settings.rebuild_growth_limit = 1.2; }};
+  using Change = void (*)(WideUpdateSettings&);
+  const std::vector<Change> changes{[](WideUpdateSettings& settings) { settings.rotations_per_node = 1; },
+                                    [](WideUpdateSettings& settings) { settings.sah_growth_limit = 1.2; },
+                                    [](WideUpdateSettings& settings) { settings.deformation_limit = 0.4; },
+                                    [](WideUpdateSettings& settings) { settings.renewal_ratio = 16.0; },
+                                    [](WideUpdateSettings& settings) { settings.rebuild_growth_limit = 1.2; }};
   for (std::size_t index = 0; index < changes.size(); ++index) {
     CAPTURE(index);
     Traffic traffic(200, 6);
     WideBvh refitted = traffic.built(), mended = traffic.built();
-    TreeUpdateSettings settings = nothing_mends();
+    WideUpdateSettings settings = nothing_mends();
     changes[index](settings);
     WideUpdater updater(settings);
     TreeUpdateReport sum;
@@ -186,7 +186,7 @@ TEST_CASE("no subtree stays degraded: past a limit it is rebuilt_in_place in the
   for (const bool by_sah : {true, false}) {
     Traffic traffic(300, 7);
     WideBvh tree = traffic.built();
-    TreeUpdateSettings settings = nothing_mends();
+    WideUpdateSettings settings = nothing_mends();
     (by_sah ? settings.sah_growth_limit : settings.deformation_limit) = by_sah ? 1.1 : 0.1;
     settings.check_interval = 3;
     WideUpdater updater(settings);
@@ -208,7 +208,7 @@ TEST_CASE("no subtree stays degraded: past a limit it is rebuilt_in_place in the
 TEST_CASE("renewal: at once, and then once for so many visited nodes") {
   Traffic traffic(200, 14);
   WideBvh tree = traffic.built();
-  TreeUpdateSettings settings = nothing_mends();
+  WideUpdateSettings settings = nothing_mends();
   settings.renewal_ratio = 16.0;
   WideUpdater updater(settings);
   double visited = infinity;
@@ -230,7 +230,7 @@ TEST_CASE("renewal: at once, and then once for so many visited nodes") {
 TEST_CASE("with reinsertion all nodes are built anew in turns, what hangs in an entry of the root a frame") {
   Traffic traffic(200, 15);
   WideBvh tree = traffic.built();
-  TreeUpdateSettings settings = nothing_mends();
+  WideUpdateSettings settings = nothing_mends();
   settings.renewal_ratio = 16.0;
   settings.reinsertion_growth = 1.1;
   WideUpdater updater(settings);
@@ -289,7 +289,7 @@ TEST_CASE("the meter of steps: the base from the first 10,000 rays, then what is
 TEST_CASE("steps per ray: the nodes are built anew in the frame after rays have wasted the price, not before") {
   Traffic traffic(300, 8);
   WideBvh tree = traffic.built();
-  TreeUpdateSettings settings = nothing_mends();
+  WideUpdateSettings settings = nothing_mends();
   settings.subtree_rebuild_price = 20.0;
   WideUpdater updater(settings);
   const double price = 20.0 * static_cast<double>(tree.arrays().leaves.size());
@@ -311,14 +311,14 @@ TEST_CASE("steps per ray: the nodes are built anew in the frame after rays have 
 TEST_CASE("real rays in a degraded tree waste what its steps say, and building the nodes anew brings them down") {
   Traffic traffic(300, 9);
   WideBvh tree = traffic.built(), refitted = traffic.built();
-  TreeUpdateSettings settings = nothing_mends();
+  WideUpdateSettings settings = nothing_mends();
   settings.subtree_rebuild_price = 12.0;
   WideUpdater updater(settings);
   RandomStream random(10);
   const auto steps_of = [&](const WideBvh& asked, std::size_t rays) {
     TraversalCounters spent;
     for (std::size_t ray = 0; ray < rays; ++ray) {
-      asked.closest_hit(dcem_test::any_ray(random, traffic.mesh, asked.bounds()), &spent);
+      asked.closest_hit(dcem_test::any_ray(random, traffic.mesh, asked.bounds()), {}, &spent);
     }
     return spent;
   };
@@ -336,19 +336,19 @@ TEST_CASE("real rays in a degraded tree waste what its steps say, and building t
 
 TEST_CASE(
     "objects that drive, bend, vanish and return: whatever is switched on, the oracle's answers and the same bits") {
-  using Change = void (*)(TreeUpdateSettings&);
-  const std::vector<Change> changes{[](TreeUpdateSettings&) {},
-                                    [](TreeUpdateSettings& settings) { settings.rotations_per_node = 2; },
-                                    [](TreeUpdateSettings& settings) { settings.sah_growth_limit = 1.02; },
-                                    [](TreeUpdateSettings& settings) { settings.deformation_limit = 0.02; },
-                                    [](TreeUpdateSettings& settings) { settings.subtree_rebuild_price = 0.01; },
-                                    [](TreeUpdateSettings& settings) { settings.subtree_rebuilds = false; },
-                                    [](TreeUpdateSettings& settings) { settings.rebuild_growth_limit = 1.01; }};
+  using Change = void (*)(WideUpdateSettings&);
+  const std::vector<Change> changes{[](WideUpdateSettings&) {},
+                                    [](WideUpdateSettings& settings) { settings.rotations_per_node = 2; },
+                                    [](WideUpdateSettings& settings) { settings.sah_growth_limit = 1.02; },
+                                    [](WideUpdateSettings& settings) { settings.deformation_limit = 0.02; },
+                                    [](WideUpdateSettings& settings) { settings.subtree_rebuild_price = 0.01; },
+                                    [](WideUpdateSettings& settings) { settings.subtree_rebuilds = false; },
+                                    [](WideUpdateSettings& settings) { settings.rebuild_growth_limit = 1.01; }};
   for (std::size_t index = 0; index < changes.size(); ++index) {
     CAPTURE(index);
     dcem_test::WideTraffic traffic({60, 12.0, true, true, true}, 20 + index);
     WideBvh tree = traffic.built();
-    TreeUpdateSettings settings;
+    WideUpdateSettings settings;
     settings.check_interval = index % 2 == 0 ? 1 : 3;
     changes[index](settings);
     WideUpdater updater(settings);
@@ -395,7 +395,7 @@ TEST_CASE("objects that were away and come all at once: the tree is as good as n
   CHECK(report.root_rebuilt);
   CHECK(report.sah_cost < 1.02 * traffic.built().sah_cost());
   // What the whole build is not needed for.
-  TreeUpdateSettings settings = nothing_mends();
+  WideUpdateSettings settings = nothing_mends();
   settings.sah_growth_limit = 1.2;
   report = traffic.follow(grown, settings);
   CHECK(report.rebuilt_in_place > 0);
@@ -425,15 +425,15 @@ TEST_CASE("a large object whose triangles drift apart: its leaves are built anew
 
 TEST_CASE("limits that are no limits are refused") {
   const auto refuses = [](auto&& change) {
-    TreeUpdateSettings settings;
+    WideUpdateSettings settings;
     change(settings);
     CHECK_THROWS_AS(WideUpdater{settings}, std::invalid_argument);
   };
   for (const double growth : {0.9, 0.0, -1.0, dcem_test::not_a_number}) {
-    refuses([&](TreeUpdateSettings& settings) { settings.reinsertion_growth = growth; });
-    refuses([&](TreeUpdateSettings& settings) { settings.rebuild_growth_limit = growth; });
-    if (growth != 0.9) refuses([&](TreeUpdateSettings& settings) { settings.subtree_rebuild_price = growth; });
+    refuses([&](WideUpdateSettings& settings) { settings.reinsertion_growth = growth; });
+    refuses([&](WideUpdateSettings& settings) { settings.rebuild_growth_limit = growth; });
+    if (growth != 0.9) refuses([&](WideUpdateSettings& settings) { settings.subtree_rebuild_price = growth; });
   }
-  refuses([](TreeUpdateSettings& settings) { settings.rebuild_growth_limit = 1.0; });
-  refuses([](TreeUpdateSettings& settings) { settings.check_interval = 0; });
+  refuses([](WideUpdateSettings& settings) { settings.rebuild_growth_limit = 1.0; });
+  refuses([](WideUpdateSettings& settings) { settings.check_interval = 0; });
 }

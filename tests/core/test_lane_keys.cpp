@@ -6,11 +6,10 @@
 #include <limits>
 #include <vector>
 
-#include "dcem/accel/wide/trace/lane_keys.hpp"
+#include "dcem/core/lane_keys.hpp"
 #include "dcem/core/random.hpp"
 
 using namespace dcem;
-using detail::LaneKeys;
 
 namespace {
 
@@ -25,9 +24,10 @@ float some_number(RandomStream& random) {
   return static_cast<float>(std::pow(10.0, 40.0 * random.uniform() - 20.0));
 }
 
-Mask8 mask_of(const std::array<bool, simd_lanes>& set) {
+/// The lanes in which `set` says `wanted`.
+Mask8 mask_of(const std::array<bool, simd_lanes>& set, bool wanted) {
   Lanes numbers;
-  for (std::size_t lane = 0; lane < simd_lanes; ++lane) numbers[lane] = set[lane] ? 1.0F : 3.0F;
+  for (std::size_t lane = 0; lane < simd_lanes; ++lane) numbers[lane] = set[lane] == wanted ? 1.0F : 3.0F;
   return Float8(numbers) < Float8(2.0F);
 }
 
@@ -41,11 +41,11 @@ TEST_CASE("lanes come in the order of their numbers, each once, to eight units o
     for (float& number : numbers) number = some_number(random);
     if (trial % 5 == 0) numbers[3] = numbers[6];
     for (bool& each : waits) each = random.uniform() < 0.6;
-    LaneKeys keys(Float8(numbers), mask_of(waits));
+    LaneKeys keys(Float8(numbers), mask_of(waits, false));
     float latest = 0.0F;
     auto left = waits;
     for (auto count = std::count(waits.begin(), waits.end(), true); count > 0; --count) {
-      const std::int32_t key = keys.least();
+      const std::uint32_t key = keys.least();
       const std::uint32_t lane = LaneKeys::lane(key);
       REQUIRE(left[lane]);
       left[lane] = false;
@@ -65,8 +65,8 @@ TEST_CASE("a lane whose number is within a limit is never left out, and one well
     const std::size_t lane = random.next() % simd_lanes;
     numbers[lane] = some_number(random);
     const float limit = trial % 3 == 0 ? numbers[lane] : some_number(random);
-    const std::int32_t key =
-        LaneKeys(Float8(numbers), mask_of({true, true, true, true, true, true, true, true})).least();
+    const std::uint32_t key = LaneKeys(Float8(numbers)).least();
+    REQUIRE(LaneKeys::number(key) <= numbers[lane]);
     if (numbers[lane] <= limit) REQUIRE(LaneKeys::may_be_within(key, limit));
     if (numbers[lane] * (1.0F - 16 * 0x1p-23F) > limit && limit > 0.0F) REQUIRE(!LaneKeys::may_be_within(key, limit));
   }
@@ -82,12 +82,12 @@ TEST_CASE("later and earlier agree with the numbers, from zero on and in what is
     }
     const Float8 one(first), other(second);
     const Float8 later = simd::later(one, other), earlier = simd::earlier(one, other);
-    const std::uint32_t not_later = simd::not_later(one, other).bits();
+    const std::uint32_t is_later = simd::is_later(one, other).bits();
     for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
       const float high = std::max(first[lane], second[lane]), low = std::min(first[lane], second[lane]);
       REQUIRE((later[lane] == high || (high < 0.0F && later[lane] < 0.0F)));
       REQUIRE((earlier[lane] == low || (low < 0.0F && earlier[lane] < 0.0F)));
-      if (first[lane] >= 0.0F) REQUIRE((not_later >> lane & 1U) == (first[lane] <= second[lane] ? 1U : 0U));
+      if (first[lane] >= 0.0F) REQUIRE((is_later >> lane & 1U) == (first[lane] > second[lane] ? 1U : 0U));
     }
   }
 }

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "dcem/core/parallel_for.hpp"
+#include "dcem/core/thread_pool.hpp"
 
 using namespace dcem;
 
@@ -88,4 +88,43 @@ TEST_CASE("the body is used, not copied") {
 TEST_CASE("0 threads are all threads of the machine, and at least one") {
   CHECK(resolve_thread_count(0) >= 1);
   CHECK(resolve_thread_count(7) == 7);
+}
+
+TEST_CASE("one pool does many loops of all lengths, each of them whole") {
+  ThreadPool pool(3);
+  for (std::size_t count = 0; count < 300; ++count) {
+    std::vector<std::atomic<int>> calls(count);
+    pool.for_each(count, [&](std::size_t index, unsigned worker) {
+      ++calls[index];
+      REQUIRE(worker < pool.size());
+    });
+    for (const auto& times : calls) REQUIRE(times == 1);
+  }
+}
+
+TEST_CASE("a pool goes on after an exception") {
+  ThreadPool pool(4);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    CHECK_THROWS_AS(pool.for_each(100, [](std::size_t, unsigned) { throw std::runtime_error("fails"); }),
+                    std::runtime_error);
+    std::atomic<int> sum{0};
+    pool.for_each(100, [&](std::size_t index, unsigned) { sum += static_cast<int>(index); });
+    CHECK(sum == 4950);
+  }
+}
+
+TEST_CASE("a loop within a loop of the same pool ends, and so do loops that several threads ask for at once") {
+  ThreadPool pool(3);
+  std::atomic<int> calls{0};
+  pool.for_each(7, [&](std::size_t, unsigned) { pool.for_each(11, [&](std::size_t, unsigned) { ++calls; }); });
+  CHECK(calls == 77);
+  calls = 0;
+  std::vector<std::thread> askers;
+  for (int asker = 0; asker < 4; ++asker) {
+    askers.emplace_back([&] {
+      for (int loop = 0; loop < 50; ++loop) pool.for_each(13, [&](std::size_t, unsigned) { ++calls; });
+    });
+  }
+  for (std::thread& asker : askers) asker.join();
+  CHECK(calls == 4 * 50 * 13);
 }

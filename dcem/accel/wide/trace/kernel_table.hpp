@@ -1,0 +1,20 @@
+#pragma once
+/// The walks for the level of instructions that this is compiled for.
+#include "dcem/accel/wide/trace/closest_hits.hpp"
+#include "dcem/accel/wide/trace/kernels.hpp"
+#include "dcem/accel/wide/trace/queries.hpp"
+
+namespace dcem {
+
+namespace detail {
+
+inline namespace DCEM_ISA {
+
+inline constexpr WideKernels kernel_table{compiled_instruction_set, &closest_hit, &occluded, &visit_hits,
+                                          &closest_hits};
+
+}  // namespace DCEM_ISA
+
+}  // namespace detail
+
+}  // namespace dcem

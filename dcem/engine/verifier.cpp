@@ -1,0 +1,5 @@
+// The verifier, and the simulator that asks every triangle.
+#include "dcem/sim/verify/verification_report_bodies.hpp"
+#include "dcem/sim/verify/verifier_bodies.hpp"
+
+template class dcem::BasicSimulator<dcem::MaterialTable, dcem::BruteForceIndex>;

@@ -1,0 +1,45 @@
+#pragma once
+/// What many rays meet first: asked together, because an index answers that faster than one question after another.
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dcem/accel/counters.hpp"
+#include "dcem/paths/query/leg_filter.hpp"
+#include "dcem/paths/query/scene_tracer.hpp"
+
+namespace dcem {
+
+/// Rays, and then the first facet that each of them meets. The memory is kept from batch to batch.
+class SurfaceHits {
+ public:
+  void clear() {
+    filters_.clear();
+    queries_.clear();
+  }
+  /// A ray that leaves a place; what is named in `start` must stay until the hits are known.
+  void add(const Scene& scene, const Ray<double>& ray, const LegEnd& start, const IgnoredBodies& ignored) {
+    filters_.emplace_back(scene, ray, start, ignored);
+    queries_.push_back({ray, {}});
+  }
+
+  /// Asks for all rays at once. The answers are those of `SceneTracer::closest_hit`.
+  template <typename Index>
+  void find(const SceneTracer<Index>& tracer, TraversalCounters& counters) {
+    for (std::size_t ray = 0; ray < queries_.size(); ++ray) queries_[ray].filter = filters_[ray].hit_filter();
+    hits_.resize(queries_.size());
+    tracer.index().closest_hits(queries_, hits_, &counters);
+  }
+
+  std::size_t size() const { return queries_.size(); }
+  const Ray<double>& ray(std::size_t index) const { return queries_[index].ray; }
+  const std::optional<TriangleHit>& hit(std::size_t index) const { return hits_[index]; }
+
+ private:
+  std::vector<LegFilter> filters_;
+  std::vector<RayQuery> queries_;
+  std::vector<std::optional<TriangleHit>> hits_;
+};
+
+}  // namespace dcem

@@ -1,0 +1,202 @@
+#pragma once
+/// The simulator of simulator.hpp, for any model of surfaces and any index over triangles.
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "dcem/accel/spatial_index.hpp"
+#include "dcem/accel/wide_index.hpp"
+#include "dcem/channel/link_statistics.hpp"
+#include "dcem/channel/radio_map.hpp"
+#include "dcem/core/thread_pool.hpp"
+#include "dcem/field/diffuse/diffuse_power.hpp"
+#include "dcem/field/element_paths.hpp"
+#include "dcem/field/field_evaluator.hpp"
+#include "dcem/field/medium_loss.hpp"
+#include "dcem/paths/path_finder.hpp"
+#include "dcem/paths/query/obstruction.hpp"
+#include "dcem/scene/scene.hpp"
+#include "dcem/sim/detail/material_table_of.hpp"
+#include "dcem/sim/discovery.hpp"
+#include "dcem/sim/frame_result.hpp"
+#include "dcem/sim/settings.hpp"
+
+namespace dcem {
+
+/// Owns the scene and the index over it. `Surface` says how all surfaces reflect and transmit: the scene's materials,
+/// or a model of the caller's own. `Index` is `WideIndex`, or one of those of `box_index.hpp` to check it.
+template <SurfaceModel Surface = MaterialTable, SpatialIndex Index = WideIndex>
+class BasicSimulator {
+ public:
+  /// Throws std::invalid_argument where a setting is out of range.
+  BasicSimulator(Scene scene, SimulationSettings settings, Surface surface);
+  /// With the scene's own materials. Throws std::invalid_argument also where one is not tabled at the frequency.
+  BasicSimulator(const Scene& scene, const SimulationSettings& settings) requires std::same_as<Surface, MaterialTable>
+      : BasicSimulator(scene, settings, detail::material_table_of(scene, settings)) {}
+
+  const Scene& scene() const { return scene_; }
+  const SimulationSettings& settings() const { return settings_; }
+  const Index& index() const { return index_; }
+  const Surface& surface() const { return surface_; }
+  Discovery discovery() const { return discovery_; }  ///< exact or sampled: what is really done
+  CacheMode cache() const { return cache_; }          ///< off or seed: what is really remembered
+
+  /// Moves the scene to a frame and solves all links, starting from what is remembered of the frame before.
+  FrameResult advance(const Frame& frame);
+  /// The same for the instant `time_s`, by the motions of the scene.
+  FrameResult advance_to(double time_s, std::size_t index = 0) { return advance(scene_.frame_at(time_s, index)); }
+
+  /// Links from all transmitters to receivers of the caller's, in the current frame, by transmitter, then receiver.
+  /// `LinkResult::receiver` is the index in `receivers`. Nothing is remembered.
+  std::vector<LinkResult> solve(std::span<const Device> receivers, WorkCounters* work = nullptr) const;
+
+  /// Whether a device is there in the current frame.
+  bool is_present(const Device& device) const { return scene_.device_state(device, frame_).present; }
+
+  /// Moves scene and index to a frame without solving anything.
+  TreeUpdateReport move_to(const Frame& frame);
+  /// One path on its own, in the current frame: over `sequence`, counted from the receiver, between a transmitter and a
+  /// receiver of the scene. Nothing where there is no such path or an end is absent.
+  std::optional<PathContribution> solve_path(std::size_t transmitter, std::size_t receiver,
+                                             const Sequence& sequence) const;
+
+  /// One map per transmitter over the grid, in the current frame. `progress(n)` is called from the working threads
+  /// whenever n more points are done.
+  std::vector<RadioMap> radio_maps(const ReceiverGrid& grid, const std::function<void(std::size_t)>& progress = {},
+                                   WorkCounters* work = nullptr) const;
+
+ private:
+  using Tracer = SceneTracer<Index>;
+  using Evaluator = FieldEvaluator<Surface, AnyPathLoss>;
+
+  /// A transmitter as paths and as fields see it; absent while its object is away.
+  struct TransmitterEnds {
+    std::vector<std::optional<LinkEnd>> link;
+    std::vector<RadioEnd> radio;
+    std::vector<ReachedEdges> reached;  ///< the edges within reach; empty lists where no diffraction is wanted
+    std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
+    std::vector<char> embedded;         ///< edges that no path can use; empty where nobody has looked
+    WorkCounters work;                  ///< what finding them took
+  };
+
+  /// One end of a link, as paths and as fields see it.
+  struct DeviceEnd {
+    const LinkEnd& link;
+    const RadioEnd& radio;
+  };
+
+  /// A solution of some receivers, with what it took.
+  struct Solved {
+    std::vector<LinkResult> links;
+    WorkCounters work;
+    CacheCounters cache;
+  };
+
+  void check_surface_model() const;
+  TreeUpdateReport update_index(const ChangeSet& changes);
+  LinkEnd link_end(const DeviceState& state, TraversalCounters& counters) const {
+    return make_link_end(Tracer(scene_, index_), state.position_m, state.ignored_body, counters);
+  }
+  void forget_replaced(const ChangeSet& changes, CacheCounters& counters);
+  Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters,
+                   std::span<PathCache> caches) const;
+  /// With `reach`, which has an entry per transmitter, edges that were within reach in frames before count, too.
+  /// `embedded` as in `EdgeRules`.
+  TransmitterEnds transmitter_ends(std::span<EdgeReach> reach, std::vector<char> embedded = {}) const;
+  void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
+  Evaluator evaluator() const {
+    const PropagationSettings& propagation = settings_.propagation;
+    return Evaluator(scene_, surface_, propagation.path_loss, settings_.frequency_hz,
+                     {propagation.diffraction.lossy_wedge, propagation.max_transmissions}, medium_);
+  }
+  PathSearchSettings search_settings(std::span<const char> embedded_edges = {}) const;
+  std::span<const std::optional<LinkEnd>> ends_beside(const Device& receiver, const TransmitterEnds& transmitters,
+                                                      std::vector<std::optional<LinkEnd>>& others) const;
+  /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
+  Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
+                        PathCache* cache) const;
+  /// What rough surfaces bring to one receiver, by transmitter; empty entries where it is not asked for.
+  std::vector<DiffusePower> diffuse_powers(const std::string& receiver, const LinkEnd& end, const RadioEnd& to,
+                                           const TransmitterEnds& transmitters,
+                                           std::span<const std::optional<LinkEnd>> ends, WorkCounters& work) const;
+  LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const DeviceEnd& from,
+                       const DeviceEnd& to, const Evaluator& evaluator) const;
+  /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
+  void trace_elements(std::span<PathContribution> paths, const DeviceEnd& from, const DeviceEnd& to,
+                      const Evaluator& evaluator) const;
+  static RadioMapPoint map_point(const LinkResult& link, const Vec3& position_m);
+
+  Scene scene_;
+  SimulationSettings settings_;
+  Surface surface_;
+  Index index_;
+  MediumLoss medium_;
+  Discovery discovery_;
+  CacheMode cache_;
+  std::vector<std::uint32_t> moved_;  ///< triangles that the index has still to hear of
+  std::vector<PathCache> caches_;     ///< one per receiver of the scene; none where the cache is off
+  std::vector<EdgeReach> reach_;      ///< one per transmitter; none where the cache is off
+  Frame frame_;
+  std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+template <SurfaceModel Surface, SpatialIndex Index>
+BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings settings, Surface surface)
+    : scene_(std::move(scene)),
+      settings_(std::move(settings)),
+      surface_(std::move(surface)),
+      index_(settings_.tree),
+      pool_(std::make_unique<ThreadPool>(settings_.threads)) {
+  validate(settings_);
+  check_surface_model();
+  medium_ = MediumLoss(settings_.propagation.atmosphere, scene_.materials(), settings_.frequency_hz);
+  discovery_ = resolve_discovery(settings_.propagation, scene_);
+  cache_ = resolve_cache(settings_.propagation, discovery_);
+  if (cache_ == CacheMode::seed) {
+    caches_.resize(scene_.receivers().size());
+    reach_.resize(scene_.transmitters().size());
+  }
+  frame_ = scene_.frame_at(0.0);
+  scene_.apply(frame_);
+  index_.build(scene_.triangle_view(), scene_.triangle_boxes(), scene_.first_triangles());
+}
+
+/// What a model of the caller's own cannot do would otherwise be left out in silence.
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::check_surface_model() const {
+  if (!ScatteringModel<Surface> && settings_.propagation.diffuse.enabled) {
+    throw std::invalid_argument("diffuse: the surface model does not scatter; expected a ScatteringModel");
+  }
+  std::vector<bool> is_looked_at(scene_.materials().size());
+  for (const WorldFacet& facet : scene_.facets()) {
+    if (facet.transmits || facet.is_foliage || is_looked_at[facet.material.value]) continue;
+    is_looked_at[facet.material.value] = true;
+    const Material& material = scene_.material(facet.material);
+    for (const double cos_incidence : {0.25, 0.5, 1.0}) {
+      const SurfaceResponse response = surface_.response(facet.material, cos_incidence);
+      if (response.transmission.te == 0.0 && response.transmission.tm == 0.0) continue;
+      throw std::invalid_argument("material '" + material.name +
+                                  "': the surface model lets a wave through, but the scene's material blocks paths; "
+                                  "expected a material that transmits, such as ConstantReflection with a loss");
+    }
+  }
+}
+
+}  // namespace dcem
+
+#include "dcem/sim/detail/simulator_frames.hpp"
+#include "dcem/sim/detail/simulator_links.hpp"
+#include "dcem/sim/detail/simulator_maps.hpp"
+
+#if defined(DCEM_ENGINE)
+extern template class dcem::BasicSimulator<dcem::MaterialTable, dcem::WideIndex>;
+#endif
