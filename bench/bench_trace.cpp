@@ -444,8 +444,7 @@ int main(int count, char** arguments) {
   return dcem::bench::run_program(app, count, arguments, [&] {
     std::puts(
         "scene,triangles,threads,rays,query,tree,ratio_to_embree_robust,ratio_to_embree_packet,mrays_per_s,build_ms,"
-        "nodes_per_ray,patches_per_"
-        "ray,"
+        "nodes_per_ray,quads_per_ray,"
         "differences,hash");
     bool same = true;
     for (const std::string& file : options.files) same = bench(options, file) && same;

@@ -1,13 +1,17 @@
 /// Refit or rebuild? 300 cars drive through the town for 20 s while three trees follow them: one is built anew in every
-/// frame, one is only refitted, one decides by itself. All three give the same hits; what differs is the work. Prints a
-/// table and draws refit_or_rebuild.svg.
+/// frame, one is only refitted, one decides by itself. All three give the same hits; what differs is the work. Twice:
+/// with the wide tree, which the simulator uses, and with the binary tree. Prints tables, draws
+/// refit_or_rebuild_wide.svg and refit_or_rebuild.svg.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "dcem/accel/binary/updater.hpp"
+#include "dcem/accel/box_index.hpp"
+#include "dcem/accel/wide_index.hpp"
 #include "dcem/dcem.hpp"
 #include "dcem/io/line_chart.hpp"
 #include "dcem/io/obj_reader.hpp"
@@ -53,30 +57,29 @@ dcem::Scene town_with_cars(dcem::RandomStream& random) {
 }
 
 /// Rays from a little above the ground in all directions, as receivers in the streets send them.
-std::vector<dcem::Ray<double>> rays_over(const dcem::Aabb<double>& bounds, dcem::RandomStream& random) {
-  std::vector<dcem::Ray<double>> rays;
+std::vector<dcem::RayQuery> rays_over(const dcem::Aabb<double>& bounds, dcem::RandomStream& random) {
+  std::vector<dcem::RayQuery> rays;
   for (std::size_t ray = 0; ray < ray_count; ++ray) {
     const dcem::Vec3 origin_m = point_in(bounds, 0.5, 3.0, random);
     const double z = between(random, -1.0, 1.0), azimuth_rad = between(random, -dcem::pi, dcem::pi);
     const double level = std::sqrt(1.0 - z * z);
-    rays.push_back({origin_m, {level * std::cos(azimuth_rad), level * std::sin(azimuth_rad), z}});
+    rays.push_back({{origin_m, {level * std::cos(azimuth_rad), level * std::sin(azimuth_rad), z}}});
   }
   return rays;
 }
 
-/// One policy, its tree, and what it has cost so far.
+/// One policy, and what it has cost so far.
 struct Contender {
   std::string name;
-  dcem::BvhUpdater<double> updater;
-  dcem::Bvh<double> tree{};
   double update_s = 0.0;
   std::uint64_t nodes_refit = 0, nodes_rebuilt = 0, subtrees_rebuilt = 0;
   std::vector<double> steps_per_ray{}, sah_cost{};  ///< one entry per frame
 };
 
-void follow(Contender& contender, const dcem::Scene& scene, const std::vector<std::uint32_t>& moved) {
+template <dcem::SpatialIndex Index>
+void follow(Contender& contender, Index& index, const dcem::Scene& scene, const std::vector<std::uint32_t>& moved) {
   const auto start = std::chrono::steady_clock::now();
-  const dcem::TreeUpdateReport report = contender.updater.update(contender.tree, moved, scene.triangle_boxes());
+  const dcem::TreeUpdateReport report = index.update(scene.triangle_view(), scene.triangle_boxes(), moved);
   contender.update_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   contender.nodes_refit += report.nodes_refit;
   contender.nodes_rebuilt += report.nodes_rebuilt;
@@ -84,22 +87,15 @@ void follow(Contender& contender, const dcem::Scene& scene, const std::vector<st
   contender.sah_cost.push_back(report.sah_cost);
 }
 
-/// Distance to the closest hit of every ray; infinite where it meets nothing.
-std::vector<double> trace(Contender& contender, const dcem::Scene& scene, const std::vector<dcem::Ray<double>>& rays) {
+using Hits = std::vector<std::optional<dcem::TriangleHit>>;
+
+template <dcem::SpatialIndex Index>
+Hits trace(Contender& contender, const Index& index, const std::vector<dcem::RayQuery>& rays) {
   dcem::TraversalCounters counters;
-  std::vector<double> distances_m;
-  for (const dcem::Ray<double>& ray : rays) {
-    const dcem::WatertightRay exact(ray);
-    double nearest_m = ray.t_max;
-    const auto leaf = [&](std::uint32_t triangle, double& t_max) {
-      const auto t = exact.intersect(scene.corners_m(triangle));
-      if (t && *t >= ray.t_min && *t < nearest_m) nearest_m = t_max = *t;
-    };
-    contender.tree.closest(ray, leaf, &counters);
-    distances_m.push_back(nearest_m);
-  }
+  Hits hits(rays.size());
+  index.closest_hits(rays, hits, &counters);
   contender.steps_per_ray.push_back(static_cast<double>(counters.nodes_visited) / static_cast<double>(rays.size()));
-  return distances_m;
+  return hits;
 }
 
 void print(const std::vector<Contender>& contenders) {
@@ -116,7 +112,7 @@ void print(const std::vector<Contender>& contenders) {
 }
 
 /// The first contender has a new tree in every frame: it is what the others are compared with.
-void draw(const std::vector<Contender>& contenders) {
+void draw(const std::vector<Contender>& contenders, const char* file) {
   dcem::io::LineChart steps, cost;
   steps.title = "300 cars in the town: nodes visited by a ray";
   cost.title = "SAH cost of the tree over that of a new tree";
@@ -134,43 +130,55 @@ void draw(const std::vector<Contender>& contenders) {
     cost.series.push_back({contender.name, time_s, std::move(ratio)});
   }
   const std::vector<dcem::io::LineChart> charts{steps, cost};
-  dcem::io::write_line_chart_svg(charts, "refit_or_rebuild.svg");
+  dcem::io::write_line_chart_svg(charts, file);
 }
 
-Contender contender(const char* name, dcem::TreePolicy policy) {
-  dcem::TreeUpdateSettings settings;
-  settings.policy = policy;
-  return {name, dcem::BvhUpdater<double>(settings)};
-}
-
-}  // namespace
-
-int main() {
-  dcem::RandomStream random(2026);
-  dcem::Scene scene = town_with_cars(random);
-  std::vector<Contender> contenders;
-  contenders.push_back(contender("rebuild always", dcem::TreePolicy::rebuild_always));
-  contenders.push_back(contender("refit only", dcem::TreePolicy::refit_only));
-  contenders.push_back(contender("adaptive", dcem::TreePolicy::adaptive));
-  for (Contender& each : contenders) each.tree.build_objects(scene.triangle_boxes(), scene.first_triangles());
-  const std::vector<dcem::Ray<double>> rays = rays_over(contenders.front().tree.bounds(), random);
+/// The drive with one kind of tree under three policies; the first has a new tree in every frame. Empty where hits
+/// differ.
+template <dcem::SpatialIndex Index>
+std::vector<Contender> drive(dcem::Scene scene, const std::vector<dcem::RayQuery>& rays) {
+  std::vector<Contender> contenders{{"rebuild always"}, {"refit only"}, {"adaptive"}};
+  std::vector<Index> indices;
+  for (const auto policy :
+       {dcem::TreePolicy::rebuild_always, dcem::TreePolicy::refit_only, dcem::TreePolicy::adaptive}) {
+    dcem::WideTreeSettings settings;
+    settings.policy = policy;
+    indices.emplace_back(settings).build(scene.triangle_view(), scene.triangle_boxes(), scene.first_triangles());
+  }
   for (std::size_t frame = 0; frame < frame_count; ++frame) {
     std::vector<std::uint32_t> moved;
     for (const dcem::BodyId body : scene.apply(scene.frame_at(step_s * static_cast<double>(frame), frame)).moved) {
       const auto [first, last] = scene.triangle_range(body);
       for (std::uint32_t triangle = first; triangle < last; ++triangle) moved.push_back(triangle);
     }
-    std::vector<double> expected_m;
-    for (Contender& each : contenders) {
-      follow(each, scene, moved);
-      const std::vector<double> distances_m = trace(each, scene, rays);
-      if (expected_m.empty()) expected_m = distances_m;
-      if (distances_m != expected_m) {
-        std::printf("frame %zu: %s gives other hits\n", frame, each.name.c_str());
-        return 1;
-      }
+    Hits expected;
+    for (std::size_t each = 0; each < contenders.size(); ++each) {
+      follow(contenders[each], indices[each], scene, moved);
+      Hits hits = trace(contenders[each], indices[each], rays);
+      if (expected.empty()) expected = hits;
+      if (hits == expected) continue;
+      std::printf("frame %zu: %s gives other hits\n", frame, contenders[each].name.c_str());
+      return {};
     }
   }
-  print(contenders);
-  draw(contenders);
+  return contenders;
+}
+
+}  // namespace
+
+int main() {
+  dcem::RandomStream random(2026);
+  const dcem::Scene scene = town_with_cars(random);
+  dcem::Aabb<double> bounds;
+  for (const dcem::Aabb<double>& box : scene.triangle_boxes()) bounds.extend(box);
+  const std::vector<dcem::RayQuery> rays = rays_over(bounds, random);
+  const std::vector<Contender> wide = drive<dcem::WideIndex>(scene, rays);
+  const std::vector<Contender> binary = drive<dcem::BinaryIndex>(scene, rays);
+  if (wide.empty() || binary.empty()) return 1;
+  std::puts("The wide tree, eight children a node:");
+  print(wide);
+  draw(wide, "refit_or_rebuild_wide.svg");
+  std::puts("\nThe binary tree:");
+  print(binary);
+  draw(binary, "refit_or_rebuild.svg");
 }

@@ -58,7 +58,7 @@ class Bvh {
   void rebuild_subtree(std::uint32_t node, Boxes boxes);
 
   /// Builds the nodes below one node anew, but only those of its own level: above object roots the tree over the
-  /// objects, each object's own tree staying as it is and only hanging elsewhere; inside an object the same as
+  /// objects, each object's own tree staying as it is and only put elsewhere; inside an object the same as
   /// rebuild_subtree.
   void rebuild_level(std::uint32_t node, Boxes boxes) {
     require_boxes(boxes);
@@ -150,7 +150,7 @@ class Bvh {
   const BvhArrays<Scalar>& arrays() const { return arrays_; }
   const SahSettings& settings() const { return settings_; }
 
-  /// Depths from the root to the deepest leaf: 0 without primitives, 1 for a single leaf. Walks the whole tree.
+  /// Levels from the root to the deepest leaf: 0 without primitives, 1 for a single leaf. Walks the whole tree.
   std::uint32_t depth() const;
 
   /// Expected cost of a long random ray by the surface-area heuristic, no unit; from a sum that every edit keeps.
@@ -186,8 +186,8 @@ class Bvh {
   }
   std::uint32_t object_at(std::size_t position) const;
   std::uint32_t level_of(std::uint32_t node, std::uint32_t above) const;
-  void grow_objects(std::uint32_t slot, std::span<const std::uint32_t> objects, Boxes boxes, std::uint32_t depths);
-  void grow_range(std::uint32_t slot, std::size_t begin, std::size_t end, Boxes boxes, std::uint32_t depths);
+  void grow_objects(std::uint32_t slot, std::span<const std::uint32_t> objects, Boxes boxes, std::uint32_t levels);
+  void grow_range(std::uint32_t slot, std::size_t begin, std::size_t end, Boxes boxes, std::uint32_t levels);
   void rebuild_below(std::uint32_t node, Boxes boxes);
   void rebuild_above_objects(std::uint32_t node);
   std::uint32_t first_position(std::uint32_t node) const;

@@ -71,26 +71,26 @@ class WideBvh {
   /// every triangle of which a corner has moved. Allocates nothing once the lists have grown.
   WideRefitReport refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes);
 
-  /// Takes objects out of the tree that the last refit moved, and hangs each where it costs least (branch and bound
+  /// Takes objects out of the tree that the last refit moved, and inserts each where it costs least (branch and bound
   /// over Σ cost · surface: Bittner, Hapala, Havran, "Fast insertion-based optimization of bounding volume
-  /// hierarchies", Computer Graphics Forum 2013): those that make the node they hang in larger than `growth_limit`
+  /// hierarchies", Computer Graphics Forum 2013): those that make the node above them larger than `growth_limit`
   /// times what it was when they came there, and of all one in `turn_length`, in turn (0: none). Growth alone misses
   /// what has become a bad place little by little, or by what others do. Returns how many were moved.
   std::size_t reinsert_moved(double growth_limit, std::uint32_t turn_length = default_turn_length);
   static constexpr std::uint32_t default_turn_length = 50;
 
-  /// Builds what hangs below an inner node anew, in place, from the boxes as they are now: the node's part of its level
-  /// (wide levels.hpp), of which leaves and objects are the leaves; node 0 is all but those. Where the result would lie
+  /// Builds what is below an inner node anew, in place, from the boxes as they are now: the node's part of its level
+  /// (wide/levels.hpp), of which leaves and objects are the leaves; node 0 is all but those. Where the result would lie
   /// too deep, more is built anew, from a node above on. Returns how many nodes were written: none where Σ cost ·
   /// surface below the node would not fall below `wanted_share` of what it is (above 0; infinity: whatever it will be);
   /// the node's degradation is then counted from now on.
   std::size_t rebuild_subtree(std::uint32_t node, double wanted_share = std::numeric_limits<double>::infinity());
 
-  /// Exchanges entries around the nodes that edits have touched since the last call, where Σ cost · surface falls (see
-  /// wide_rotation.hpp), up to so many a node. Needs `watch`. Returns how many entries changed their place.
+  /// Exchanges children around the nodes that edits have touched since the last call, where Σ cost · surface falls (see
+  /// update/rotation.hpp), up to so many a node. Needs `watch`. Returns how many children changed their place.
   std::size_t rotate_touched(std::uint32_t most_per_node = 1);
 
-  // Wear (see wide_wear.hpp).
+  // Degradation (see degradation.hpp).
 
   /// Says what is noted from now on. What is tracked anew counts as built now.
   void watch(const TrackedMeasures& tracked) { degradation_.watch(tracked, arrays_); }
@@ -186,7 +186,7 @@ class WideBvh {
   void note_moved_object(std::uint32_t object);
   bool reinsert(std::uint32_t object);
   void detach(NodeLane place);
-  /// A node where something might hang, and what the nodes down to it would grow by.
+  /// A node where something might be inserted, and what the nodes down to it would grow by.
   struct Branch {
     double cost_m2;
     std::uint32_t node;

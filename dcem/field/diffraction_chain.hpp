@@ -1,6 +1,6 @@
 #pragma once
 /// The transfer of a path with diffractions: reflections and transmissions along straight legs, and the cascade of its
-/// edges (em/diffraction_cascade.hpp).
+/// edges (em/diffraction/diffraction_cascade.hpp).
 #include <array>
 #include <cmath>
 #include <cstddef>

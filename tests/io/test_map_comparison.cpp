@@ -63,13 +63,15 @@ TEST_CASE("the charts of a comparison hold every place, however far apart the ma
 
 TEST_CASE("a file that cannot be compared is refused with its line") {
   CHECK(refusal("").find("is empty; expected") != std::string::npos);
-  CHECK(refusal("x_m,y_m,pp_dbm\n0,0,1\n")
-            .find(":1: no column 'p_dbm'; expected it in the header, where the nearest one is 'pp_dbm'") !=
-        std::string::npos);
+  CHECK(
+      refusal("x_m,y_m,pp_dbm\n0,0,1\n")
+          .find(
+              ":1: the column 'p_dbm' is missing; expected a header with x_m, y_m and p_dbm, where the nearest one is "
+              "'pp_dbm'") != std::string::npos);
   CHECK(refusal("x_m,y_m,p_dbm,p_dbm\n").find("is there twice") != std::string::npos);
   CHECK(refusal("x_m,y_m,p_dbm\n0,0,1\n0,0\n").find(":3: 2 fields; expected 3") != std::string::npos);
-  CHECK(refusal("x_m,y_m,p_dbm\n0,0,nan\n").find(":2: found 'nan'; expected") != std::string::npos);
-  CHECK(refusal("x_m,y_m,p_dbm\n0,,1\n").find(":2: found ''; expected") != std::string::npos);
+  CHECK(refusal("x_m,y_m,p_dbm\n0,0,nan\n").find(":2: p_dbm: found 'nan'; expected") != std::string::npos);
+  CHECK(refusal("x_m,y_m,p_dbm\n0,,1\n").find(":2: y_m: found ''; expected") != std::string::npos);
   CHECK(refusal("x_m,y_m,p_dbm\n0,0,1\n0.0,0,2\n").find(":3: a second row") != std::string::npos);
   CHECK(refusal("x_m,y_m,p\n", "p").find("; expected a power whose name ends with _dbm or _db") != std::string::npos);
 }

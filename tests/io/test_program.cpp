@@ -274,7 +274,7 @@ TEST_CASE("two maps are compared place by place") {
   CHECK(outcome.output.find("2 places with two values") != std::string::npos);
   CHECK(outcome.output.find("0.4500") != std::string::npos);  // mean of 0 and 0.9
   CHECK(file_bytes(folder.path() / "c" / "comparison.svg").starts_with("<?xml"));
-  check_refused(folder, "compare a.csv b.csv -o d", "b.csv:1: no column");
+  check_refused(folder, "compare a.csv b.csv -o d", "b.csv:1: the column");
   write(folder / "far.csv", "x_m,y_m,power_incoherent_dbm\n10,0,-60\n");
   check_refused(folder, "compare a.csv far.csv -o d", "no place has a value");
 }

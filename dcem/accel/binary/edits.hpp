@@ -41,7 +41,7 @@ void Bvh<Scalar>::rebuild(Boxes boxes) {
 /// Plants a tree over the objects at `slot` and each object's own tree at a leaf of it.
 template <std::floating_point Scalar>
 void Bvh<Scalar>::grow_objects(std::uint32_t slot, std::span<const std::uint32_t> objects, Boxes boxes,
-                               std::uint32_t depths) {
+                               std::uint32_t levels) {
   std::vector<BuildItem<Scalar>> items;
   for (const std::uint32_t object : objects) {
     Box bounds;
@@ -52,7 +52,7 @@ void Bvh<Scalar>::grow_objects(std::uint32_t slot, std::span<const std::uint32_t
   }
   SahSettings one_object_a_leaf = settings_;
   one_object_a_leaf.leaf_limit = one_object_a_leaf.leaf_maximum = 1;
-  const auto sprout = SahBuilder<Scalar>(one_object_a_leaf).build(items, depths);
+  const auto sprout = SahBuilder<Scalar>(one_object_a_leaf).build(items, levels);
   arrays_.build_all(slot, sprout, [&](std::uint32_t leaf) {
     const std::uint32_t object = items[arrays_.nodes[leaf].first].index;
     object_root_[object] = leaf;
@@ -63,14 +63,14 @@ void Bvh<Scalar>::grow_objects(std::uint32_t slot, std::span<const std::uint32_t
 /// Plants a tree at `slot` over the primitives that stand at positions begin … end−1 of the order.
 template <std::floating_point Scalar>
 void Bvh<Scalar>::grow_range(std::uint32_t slot, std::size_t begin, std::size_t end, Boxes boxes,
-                             std::uint32_t depths) {
+                             std::uint32_t levels) {
   std::vector<BuildItem<Scalar>> items;
   items.reserve(end - begin);
   for (std::size_t position = begin; position < end; ++position) {
     const std::uint32_t primitive = arrays_.order[position];
     items.emplace_back(canonical_box(boxes[primitive]), primitive);
   }
-  const auto sprout = SahBuilder<Scalar>(settings_).build(items, depths);
+  const auto sprout = SahBuilder<Scalar>(settings_).build(items, levels);
   for (std::size_t position = begin; position < end; ++position) {
     arrays_.order[position] = items[position - begin].index;
     arrays_.ordered_boxes[position] = items[position - begin].box;
@@ -134,7 +134,7 @@ std::uint32_t Bvh<Scalar>::object_at(std::size_t position) const {
   return static_cast<std::uint32_t>(after - object_first_.begin() - 1);
 }
 
-/// Depths from `above`, which is 1, down to `node`.
+/// Levels from `above`, which is 1, down to `node`.
 template <std::floating_point Scalar>
 std::uint32_t Bvh<Scalar>::level_of(std::uint32_t node, std::uint32_t above) const {
   std::uint32_t depth = 1;

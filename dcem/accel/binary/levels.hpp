@@ -5,23 +5,23 @@
 
 namespace dcem {
 
-/// Takes the objects' own trees off, builds the level above them anew, and hangs them on again.
+/// Takes the objects' own trees off, builds the level above them anew, and attaches them again.
 template <std::floating_point Scalar>
 void Bvh<Scalar>::rebuild_above_objects(std::uint32_t node) {
-  struct Hanging {
+  struct Attached {
     std::uint32_t object;
     BvhNode<Scalar> root;
     SubtreeDegradation degradation;
   };
-  std::vector<Hanging> hanging;
+  std::vector<Attached> attached;
   std::vector<BuildItem<Scalar>> items;
   std::vector<std::uint32_t> pairs;
   for_each_in_level(node, [&](std::uint32_t above) {
     pairs.push_back(arrays_.nodes[above].left());
     for (const std::uint32_t slot : {arrays_.nodes[above].left(), arrays_.nodes[above].right()}) {
       if (!degradation_[slot].is_object_root) continue;
-      items.emplace_back(arrays_.nodes[slot].box, static_cast<std::uint32_t>(hanging.size()));
-      hanging.push_back({object_at(first_position(slot)), arrays_.nodes[slot], degradation_[slot]});
+      items.emplace_back(arrays_.nodes[slot].box, static_cast<std::uint32_t>(attached.size()));
+      attached.push_back({object_at(first_position(slot)), arrays_.nodes[slot], degradation_[slot]});
     }
   });
   arrays_.release(pairs);
@@ -30,7 +30,7 @@ void Bvh<Scalar>::rebuild_above_objects(std::uint32_t node) {
   const auto sprout = SahBuilder<Scalar>(one_object_a_leaf).build(items, maximum_build_depth + 1 - level_of(node, 0));
   for (const std::uint32_t pair : pairs) degradation_[pair] = degradation_[pair + 1] = {};
   arrays_.build_all(node, sprout, [&](std::uint32_t leaf) {
-    const Hanging& object = hanging[items[arrays_.nodes[leaf].first].index];
+    const Attached& object = attached[items[arrays_.nodes[leaf].first].index];
     insert_object(leaf, object.object, object.root, object.degradation);
   });
   begin_degradation_above_objects(node);

@@ -16,7 +16,7 @@ inline constexpr std::uint32_t free_slot = 0xfffffffeU;  ///< parent of a node s
 
 /// No leaf holds more primitives than this, whatever the boxes look like.
 inline constexpr std::uint32_t maximum_leaf_size = 8;
-/// Depths of one built tree: of the tree over one object, and of the tree over the objects.
+/// Levels of one built tree: of the tree over one object, and of the tree over the objects.
 inline constexpr std::uint32_t maximum_build_depth = 64;
 /// A walk leaves at most one node behind per depth; a whole tree has two built trees on top of one another.
 inline constexpr std::uint32_t traversal_stack_size = 2 * maximum_build_depth;

@@ -34,15 +34,15 @@ class SahBuilder {
 
   /// Reorders `items` and returns the nodes over them: the root first, then children in pairs at (1, 2), (3, 4), …, the
   /// child with the larger surface first. A leaf's `first` is a position in `items`; below any node the positions are
-  /// contiguous. At most `depths` depths, which must be at least 1 + log₂ of the number of items. No items: no nodes.
-  std::vector<Node> build(std::span<Item> items, std::uint32_t depths = maximum_build_depth) {
+  /// contiguous. At most `levels` levels, which must be at least 1 + log₂ of the number of items. No items: no nodes.
+  std::vector<Node> build(std::span<Item> items, std::uint32_t levels = maximum_build_depth) {
     nodes_.clear();
     if (items.empty()) return {};
-    DCEM_ASSERT(depths <= maximum_build_depth && depths > median_levels(items.size()));
+    DCEM_ASSERT(levels <= maximum_build_depth && levels > median_levels(items.size()));
     items_ = items;
     has_empty_ = std::ranges::any_of(items, [](const Item& item) { return item.box.empty(); });
     nodes_.emplace_back();
-    grow(0, {0, items.size()}, bounds_of<Scalar>(items), depths);
+    grow(0, {0, items.size()}, bounds_of<Scalar>(items), levels);
     return std::move(nodes_);
   }
 
@@ -89,8 +89,8 @@ class SahBuilder {
 
   std::span<Item> of(Range range) const { return items_.subspan(range.begin, range.size()); }
 
-  void grow(std::size_t slot, Range range, const Aabb<Scalar>& box, std::uint32_t depths);
-  std::optional<std::size_t> divide(Range range, const Aabb<Scalar>& box, std::uint32_t depths);
+  void grow(std::size_t slot, Range range, const Aabb<Scalar>& box, std::uint32_t levels);
+  std::optional<std::size_t> divide(Range range, const Aabb<Scalar>& box, std::uint32_t levels);
   std::size_t divide_at_median(Range range);
   std::size_t divide_at(Range range, const Split& split);
   std::size_t divide_off_empty(Range range);
@@ -106,8 +106,8 @@ class SahBuilder {
 };
 
 template <std::floating_point Scalar>
-void SahBuilder<Scalar>::grow(std::size_t slot, Range range, const Aabb<Scalar>& box, std::uint32_t depths) {
-  const std::optional<std::size_t> middle = divide(range, box, depths);
+void SahBuilder<Scalar>::grow(std::size_t slot, Range range, const Aabb<Scalar>& box, std::uint32_t levels) {
+  const std::optional<std::size_t> middle = divide(range, box, levels);
   if (!middle) {
     std::ranges::sort(of(range), {}, &Item::index);
     nodes_[slot] = {box, static_cast<std::uint32_t>(range.begin), static_cast<std::uint32_t>(range.size())};
@@ -124,17 +124,17 @@ void SahBuilder<Scalar>::grow(std::size_t slot, Range range, const Aabb<Scalar>&
   const std::size_t pair = nodes_.size();
   nodes_.resize(pair + 2);
   nodes_[slot] = {box, static_cast<std::uint32_t>(pair), 0};
-  grow(pair, larger, larger_box, depths - 1);
-  grow(pair + 1, smaller, smaller_box, depths - 1);
+  grow(pair, larger, larger_box, levels - 1);
+  grow(pair + 1, smaller, smaller_box, levels - 1);
 }
 
 /// The position where the range is divided after reordering, or nothing when it becomes a leaf.
 template <std::floating_point Scalar>
-std::optional<std::size_t> SahBuilder<Scalar>::divide(Range range, const Aabb<Scalar>& box, std::uint32_t depths) {
+std::optional<std::size_t> SahBuilder<Scalar>::divide(Range range, const Aabb<Scalar>& box, std::uint32_t levels) {
   const bool fits_leaf = range.size() <= settings_.leaf_limit;
   if (range.size() == 1) return std::nullopt;
-  // Any split leaves at most size − 1 on one side; medians must still fit in the depths that remain then.
-  if (depths - 1 <= median_levels(range.size())) {
+  // Any split leaves at most size − 1 on one side; medians must still fit in the levels that remain then.
+  if (levels - 1 <= median_levels(range.size())) {
     return fits_leaf ? std::nullopt : std::optional(divide_at_median(range));
   }
   if (has_empty_) {

@@ -57,7 +57,7 @@ class BvhUpdater {
   double visited_since_renewal_ = 0.0;  ///< nodes that refits have visited since the root was built
 };
 
-/// The oracle has no shape that could degradation.
+/// The oracle has no shape that could degrade.
 template <std::floating_point Scalar>
 class BruteForceUpdater {
  public:

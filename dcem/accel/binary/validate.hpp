@@ -144,7 +144,7 @@ std::string BvhInspector<Scalar>::find_defect() {
 }  // namespace detail
 
 /// A sentence about the first broken promise, empty when there is none: children inside parents and linked to them,
-/// every box exactly tight, each primitive in one leaf that it is linked to, depths within the traversal stack, every
+/// every box exactly tight, each primitive in one leaf that it is linked to, levels within the traversal stack, every
 /// slot either in the tree or free. `boxes` are the primitives' boxes as they are now.
 template <std::floating_point Scalar>
 std::string find_defect(const BvhArrays<Scalar>& arrays, std::span<const Aabb<Scalar>> boxes) {

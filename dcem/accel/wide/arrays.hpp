@@ -80,7 +80,7 @@ struct WideArrays {
   std::uint32_t add_leaf(std::uint32_t object);
 
   /// Puts a child with its box into a lane.
-  void hang(WideChild child, NodeLane place, const Aabb<float>& box);
+  void attach(WideChild child, NodeLane place, const Aabb<float>& box);
   /// Changes the box of a lane; keeps the sum.
   void set_box(NodeLane place, const Aabb<float>& box);
   /// Makes the boxes above a node tight again, as far up as they change. Returns how many nodes were looked at.
@@ -187,7 +187,7 @@ inline std::uint32_t WideArrays::add_leaf(std::uint32_t object) {
   return static_cast<std::uint32_t>(leaves.size() - 1);
 }
 
-inline void WideArrays::hang(WideChild child, NodeLane place, const Aabb<float>& box) {
+inline void WideArrays::attach(WideChild child, NodeLane place, const Aabb<float>& box) {
   WideNode& node = nodes[place.node()];
   add_area(-weight(node.child[place.lane()], box_at(place)));
   node.child[place.lane()] = child;

@@ -13,7 +13,7 @@ namespace dcem {
 
 namespace detail {
 
-/// Depths of nodes and leaves, that of the root being 1. The tree over all and the tree of an object are no deeper than
+/// Levels of nodes and leaves, that of the root being 1. The tree over all and the tree of an object are no deeper than
 /// the binary trees they are made from, each wide node standing for one of their nodes at least; an edit makes nodes
 /// only above `wide_edit_depth_limit`, so that what it pushes down, a leaf or an object, is pushed no further than a
 /// built tree reaches.

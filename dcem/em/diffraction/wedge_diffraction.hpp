@@ -1,9 +1,9 @@
 #pragma once
 /// The diffraction matrix of a wedge with faces of any material: (E_β0', E_φ') arriving at the edge to (E_β0, E_φ)
-/// leaving it, in the bases of em/edge_basis.hpp. The field at the distance s is
+/// leaving it, in the bases of em/diffraction/edge_basis.hpp. The field at the distance s is
 ///   E(s) = M·E'·A·e^{−jks},  A = diffraction_spreading(ρ_e, s),  E' the incident field at the edge.
 ///
-/// With the terms D1…D4 of em/utd.hpp and the reflection matrices G_0, G_n of the faces,
+/// With the terms D1…D4 of em/diffraction/utd.hpp and the reflection matrices G_0, G_n of the faces,
 ///   M = −(D1 + D2)·(I − T) + D4·G_0 + D3·G_n          reciprocal, luebbers84
 ///   M = −D2·(I − T) − D1·G_n·G_0 + D4·G_0 + D3·G_n    holm_reciprocal, φ ≥ φ' (else −D1·(I − T) − D2·G_0·G_n + …).
 /// A perfect conductor has G = diag(+1, −1) and M = −diag(D_soft, D_hard) in every variant.

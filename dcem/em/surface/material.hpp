@@ -33,7 +33,7 @@ struct Dielectric {
   friend bool operator==(const Dielectric&, const Dielectric&) = default;
 };
 
-/// A material of the table of ITU-R P.2040 (em/itu_p2040.hpp), by its canonical name, e.g. "concrete".
+/// A material of the table of ITU-R P.2040 (em/surface/itu_p2040.hpp), by its canonical name, e.g. "concrete".
 struct ItuMaterial {
   std::string name;
   std::optional<double> thickness_m{};  ///< > 0: a slab; absent: a half space, opaque
@@ -44,7 +44,7 @@ struct ItuMaterial {
 /// One layer of a wall: a medium with its thickness, which must be there.
 using MaterialLayer = std::variant<Dielectric, ItuMaterial>;
 
-/// Layers one behind the other, between air and air (em/multilayer.hpp). Surfaces are two-sided sheets without a front:
+/// Layers one behind the other, between air and air (em/surface/multilayer.hpp). Surfaces are two-sided sheets without a front:
 /// whichever side a wave comes from, it meets the first layer first. The transmission does not depend on that order,
 /// nor does the reflected power where nothing is lost.
 struct Multilayer {
@@ -56,7 +56,7 @@ struct Multilayer {
 /// Leaves and twigs: no surface that reflects, but a loss for every metre inside. A closed shell of it is a tree or a
 /// hedge; paths go straight through, and what they lose is counted on their length inside.
 struct Foliage {
-  std::optional<double> attenuation_db_per_m{};  ///< ≥ 0; absent: by frequency (em/foliage.hpp)
+  std::optional<double> attenuation_db_per_m{};  ///< ≥ 0; absent: by frequency (em/medium/foliage.hpp)
 
   friend bool operator==(const Foliage&, const Foliage&) = default;
 };
@@ -77,7 +77,7 @@ using MaterialModel =
 struct Material {
   std::string name;
   MaterialModel model;
-  /// Standard deviation of the surface height, ≥ 0; 0: smooth. It reduces what is reflected (em/roughness.hpp, Ament),
+  /// Standard deviation of the surface height, ≥ 0; 0: smooth. It reduces what is reflected (em/surface/roughness.hpp, Ament),
   /// with every model; what passes is not changed.
   double roughness_rms_m = 0.0;
   /// Diffuse scattering; the mirror keeps √(1 − S²). Not together with a roughness: both would take the same power.

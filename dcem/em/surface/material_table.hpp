@@ -26,7 +26,7 @@
 namespace dcem {
 
 /// Answers, at the frequency for which it was prepared, what a surface of `material` does to a wave that meets it under
-/// `cos_incidence` = |k·n| in 0…1. Signs and phase reference: em/fresnel.hpp and em/slab.hpp.
+/// `cos_incidence` = |k·n| in 0…1. Signs and phase reference: em/surface/fresnel.hpp and em/surface/slab.hpp.
 template <typename Model>
 concept SurfaceModel = requires(const Model& model, MaterialId material, double cos_incidence) {
   { model.response(material, cos_incidence) } -> std::same_as<SurfaceResponse>;

@@ -1,6 +1,6 @@
 #pragma once
 /// A wall of several homogeneous layers between air and air, with all internal reflections: the product of the
-/// characteristic (ABCD) matrices of the layers. One layer gives what em/slab.hpp gives.
+/// characteristic (ABCD) matrices of the layers. One layer gives what em/surface/slab.hpp gives.
 ///
 /// A layer of thickness d has δ = k·d·q, q = √(η − sin²θ), and the matrix
 ///   [cos δ, j·sin δ/v;  j·v·sin δ, cos δ],  v = q (TE), q/η (TM); in air v_0 = cos θ.
@@ -11,7 +11,7 @@
 ///   a → (1 − m/2)·a + σ·b,   b → σ·v²·a + (1 − m/2)·b.
 /// Where little is reflected the difference u = v_0·a − b would lose its digits; there it is carried by its own rule,
 ///   u → σ·(v_0² − v²)·a + (1 − m/2 − σ·v_0)·u.
-/// R refers to the front face, T is the insertion coefficient, as in em/slab.hpp.
+/// R refers to the front face, T is the insertion coefficient, as in em/surface/slab.hpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -14,9 +14,9 @@ class UserSurfaceModel {
  public:
   virtual ~UserSurfaceModel() = default;
 
-  /// Coefficients of the smooth surface for a wave under `cos_incidence` = |k·n| in 0…1; signs and phase reference as in
-  /// em/surface/fresnel.hpp and slab.hpp. The material's roughness or scattering is applied to the reflection afterwards.
-  /// Every coefficient finite; transmission zero where the surface is opaque.
+  /// Coefficients of the smooth surface for a wave under `cos_incidence` = |k·n| in 0…1; signs and phase reference as
+  /// in em/surface/fresnel.hpp and slab.hpp. The material's roughness or scattering is applied to the reflection
+  /// afterwards. Every coefficient finite; transmission zero where the surface is opaque.
   virtual SurfaceResponse response(double frequency_hz, double cos_incidence) const = 0;
 };
 

@@ -65,7 +65,7 @@ TEST_CASE_TEMPLATE("no leaf exceeds the limit, also for identical boxes", Scalar
 TEST_CASE("equal costs are divided evenly: points on a line make no chain") {
   dcem_test::Boxes<double> boxes;
   for (int index = 0; index < 4096; ++index) boxes.push_back({Vec3(index, 0, 0), Vec3(index, 0, 0)});
-  // 1024 leaves of 4 would be 11 depths; the bins are not aligned with the points, which may cost a few.
+  // 1024 leaves of 4 would be 11 levels; the bins are not aligned with the points, which may cost a few.
   CHECK(built(boxes).depth <= 15);
 }
 
@@ -125,7 +125,7 @@ TEST_CASE("the surface-area heuristic beats halving by number") {
   const double sah = subtree_sah_cost<float>(built(boxes).nodes, 0, settings);
   std::vector<BuildItem<float>> items;
   for (std::uint32_t index = 0; index < boxes.size(); ++index) items.emplace_back(boxes[index], index);
-  // With the fewest depths allowed the builder must take the median everywhere: 5000 items, 13 halvings.
+  // With the fewest levels allowed the builder must take the median everywhere: 5000 items, 13 halvings.
   const auto median = SahBuilder<float>(settings).build(items, 14);
   CHECK(sah < 0.95 * subtree_sah_cost<float>(median, 0, settings));
 }

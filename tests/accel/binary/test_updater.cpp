@@ -552,7 +552,7 @@ TEST_CASE("a thousand objects that were away and come all at once get a tree as 
   CHECK(kept.tree.sah_cost() == doctest::Approx(kept.fresh_cost()).epsilon(1e-12));
 }
 
-TEST_CASE("many objects at one point keep their depths within the stack, whatever is rebuilt") {
+TEST_CASE("many objects at one point keep their levels within the stack, whatever is rebuilt") {
   Boxes boxes(3000, cube(Vec3(1.0), 0.0));
   Kept kept(boxes, numbers_below(boxes.size()));
   RandomStream random(16);

@@ -185,7 +185,7 @@ void follow(WideBvh& tree, Policy policy, const Drive& drive) {
 constexpr Policy policies[] = {Policy::refit_only, Policy::reinsert, Policy::reinsert_late, Policy::reinsert_never,
                                Policy::rebuild};
 
-/// The depths of nodes below the root, itself counted.
+/// The levels of nodes below the root, itself counted.
 std::uint32_t depth_of(const WideArrays& arrays, std::uint32_t node = 0) {
   std::uint32_t deepest = 0;
   for (const WideChild child : arrays.nodes[node].child) {

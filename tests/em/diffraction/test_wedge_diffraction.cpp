@@ -411,3 +411,24 @@ TEST_CASE("broken preconditions are noticed") {
   CHECK_THROWS_AS(utd_terms({1.5, 0.1, 0.2, 0.0}, 1.0, equal_distances(1.0)), InvariantError);
   CHECK_THROWS_AS(utd_terms({1.5, 0.1, 0.2, 1.0}, 0.0, equal_distances(1.0)), InvariantError);
 }
+
+TEST_CASE("at a reflection boundary the term of that face is half the root of that face's distance parameter") {
+  // F(x) goes to √(πx)·exp(jπ/4), so D3 at φ + φ' = (2n − 1)π is √L_n/2 and D4 at φ + φ' = π is √L_0/2 (Kouyoumjian and
+  // Pathak 1974, eqs. 25 to 30), which is half the field that appears or vanishes there.
+  DistanceParameters distances{};
+  distances.incident_m = 1.7;
+  distances.reflected_n_m = 4.0;
+  distances.reflected_0_m = 9.0;
+  WedgeAngles angles{};
+  angles.exterior_angle_over_pi = 1.5;
+  angles.edge_angle_rad = 0.5 * pi;
+  const double wave_number_rad_per_m = 600.0;
+  angles.incident_azimuth_rad = 0.3 * pi;
+  angles.diffracted_azimuth_rad = 0.7 * pi;
+  CHECK(std::abs(utd_terms(angles, wave_number_rad_per_m, distances).reflected_0) ==
+        doctest::Approx(1.5).epsilon(1e-7));
+  angles.incident_azimuth_rad = 0.9 * pi;
+  angles.diffracted_azimuth_rad = 1.1 * pi;
+  CHECK(std::abs(utd_terms(angles, wave_number_rad_per_m, distances).reflected_n) ==
+        doctest::Approx(1.0).epsilon(1e-7));
+}

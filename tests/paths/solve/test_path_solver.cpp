@@ -249,3 +249,26 @@ TEST_CASE("what was done is counted") {
   CHECK(question.solver.counters().legs == 3);
   CHECK(question.solver.counters().traversal.primitives_tested > 0);
 }
+
+TEST_CASE("an end in the plane of a face, beyond the face, is at grazing: there is no diffracted path to it") {
+  TriangleMesh mesh;
+  add_box_faces(mesh, Vec3(-2, -2, -2), Vec3(2, 2, 2), "metal");
+  Question question(mesh);
+  std::optional<WedgeId> edge;
+  for (std::size_t index = 0; index < question.traced.scene.wedges().size(); ++index) {
+    const Wedge& held = question.traced.scene.wedge(WedgeId(index)).edge;
+    const bool along_y = held.start_m.x == 2.0 && held.end_m.x == 2.0 && held.start_m.z == 2.0 && held.end_m.z == 2.0;
+    if (along_y) edge = WedgeId(index);
+  }
+  REQUIRE(edge.has_value());
+  // Over the top face and 8 m further. A nanometre is the guard by which a point is off a plane (geometry/plane.hpp).
+  const auto is_there = [&](double height_m) {
+    const LinkEnd from = question.traced.end(Vec3(6, 0, 0));
+    const LinkEnd to = question.traced.end(Vec3(-10, 0, 2.0 + height_m));
+    return question.solver.solve(from, to, Sequence{*edge}).has_value();
+  };
+  CHECK(is_there(1e-3));
+  CHECK(is_there(1e-7));
+  CHECK_FALSE(is_there(1e-10));
+  CHECK_FALSE(is_there(0.0));
+}

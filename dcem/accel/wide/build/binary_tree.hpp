@@ -114,7 +114,7 @@ inline std::uint32_t join(std::span<std::uint32_t> parts, std::vector<BinaryNode
   return parts[0];
 }
 
-/// Depths of a tree, the root's included.
+/// Levels of a tree, the root's included.
 inline std::uint32_t depth_of_tree(std::span<const WideSplit> splits) {
   std::vector<std::uint32_t> depth(splits.size(), 1);
   for (std::size_t slot = 0; slot < splits.size(); ++slot) {

@@ -27,7 +27,7 @@ class WideBinner {
     branches_.clear();
     open_.assign(1, {0, detail::wide_build_depth_limit, {}});
     nodes.push_back(leaf(items, 0, items.size(), open_.front().centres));
-    // The top is divided here; what hangs below it is independent, and its order does not depend on who builds it.
+    // The top is divided here; what is below it is independent, and its order does not depend on who builds it.
     const std::size_t enough = std::max<std::size_t>(items.size() / 16, 1024);
     while (!open_.empty()) {
       const Branch branch = open_.back();
@@ -68,7 +68,7 @@ class WideBinner {
     return {box.half_area(), 0, 0, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last - first)};
   }
 
-  /// What hangs below a node. `open` is empty before and after.
+  /// What is below a node. `open` is empty before and after.
   static void divide_all(std::span<WideItem> items, std::span<WideItem> spare, std::vector<WideSplit>& nodes,
                          const Branch& top, std::uint32_t leaf_limit, std::vector<Branch>& open) {
     open.push_back(top);
@@ -93,7 +93,7 @@ class WideBinner {
     for (std::size_t index = 0; index < built.size(); ++index) append(nodes, branches_[index].node, built[index]);
   }
 
-  /// Hangs a subtree in place of a leaf.
+  /// Attaches a subtree in place of a leaf.
   static void append(std::vector<WideSplit>& nodes, std::uint32_t node, std::span<const WideSplit> subtree) {
     const auto shift = static_cast<std::uint32_t>(nodes.size() - 1);
     const auto moved = [&](WideSplit split) {

@@ -114,7 +114,7 @@ class WideBuilder {
     const std::vector<WideSplit> binary = divided(items);
     const WideCollapse collapse(binary, items, settings_.costs);
     if (collapse.is_leaf(0)) {
-      hang(build_child(binary, collapse, items, 0), NodeLane::at(0, 0));
+      attach(build_child(binary, collapse, items, 0), NodeLane::at(0, 0));
     } else {
       fill_node(0, binary, collapse, items, 0);
     }
@@ -148,7 +148,7 @@ class WideBuilder {
     const std::size_t count = collapse.entries(slot, entries);
     // Siblings side by side in memory, because a ray that looks at one often looks at the next.
     for (std::uint32_t lane = 0; lane < count; ++lane) {
-      hang(build_child(binary, collapse, items, entries[lane]), NodeLane::at(node, lane));
+      attach(build_child(binary, collapse, items, entries[lane]), NodeLane::at(node, lane));
     }
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       if (collapse.is_leaf(entries[lane])) continue;
@@ -157,7 +157,7 @@ class WideBuilder {
   }
 
   /// Boxes come last, all at once.
-  void hang(WideChild child, NodeLane place) { arrays_->hang(child, place, {}); }
+  void attach(WideChild child, NodeLane place) { arrays_->attach(child, place, {}); }
 
   void write_boxes() {
     std::vector<Aabb<float>> boxes(arrays_->leaves.size());

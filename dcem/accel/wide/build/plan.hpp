@@ -31,7 +31,7 @@ inline double weighted_area(const WideArrays& arrays, const WideNode& node) {
   return sum_m2;
 }
 
-/// The same over all that hangs below a node in its level.
+/// The same over all that is below a node in its level.
 inline double level_area_below(const WideArrays& arrays, std::uint32_t node) {
   double sum_m2 = weighted_area(arrays, arrays.nodes[node]);
   for (const WideChild child : arrays.nodes[node].child) {
@@ -71,7 +71,7 @@ class WidePlan {
     return collapse_.entries(slot, found);
   }
 
-  /// Σ cost · half surface of what will hang below the node.
+  /// Σ cost · half surface of what will be below the node.
   double weighted_area_m2(const WideCosts& costs, std::uint32_t slot = 0) const {
     double sum_m2 = 0.0;
     if (slot == 0 && is_leaf(0)) return weight_m2(costs, 0);
@@ -82,11 +82,11 @@ class WidePlan {
     return sum_m2;
   }
 
-  /// Depths of wide nodes.
-  std::uint32_t depths(std::uint32_t slot = 0) const {
+  /// Levels of wide nodes.
+  std::uint32_t levels(std::uint32_t slot = 0) const {
     if (is_leaf(slot)) return 0;
     std::uint32_t below = 0;
-    collapse_.for_each_entry(slot, [&](std::uint32_t entry) { below = std::max(below, depths(entry)); });
+    collapse_.for_each_entry(slot, [&](std::uint32_t entry) { below = std::max(below, levels(entry)); });
     return below + 1;
   }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Makes a binary tree cheaper by hanging nodes elsewhere. It takes longer than building the tree.
+/// Makes a binary tree cheaper by putting nodes elsewhere. It takes longer than building the tree.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -55,7 +55,7 @@ class ReinsertionOptimizer {
     std::uint32_t from = 0;
     std::uint32_t to = 0;  ///< its new sibling
   };
-  /// A place to hang something, or to look below.
+  /// A place to insert something, or to look below.
   struct Spot {
     float gain_m2;  ///< without what a node around the two would cost
     std::uint32_t node;
@@ -143,7 +143,7 @@ class ReinsertionOptimizer {
   /// Moves where the sum falls, as the tree is now. Returns what it has lost.
   double try_move(std::uint32_t from, std::uint32_t to) {
     const std::uint32_t joint = nodes_[from].parent, beside = sibling(from);
-    // Other moves may have made this one pointless, or have hung the target below what moves.
+    // Other moves may have made this one pointless, or have put the target below what moves.
     if (joint == 0 || to == joint || to == beside || is_below(to, from)) return 0.0;
     const double grown_m2 = change_place(joint, from, to);
     if (grown_m2 < 0.0) return -grown_m2;

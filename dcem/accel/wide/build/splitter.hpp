@@ -56,7 +56,7 @@ class WideSplitter {
     });
   }
 
-  /// Where no plane divides, or depths run short: the median along the longest axis.
+  /// Where no plane divides, or levels run short: the median along the longest axis.
   static std::size_t halve(std::span<WideItem> items, const Float4& extent) {
     int axis = extent[1] > extent[0] ? 1 : 0;
     if (extent[2] > extent[axis]) axis = 2;

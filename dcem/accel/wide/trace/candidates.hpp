@@ -84,8 +84,9 @@ class ClosestCandidates {
     count_ = kept;
   }
 
-  void ask(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter, std::uint32_t quad, float& limit,
-           TraversalCounters& counters) {
+  /// Kept out of the walks, which it would slow down although it is seldom called.
+  [[gnu::noinline]] void ask(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
+                             std::uint32_t quad, float& limit, TraversalCounters& counters) {
     ++counters.primitives_tested;
     const std::optional<TriangleHit> hit = quad_hit(tree, quad, ray, filter);
     if (!hit) return;

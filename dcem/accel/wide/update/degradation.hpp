@@ -2,13 +2,13 @@
 /// How far motion has degraded the parts of a wide tree down since they were built: two measures per inner node,
 /// brought up to date along the paths that edits have touched, and nowhere else.
 ///
-/// * SAH: Σ cost · surface of what hangs below a node, now against then. The node's own surface is no divisor: a part
+/// * SAH: Σ cost · surface of what is below a node, now against then. The node's own surface is no divisor: a part
 ///   whose leaves drift apart grows around them, and rays of the scene meet it more often.
-/// * RT-DEFORM: the surface of a node over that of what hangs in it, now against then; of the nodes of a part the mean
+/// * RT-DEFORM: the surface of a node over that of its children, now against then; of the nodes of a part the mean
 ///   relative growth (Lauterbach, Yoon, Tuft, Manocha, "RT-DEFORM: interactive ray tracing of dynamic scenes using
 ///   BVHs", IEEE Symposium on Interactive Ray Tracing 2006).
 ///
-/// Both stay within a level (wide levels.hpp): edits of one cannot mend the other. An object counts in the level above
+/// Both stay within a level (wide/levels.hpp): edits of one cannot mend the other. An object counts in the level above
 /// as one entry. What is not tracked costs nothing.
 #include <algorithm>
 #include <cstddef>
@@ -35,9 +35,9 @@ struct TrackedMeasures {
 
 /// Of one inner node and what is below it in its level. Zero where it is not tracked.
 struct Degradation {
-  double area_m2 = 0.0;              ///< Σ cost · half surface of all that hangs below
+  double area_m2 = 0.0;              ///< Σ cost · half surface of all that is below
   double area_at_build_m2 = -1.0;    ///< the same when the node was built; negative: not yet noted
-  double area_ratio_at_build = 1.0;  ///< its surface over that of what hangs in it, when it was built
+  double area_ratio_at_build = 1.0;  ///< its surface over that of its children, when it was built
   double ratio_growth_sum = 0.0;     ///< Σ over inner nodes of (ratio now / ratio at build − 1)
   std::uint32_t inner_nodes = 0;     ///< itself included
 
@@ -77,7 +77,7 @@ class DegradationLog {
     refresh(arrays);
   }
 
-  /// What hangs in a node has changed, or its box.
+  /// The children of a node have changed, or its box.
   void touch(std::uint32_t node) {
     if (!tracked_.any()) return;
     if (node >= is_touched_.size()) is_touched_.resize(node + 1, 0);
@@ -152,7 +152,7 @@ class DegradationLog {
     refresh_node(arrays, node);
   }
 
-  /// From what hangs in the node and from the measures of its children. What was noted at build stays.
+  /// From the children of the node and from the measures of its children. What was noted at build stays.
   void refresh_node(const WideArrays& arrays, std::uint32_t node) {
     const WideNode& held = arrays.nodes[node];
     const std::array<float, simd_lanes> areas_m2 = BoxLanes(held).half_areas();
@@ -182,7 +182,7 @@ class DegradationLog {
     degradation_[node] = sum;
   }
 
-  /// Surface of a node over that of what hangs in it; 1 where that has none. Bounded, so that points beside boxes of
+  /// Surface of a node over that of its children; 1 where that has none. Bounded, so that points beside boxes of
   /// 1e15 m overflow no sum.
   static double area_ratio(const WideArrays& arrays, std::uint32_t node, double children_m2) {
     if (!(children_m2 > 0.0)) return 1.0;

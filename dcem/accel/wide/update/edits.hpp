@@ -1,5 +1,5 @@
 #pragma once
-/// How a `WideBvh` is built and follows motion; included by wide_tree.hpp.
+/// How a `WideBvh` is built and follows motion; included by wide_bvh.hpp.
 #include "dcem/accel/wide_bvh.hpp"
 
 namespace dcem {
@@ -176,7 +176,7 @@ inline bool WideBvh::reinsert(std::uint32_t object) {
 
 /// Empties a lane. A node that is left with one entry gives its place to that entry.
 inline void WideBvh::detach(NodeLane place) {
-  arrays_.hang({}, place, {});
+  arrays_.attach({}, place, {});
   const std::uint32_t node = place.node();
   if (node == 0 || arrays_.nodes[node].child_count() > 1) {
     arrays_.tighten_above(node);
@@ -188,8 +188,8 @@ inline void WideBvh::detach(NodeLane place) {
   while (lane < simd_lanes && arrays_.nodes[node].child[lane].is_none()) ++lane;
   const WideChild left = lane < simd_lanes ? arrays_.nodes[node].child[lane] : WideChild{};
   const Aabb<float> box = lane < simd_lanes ? arrays_.nodes[node].box(lane) : Aabb<float>{};
-  if (!left.is_none()) arrays_.hang({}, NodeLane::at(node, lane), {});
-  arrays_.hang(left, above, box);
+  if (!left.is_none()) arrays_.attach({}, NodeLane::at(node, lane), {});
+  arrays_.attach(left, above, box);
   arrays_.lane_of_node[node] = {};
   arrays_.free_nodes.push_back(node);
   arrays_.tighten_above(above.node());
@@ -246,12 +246,12 @@ inline void WideBvh::attach_at(WideChild child, const Aabb<float>& box, const Sp
     const std::uint32_t node = arrays_.take_node();
     Aabb<float> both = beside_box;
     both.extend(box);
-    arrays_.hang(WideChild::node(node), place, both);
-    arrays_.hang(beside, NodeLane::at(node, 0), beside_box);
+    arrays_.attach(WideChild::node(node), place, both);
+    arrays_.attach(beside, NodeLane::at(node, 0), beside_box);
     place = NodeLane::at(node, 1);
     degradation_.forget(node);
   }
-  arrays_.hang(child, place, box);
+  arrays_.attach(child, place, box);
   degradation_.touch(place.node());
   // From the node that was there: a new one below it is tight already, and the way up would end at it.
   arrays_.tighten_above(spot.node);

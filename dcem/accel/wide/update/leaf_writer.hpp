@@ -1,5 +1,5 @@
 #pragma once
-/// How the leaves of a `WideArrays` are written from their triangles; included by wide_arrays.hpp.
+/// How the leaves of a `WideArrays` are written from their triangles; included by arrays.hpp.
 #include <algorithm>
 #include <array>
 #include <bit>

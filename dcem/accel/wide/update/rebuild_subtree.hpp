@@ -1,14 +1,14 @@
 #pragma once
-/// Builds parts of a `WideBvh` anew in place; included by wide_tree.hpp.
+/// Builds parts of a `WideBvh` anew in place; included by wide_bvh.hpp.
 ///
-/// The leaves of its level (wide levels.hpp) stay what they are: their boxes are known, and nothing in them is written.
+/// The leaves of its level (wide/levels.hpp) stay what they are: their boxes are known, and nothing in them is written.
 /// So the price is that of the nodes alone.
 ///
 /// How deep that may get: leaves of a built level lie on depth detail::wide_build_depth_limit at most, its root being
-/// on depth 1, and no edit pushes a leaf further down: hanging makes nodes above `wide_edit_depth_limit` only, and
-/// rotations lower leaves only there. A rebuilt_in_place part has the depths of its plan, which are counted before
-/// anything changes. Where they do not fit below the node, the node above is rebuilt_in_place instead; at the level's
-/// root they always fit, because the binner makes no more.
+/// on depth 1, and no edit pushes a leaf further down: insertion makes nodes above `wide_edit_depth_limit` only, and
+/// rotations lower leaves only there. A part that was rebuilt in place has the levels of its plan, which are counted
+/// before anything changes. Where they do not fit below the node, the node above is rebuilt_in_place instead; at the
+/// level's root they always fit, because the binner makes no more.
 #include "dcem/accel/wide_bvh.hpp"
 
 namespace dcem {
@@ -18,7 +18,7 @@ inline std::size_t WideBvh::rebuild_subtree(std::uint32_t node, double wanted_sh
   detail::WidePlan& plan = plan_;
   plan.make(arrays_, node, settings_.threads, settings_.divide_by_size);
   if (plan.empty()) return 0;
-  const std::uint32_t deepest = detail::depth_in_level(arrays_, node) + plan.depths() - 1;
+  const std::uint32_t deepest = detail::depth_in_level(arrays_, node) + plan.levels() - 1;
   if (deepest > detail::wide_level_depth_limit && !detail::is_level_root(arrays_, node)) {
     return rebuild_subtree(arrays_.lane_of_node[node].node(), wanted_share);
   }
@@ -59,7 +59,7 @@ inline void WideBvh::release_below(std::uint32_t node) {
         arrays_.lane_of_node[child.index()] = {};
         arrays_.free_nodes.push_back(child.index());
       }
-      arrays_.hang({}, NodeLane::at(from, lane), {});
+      arrays_.attach({}, NodeLane::at(from, lane), {});
     }
   };
   empty_below(node, empty_below);
@@ -81,16 +81,16 @@ inline std::size_t WideBvh::build_planned(std::uint32_t node, const detail::Wide
 /// Fills an empty lane. Returns how many nodes that made.
 inline std::size_t WideBvh::attach_planned(NodeLane place, const detail::WidePlan& plan, std::uint32_t slot) {
   if (plan.is_leaf(slot)) {
-    arrays_.hang(plan.leaf(slot).child, place, plan.leaf(slot).box);
+    arrays_.attach(plan.leaf(slot).child, place, plan.leaf(slot).box);
     return 0;
   }
   const std::uint32_t node = arrays_.take_node();
   const std::size_t made = build_planned(node, plan, slot);
-  arrays_.hang(WideChild::node(node), place, arrays_.nodes[node].box());
+  arrays_.attach(WideChild::node(node), place, arrays_.nodes[node].box());
   return made;
 }
 
-/// Notes for the objects that hang in a node how large it is now.
+/// Notes for the objects that are children of a node how large it is now.
 inline void WideBvh::remember_inserted(std::uint32_t node) {
   const WideNode& held = arrays_.nodes[node];
   const float area_m2 = held.box().half_area();

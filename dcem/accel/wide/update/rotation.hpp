@@ -1,13 +1,13 @@
 #pragma once
-/// Rotations in a `WideBvh`; included by wide_tree.hpp.
+/// Rotations in a `WideBvh`; included by wide_bvh.hpp.
 ///
 /// Around a node of eight entries, some of them nodes themselves, three changes cost nothing but the surface of those
 /// inner entries (Kopta, Ize, Spjut, Brunvand, Davis, Kensler, "Fast, effective BVH updates for animated scenes", I3D
 /// 2012, for eight children): an entry of a child node comes up into a free lane; it changes places with an entry of
 /// the node; it goes over into a free lane of another child node. The best is taken where Σ cost · surface falls.
 ///
-/// Nothing leaves its level (wide levels.hpp), so objects stay whole. What goes down are leaves alone, and no deeper
-/// than hanging puts them: so a tree gets no deeper by rotations, however many there are.
+/// Nothing leaves its level (wide/levels.hpp), so objects stay whole. What goes down are leaves alone, and no deeper
+/// than insertion puts them: so a tree gets no deeper by rotations, however many there are.
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -156,18 +156,18 @@ inline void WideBvh::carry_out(const detail::WideRotation& rotation, std::uint32
   const Aabb<float> entry_box = arrays_.box_at(from), other_box = arrays_.box_at(own);
   degradation_.touch(giver);
   if (rotation.kind == Kind::exchange) {
-    arrays_.hang(entry, own, entry_box);
-    arrays_.hang(other, from, other_box);
+    arrays_.attach(entry, own, entry_box);
+    arrays_.attach(other, from, other_box);
     arrays_.tighten_above(giver);
     remember_inserted(other);
   } else if (rotation.kind == Kind::up) {
-    arrays_.hang(entry, own, entry_box);
+    arrays_.attach(entry, own, entry_box);
     detach(from);
   } else {
     const std::uint32_t taker = other.index();
     std::uint32_t lane = 0;
     while (!arrays_.nodes[taker].child[lane].is_none()) ++lane;
-    arrays_.hang(entry, NodeLane::at(taker, lane), entry_box);
+    arrays_.attach(entry, NodeLane::at(taker, lane), entry_box);
     arrays_.tighten_above(taker);
     detach(from);
     degradation_.touch(taker);

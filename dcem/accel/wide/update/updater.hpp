@@ -56,11 +56,11 @@ class WideStepMeter {
 /// 1. Refit: always.
 /// 2. Reinsertion of objects whose surroundings have grown (WideBvh::reinsert_moved).
 /// 3. Rotations along the paths that were touched (WideBvh::rotate_touched).
-/// 4. The two measures of degradation along these paths (wide_wear.hpp); a subtree past one of the limits is built anew
-/// in
+/// 4. The two measures of degradation along these paths (degradation.hpp); a subtree past one of the limits is built
+/// anew in
 ///    place, the smallest first: what it has mended is no degradation of a larger one.
 /// 5. What rays have wasted: once that would have paid for building all nodes anew, they are; with reinsertion, in each
-///    frame what hangs in one entry of the root. Who rents until the rent has reached the price, and then buys, never
+///    frame one child of the root. Who rents until the rent has reached the price, and then buys, never
 ///    pays twice as much as who knew before.
 /// 6. All nodes in the same way, too, where that makes them better, once refits have visited them often enough that
 ///    building them anew is small change: neither measure sees a tree that might be better than it ever was. Once, too,
@@ -78,7 +78,7 @@ class WideUpdater {
   void note_rays(const TraversalCounters& spent, std::uint64_t rays) { steps_.add(spent, rays); }
 
   /// Brings the tree up to date after the triangles in `moved` have got the corners and boxes given here. An object
-  /// that was hung elsewhere counts as one rebuilt subtree of one node.
+  /// that was put elsewhere counts as one rebuilt subtree of one node.
   TreeUpdateReport update(WideBvh& tree, std::span<const std::uint32_t> moved, const TriangleView& mesh,
                           WideBvh::Boxes boxes) {
     TreeUpdateReport report;
@@ -98,7 +98,7 @@ class WideUpdater {
     return report;
   }
 
-  /// Whether a subtree is due by either measure. Where nothing but leaves hangs in a node, it can be built in one way
+  /// Whether a subtree is due by either measure. Where a node has nothing but leaves, it can be built in one way
   /// only: such a node is never degraded.
   bool is_degraded(const Degradation& degradation) const {
     return degradation.inner_nodes > 1 && (degradation.sah_growth() > settings_.sah_growth_limit ||
@@ -142,8 +142,8 @@ class WideUpdater {
     }
   }
 
-  /// Not all at once, which would make one frame ten times as dear as the others, but what hangs in an entry of the
-  /// root, and the next one in the next frame. That needs objects to be hung elsewhere, or those that have driven away
+  /// Not all at once, which would make one frame ten times as dear as the others, but one child of the
+  /// root, and the next one in the next frame. That needs objects to be put elsewhere, or those that have driven away
   /// stay in the entry that they were in.
   void begin_renewal(const WideBvh& tree, double wanted_share) {
     if (std::isfinite(settings_.reinsertion_growth)) {
@@ -207,8 +207,8 @@ class WideUpdater {
   }
 
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  /// To this share Σ cost · surface must fall where a measure asks for a new plan: objects hung one by one by what rays
-  /// cost are as good as a plan that says it gains less.
+  /// To this share Σ cost · surface must fall where a measure asks for a new plan: objects inserted one by one by what
+  /// rays cost are as good as a plan that says it gains less.
   static constexpr double worth_writing = 0.97;
 
   WideUpdateSettings settings_;

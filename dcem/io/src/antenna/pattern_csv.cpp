@@ -12,6 +12,7 @@
 #include "dcem/io/antenna_files.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/text/csv_reader.hpp"
 #include "dcem/io/src/text/number_text.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
@@ -19,8 +20,7 @@ namespace dcem::io {
 
 namespace {
 
-enum Column { azimuth_deg, zenith_deg, gain_dbi };
-const std::vector<std::string> column_names{"azimuth_deg", "zenith_deg", "gain_dbi"};
+enum Column : std::size_t { azimuth_deg, zenith_deg, gain_dbi };
 const std::string header = "azimuth_deg,zenith_deg,gain_dbi";
 
 /// Angles are compared in millionths of a degree: files round them.
@@ -40,84 +40,24 @@ struct Node {
   std::size_t line = 0;
 };
 
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = std::min(line.find(','), line.size());
-    fields.push_back(trimmed(line.substr(0, comma)));
-    if (comma == line.size()) return fields;
-    line.remove_prefix(comma + 1);
-  }
+Node read_node(const CsvReader& row) {
+  const auto angle = [&](Column column, const NumberRange& range) {
+    return static_cast<MicroDegrees>(std::llround(row.number(column, range) * 1e6));
+  };
+  const MicroDegrees azimuth = angle(azimuth_deg, {-360.0, 360.0});
+  const double highest_dbi = PatternTable::highest_gain_dbi;
+  return {(azimuth + whole_turn) % whole_turn, angle(zenith_deg, {0.0, 180.0}), azimuth,
+          row.number(gain_dbi, {-highest_dbi, highest_dbi}), row.line()};
 }
 
-class NodeReader {
- public:
-  NodeReader(std::string name, std::string_view text) : name_(std::move(name)), lines_(text) { read_header(); }
-
-  std::vector<Node> read() {
-    std::vector<Node> nodes;
-    while (lines_.next()) {
-      if (trimmed(lines_.line()).empty()) continue;
-      fields_ = split(lines_.line());
-      if (fields_.size() != columns_) {
-        fail(std::to_string(fields_.size()) + " fields; expected " + std::to_string(columns_) + " as in the header");
-      }
-      nodes.push_back(node());
-    }
-    if (nodes.empty()) throw InputError(name_, "holds no gain; expected lines of " + header);
-    return nodes;
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(name_, lines_.number(), what); }
-
-  void read_header() {
-    if (!lines_.next() || trimmed(lines_.line()).empty()) {
-      throw InputError(name_, "is empty; expected a header " + header);
-    }
-    const std::vector<std::string_view> found = split(lines_.line());
-    columns_ = found.size();
-    for (std::size_t field = 0; field < found.size(); ++field) {
-      const auto column = std::find(column_names.begin(), column_names.end(), found[field]);
-      if (column == column_names.end()) {
-        fail("unknown column " + in_quotes(found[field]) + "; the nearest known one is '" +
-             nearest_name(found[field], column_names) + "'");
-      }
-      std::optional<std::size_t>& place = field_of_[static_cast<std::size_t>(column - column_names.begin())];
-      if (place) fail("column '" + *column + "' is there twice; expected it once");
-      place = field;
-    }
-    for (std::size_t column = 0; column < column_names.size(); ++column) {
-      if (!field_of_[column]) fail("the column '" + column_names[column] + "' is missing; expected " + header);
-    }
-  }
-
-  double number(Column column, const NumberRange& range) const {
-    const std::string_view text = fields_[*field_of_[column]];
-    const std::optional<double> value = parse_number(text);
-    if (!value || !range.holds(*value)) {
-      fail(column_names[column] + ": found " + in_quotes(text) + "; expected " + range.text());
-    }
-    return *value;
-  }
-
-  MicroDegrees angle(Column column, const NumberRange& range) const {
-    return std::llround(number(column, range) * 1e6);
-  }
-
-  Node node() const {
-    const MicroDegrees azimuth = angle(azimuth_deg, {-360.0, 360.0});
-    const double highest_dbi = PatternTable::highest_gain_dbi;
-    return {(azimuth + whole_turn) % whole_turn, angle(zenith_deg, {0.0, 180.0}), azimuth,
-            number(gain_dbi, {-highest_dbi, highest_dbi}), lines_.number()};
-  }
-
-  std::string name_;
-  LineReader lines_;
-  std::size_t columns_ = 0;
-  std::array<std::optional<std::size_t>, 3> field_of_;
-  std::vector<std::string_view> fields_;
-};
+std::vector<Node> read_nodes(const std::string& name, std::string_view text) {
+  CsvReader row(name, text, {{"azimuth_deg"}, {"zenith_deg"}, {"gain_dbi"}}, "a header " + header,
+                CsvReader::OtherColumns::refused, CsvReader::EmptyLines::anywhere);
+  std::vector<Node> nodes;
+  while (row.next()) nodes.push_back(read_node(row));
+  if (nodes.empty()) throw InputError(name, "holds no gain; expected lines of " + header);
+  return nodes;
+}
 
 /// The distinct values, ascending.
 template <typename Angle>
@@ -158,9 +98,9 @@ class TableBuilder {
 
   PatternTable build() {
     if (azimuths_.size() < 2) throw InputError(name_, "azimuth_deg: one azimuth is a cut; expected a whole turn");
-    check_even(name_, column_names[azimuth_deg], azimuths_, whole_turn, "a whole turn from 0");
+    check_even(name_, "azimuth_deg", azimuths_, whole_turn, "a whole turn from 0");
     if (zeniths_.back() != half_turn) throw InputError(name_, "zenith_deg: 180 is missing; expected 0 to 180");
-    check_even(name_, column_names[zenith_deg], {zeniths_.begin(), zeniths_.end() - 1}, half_turn, "0 to 180");
+    check_even(name_, "zenith_deg", {zeniths_.begin(), zeniths_.end() - 1}, half_turn, "0 to 180");
     sort_out_doubles();
     check_complete();
     std::vector<double> gains;
@@ -211,7 +151,7 @@ class TableBuilder {
 
 PatternTable read_pattern_csv(const std::filesystem::path& file) {
   const std::string text = read_text_file(file, "expected a table of gains");
-  return TableBuilder(file.string(), NodeReader(file.string(), text).read()).build();
+  return TableBuilder(file.string(), read_nodes(file.string(), text)).build();
 }
 
 void write_pattern_csv(const PatternTable& table, const std::filesystem::path& file) {

@@ -13,6 +13,7 @@
 #include "dcem/core/units.hpp"
 #include "dcem/io/distribution_chart.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/text/csv_reader.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
 namespace dcem::io {
@@ -28,84 +29,14 @@ Place place_of(const MapColumn::Row& row) {
   return {std::llround(row.x_m * 1e6), std::llround(row.y_m * 1e6)};
 }
 
-/// Splits the rows of a file whose header names the columns.
-class MapRows {
- public:
-  MapRows(std::string file, std::string_view text, const std::string& column) : file_(std::move(file)), lines_(text) {
-    if (!lines_.next()) throw InputError(file_, "is empty; expected a header with x_m, y_m and " + column);
-    split();
-    columns_ = fields_.size();
-    const std::array<std::string, 3> wanted{"x_m", "y_m", column};
-    for (std::size_t index = 0; index < wanted.size(); ++index) field_of_[index] = find(wanted[index]);
-  }
+enum Column : std::size_t { x_m, y_m, power };
 
-  /// Moves to the next row that is not empty; false at the end.
-  bool next() {
-    do {
-      if (!lines_.next()) return false;
-    } while (trimmed(lines_.line()).empty());
-    split();
-    if (fields_.size() != columns_) {
-      fail(std::to_string(fields_.size()) + " fields; expected " + std::to_string(columns_) + " as in the header");
-    }
-    return true;
-  }
-
-  MapColumn::Row row() const {
-    const auto number = [&](std::size_t index, const NumberRange& range) {
-      const std::string& text = fields_[field_of_[index]];
-      const std::optional<double> value = parse_number(trimmed(text));
-      if (!value || !range.holds(*value)) fail("found " + in_quotes(text) + "; expected " + range.text());
-      return *value;
-    };
-    const NumberRange place_m{-farthest_place_m, farthest_place_m};
-    const bool empty = trimmed(fields_[field_of_[2]]).empty();
-    return {number(0, place_m), number(1, place_m),
-            empty ? std::numeric_limits<double>::quiet_NaN() : number(2, {-largest_value_db, largest_value_db})};
-  }
-
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(file_, lines_.number(), what); }
-
- private:
-  std::size_t find(const std::string& column) const {
-    const auto is_column = [&](const std::string& name) { return trimmed(name) == column; };
-    const auto found = std::find_if(fields_.begin(), fields_.end(), is_column);
-    if (found == fields_.end()) {
-      fail("no column " + in_quotes(column) + "; expected it in the header, where the nearest one is " +
-           in_quotes(nearest_name(column, fields_)));
-    }
-    if (std::find_if(found + 1, fields_.end(), is_column) != fields_.end()) {
-      fail("column " + in_quotes(column) + " is there twice; expected it once");
-    }
-    return static_cast<std::size_t>(found - fields_.begin());
-  }
-
-  /// The fields of the line: RFC 4180, but for line ends in quotes.
-  void split() {
-    fields_.assign(1, "");
-    bool quoted = false;
-    const std::string_view line = lines_.line();
-    for (std::size_t index = 0; index < line.size(); ++index) {
-      const char character = line[index];
-      if (quoted && character == '"' && index + 1 < line.size() && line[index + 1] == '"') {
-        fields_.back().push_back(line[++index]);
-      } else if (character == '"' && (quoted || fields_.back().empty())) {
-        quoted = !quoted;
-      } else if (character == ',' && !quoted) {
-        fields_.emplace_back();
-      } else {
-        fields_.back().push_back(character);
-      }
-    }
-    if (quoted) fail("a quote is not closed; expected quotes in pairs");
-  }
-
-  std::string file_;
-  LineReader lines_;
-  std::vector<std::string> fields_;
-  std::size_t columns_ = 0;
-  std::array<std::size_t, 3> field_of_{};
-};
+MapColumn::Row read_row(const CsvReader& row) {
+  const NumberRange place_m{-farthest_place_m, farthest_place_m};
+  const double value_db = row.text(power).empty() ? std::numeric_limits<double>::quiet_NaN()
+                                                  : row.number(power, {-largest_value_db, largest_value_db});
+  return {row.number(x_m, place_m), row.number(y_m, place_m), value_db};
+}
 
 std::map<Place, double> values_by_place(const MapColumn& column) {
   std::map<Place, double> values;
@@ -121,11 +52,12 @@ MapColumn read_map_column(const std::filesystem::path& file, const std::string& 
                      "column " + in_quotes(column) + "; expected a power whose name ends with _dbm or _db");
   }
   const std::string text = read_text_file(file, "expected a table with x_m, y_m and " + column);
-  MapRows rows(file.string(), text, column);
+  CsvReader rows(file.string(), text, {{"x_m"}, {"y_m"}, {column}}, "a header with x_m, y_m and " + column,
+                 CsvReader::OtherColumns::ignored, CsvReader::EmptyLines::anywhere);
   MapColumn result{column, {}};
   std::map<Place, bool> seen;
   while (rows.next()) {
-    const MapColumn::Row row = rows.row();
+    const MapColumn::Row row = read_row(rows);
     if (!seen.emplace(place_of(row), true).second) rows.fail("a second row at this place; expected one row per place");
     result.rows.push_back(row);
   }

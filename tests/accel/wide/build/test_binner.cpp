@@ -41,7 +41,7 @@ double half_area_of(std::span<const WideItem> items) {
   return box.half_area();
 }
 
-/// Walks the whole tree and checks each promise. Returns the number of depths.
+/// Walks the whole tree and checks each promise. Returns the number of levels.
 std::uint32_t check_below(std::span<const WideSplit> nodes, std::span<const WideItem> items, std::uint32_t slot,
                           std::uint32_t leaf_limit, std::vector<int>& seen) {
   const WideSplit& node = nodes[slot];

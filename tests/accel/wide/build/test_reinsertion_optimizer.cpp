@@ -31,7 +31,7 @@ struct Binary {
     for (const WideSplit& split : splits) sum += split.is_leaf() ? 0.0 : static_cast<double>(split.half_area_m2);
     return sum;
   }
-  std::uint32_t depths() const { return detail::depth_of_tree(splits); }
+  std::uint32_t levels() const { return detail::depth_of_tree(splits); }
 };
 
 WideItem item_at(const Vec3& low, const Vec3& high, std::uint32_t index, std::uint32_t kind) {
@@ -108,7 +108,7 @@ void check_tree(const Binary& binary, std::size_t count, std::uint32_t leaf_limi
     REQUIRE(right.first == split.first + left.count);
     REQUIRE(left.count + right.count == split.count);
   }
-  REQUIRE(binary.depths() <= detail::wide_build_depth_limit);
+  REQUIRE(binary.levels() <= detail::wide_build_depth_limit);
 }
 
 bool is_same(const Binary& one, const Binary& other) {
@@ -159,7 +159,7 @@ const std::vector<std::string> hard_ones{
 
 }  // namespace
 
-TEST_CASE("reinsertion keeps every item once, children behind parents, tight areas, and the bound on depths") {
+TEST_CASE("reinsertion keeps every item once, children behind parents, tight areas, and the bound on levels") {
   for (const std::uint32_t count : {1U, 2U, 3U, 4U, 7U, 60U, 3'000U}) {
     for (const std::uint32_t kinds : {0U, 1U, 3U}) {
       for (const std::uint32_t leaf_limit : {1U, 8U}) {
@@ -275,7 +275,7 @@ TEST_CASE("reinsertion gives a deep tree back rather than make it deeper than al
     items.push_back(item_at(low, low + Vec3(0.3 * size), index, WideItem::no_kind));
   }
   Binary binary(items, 1);
-  REQUIRE(binary.depths() > 20);
+  REQUIRE(binary.levels() > 20);
   const double before = binary.sum_m2();
   for (int turn = 0; turn < 6; ++turn) {
     ReinsertionOptimizer::optimize(binary.splits, binary.items, 1);

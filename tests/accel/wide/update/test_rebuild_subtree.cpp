@@ -58,7 +58,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what is rebuilt_in_place counts its nodes, and so does the plan its depths") {
+TEST_CASE("what is rebuilt_in_place counts its nodes, and so does the plan its levels") {
   WideTraffic traffic({200, 40.0, false, false, true}, 4);
   WideBvh tree = traffic.built();
   for (int frame = 0; frame < 30; ++frame) {
@@ -70,11 +70,11 @@ TEST_CASE("what is rebuilt_in_place counts its nodes, and so does the plan its d
     if (node != 0 && tree.arrays().lane_of_node[node].is_none()) continue;
     const detail::WidePlan plan(tree.arrays(), node, 1);
     const std::size_t made = tree.rebuild_subtree(node);
-    std::uint32_t depths = 0;
+    std::uint32_t levels = 0;
     std::size_t nodes = 0;
     const auto count = [&](std::uint32_t at, std::uint32_t depth, const auto& self) -> void {
       ++nodes;
-      depths = std::max(depths, depth);
+      levels = std::max(levels, depth);
       for (const WideChild child : tree.arrays().nodes[at].child) {
         const bool inner = !child.is_none() && !child.is_leaf();
         if (inner && tree.arrays().object_rooted_at_node[child.index()] == WideArrays::no_object) {
@@ -84,7 +84,7 @@ TEST_CASE("what is rebuilt_in_place counts its nodes, and so does the plan its d
     };
     count(node, 1, count);
     CHECK(made == nodes);
-    CHECK(std::max(plan.depths(), 1U) == depths);
+    CHECK(std::max(plan.levels(), 1U) == levels);
   }
   CHECK(tree.validate(traffic.boxes) == "");
 }

@@ -227,7 +227,7 @@ TEST_CASE("renewal: at once, and then once for so many visited nodes") {
   CHECK(renewed > 3);
 }
 
-TEST_CASE("with reinsertion all nodes are built anew in turns, what hangs in an entry of the root a frame") {
+TEST_CASE("with reinsertion all nodes are built anew in turns, one child of the root a frame") {
   Traffic traffic(200, 15);
   WideBvh tree = traffic.built();
   WideUpdateSettings settings = nothing_mends();
