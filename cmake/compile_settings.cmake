@@ -11,7 +11,7 @@ function(dcem_enable_warnings target)
   # GCC 12 warns of overlapping or overlong copies inside std::string where there are none (GCC bugs 105651, 105329; mended
   # in 13).
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    target_compile_options(${target} PRIVATE -Wno-restrict -Wno-array-bounds)
+    target_compile_options(${target} PRIVATE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow)
   endif()
 endfunction()
 

@@ -53,7 +53,7 @@ def budget_of(header):
 def public_headers(root):
     paths = (path.relative_to(root).as_posix() for path in sorted((root / "dcem").rglob("*.hpp")))
     return [path for path in paths if not path.startswith(("dcem/io/src/", "dcem/engine/"))
-            and not path.endswith("_bodies.hpp")]
+            and "/detail/" not in path and not path.endswith("_bodies.hpp")]
 
 
 def main(arguments):
