@@ -1,6 +1,6 @@
 #pragma once
-/// Closest hits of many rays: dense neighbours from one point go together, all others as a stream where the tree is
-/// large.
+/// Closest hits of many rays: dense neighbours from one point go together; rays from many points, and all rays where
+/// the tree is large, as a stream; the others one by one.
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -46,6 +46,14 @@ class PacketRun {
   static constexpr double least_cosine_squared = 0.92;        ///< wider packets test more boxes that few rays meet
 };
 
+/// How many of the first queries have each an origin of its own: what one of them needs the one before it has not
+/// fetched, and a stream hides the waiting even where the outer caches hold the tree.
+inline std::size_t unlike_neighbours(std::span<const RayQuery> queries) {
+  std::size_t count = 1;
+  while (count < queries.size() && queries[count].ray.origin != queries[count - 1].ray.origin) ++count;
+  return count;
+}
+
 inline void closest_hits(const WideArrays& tree, std::span<const RayQuery> queries,
                          std::span<std::optional<TriangleHit>> hits, TraversalCounters& counters) {
   if (tree.nodes.empty()) {
@@ -54,17 +62,20 @@ inline void closest_hits(const WideArrays& tree, std::span<const RayQuery> queri
   }
   std::size_t first_alone = 0, next = 0;
   const auto trace_alone = [&] {
-    if (first_alone == next) return;
-    if (!fetches_ahead(tree)) {  // a stream hides waiting, and has nothing to hide where the caches hold the tree
-      for (; first_alone < next; ++first_alone) {
+    while (first_alone < next) {
+      const auto rest = queries.subspan(first_alone, next - first_alone);
+      const std::size_t count = fetches_ahead(tree) ? rest.size() : unlike_neighbours(rest);
+      if (count >= ClosestStream::least) {
+        ClosestStream(tree, rest.first(count), hits.subspan(first_alone, count), counters).run();
+        first_alone += count;
+        continue;
+      }
+      const std::size_t end = first_alone + std::max<std::size_t>(count, 1);
+      for (; first_alone < end; ++first_alone) {
         const RayQuery& query = queries[first_alone];
         hits[first_alone] = closest_hit(tree, query.ray, query.filter, counters);
       }
-      return;
     }
-    ClosestStream(tree, queries.subspan(first_alone, next - first_alone), hits.subspan(first_alone, next - first_alone),
-                  counters)
-        .run();
   };
   while (next < queries.size()) {
     const std::size_t count = PacketRun::length(queries.subspan(next));

@@ -19,8 +19,11 @@ inline bool fetches_ahead(const WideArrays& tree) {
   return tree.fetch_ahead && tree.leaves.size() * sizeof(QuadLeaf) > 8'000'000;
 }
 
-[[gnu::flatten]] inline std::optional<TriangleHit> closest_hit(const WideArrays& tree, const Ray<double>& ray,
-                                                               const HitFilter& filter, TraversalCounters& counters) {
+// Out of line: within the loop over many rays g++ keeps less of a walk in registers, which costs a tenth.
+[[gnu::flatten, gnu::noinline]] inline std::optional<TriangleHit> closest_hit(const WideArrays& tree,
+                                                                              const Ray<double>& ray,
+                                                                              const HitFilter& filter,
+                                                                              TraversalCounters& counters) {
   if (tree.nodes.empty()) return std::nullopt;
   const WideRay wide(ray, tree.origin_m, tree.extent_m);
   if (!wide.usable()) return closest_hit_of_all(tree, ray, filter, counters);

@@ -1,5 +1,5 @@
 #pragma once
-/// Many rays through a wide tree, a dozen of them on their way at any time.
+/// Many rays through a wide tree, several of them on their way at any time.
 ///
 /// A walk of one ray waits: for the memory of a node, and for one answer before it can ask the next question. Here each
 /// ray makes one step, asks for the memory of its next one, and gives way to the others. Rays at nodes and rays at
@@ -25,6 +25,9 @@ inline namespace DCEM_ISA {
 /// Closest hits of many rays.
 class ClosestStream {
  public:
+  /// A stream of fewer is not worth beginning.
+  static constexpr std::size_t least = 16;
+
   ClosestStream(const WideArrays& tree, std::span<const RayQuery> queries, std::span<std::optional<TriangleHit>> hits,
                 TraversalCounters& counters)
       : tree_(tree), queries_(queries), hits_(hits), counters_(counters) {}
@@ -40,7 +43,7 @@ class ClosestStream {
 
  private:
   /// More hide no more waiting, and push each other out of the nearest cache.
-  static constexpr std::uint32_t slot_count = 12;
+  static constexpr std::uint32_t slot_count = 8;
 
   /// A ray on its way. No initial values.
   struct Slot {
