@@ -551,3 +551,18 @@ TEST_CASE("corners that name no vertex, are refused") {
   CHECK_THROWS_AS(scene.tree.refit(std::vector<std::uint32_t>{7}, shorter.view(), scene.boxes), std::invalid_argument);
   REQUIRE(scene.tree.validate(scene.boxes) == "");
 }
+
+TEST_CASE("what only touches the border of a region is found in the middle of a scene far from the world's origin") {
+  // The tree counts from the middle: there it widens a box by next to nothing, and the way back to the world must.
+  WideMesh mesh;
+  for (int row = 0; row < 16; ++row) {
+    mesh.add(Vec3(4086, row, 0), Vec3(4095, row, 0), Vec3(4095, row, 1));
+    mesh.add(Vec3(4096, row, 0), Vec3(4106, row, 0), Vec3(4106, row, 1));
+  }
+  const Built scene(mesh);
+  const auto begins_before_middle = [](const Aabb<double>& box) { return box.min.x <= 4096.0; };
+  CHECK(reported([&](auto leaf) { scene.tree.visit(begins_before_middle, leaf); }).size() == mesh.triangles.size());
+  const Built mirrored(mesh.changed([](const Vec3& vertex) { return Vec3(8192.0 - vertex.x, vertex.y, vertex.z); }));
+  const auto ends_beyond_middle = [](const Aabb<double>& box) { return box.max.x >= 4096.0; };
+  CHECK(reported([&](auto leaf) { mirrored.tree.visit(ends_beyond_middle, leaf); }).size() == mesh.triangles.size());
+}

@@ -49,6 +49,15 @@ TEST_CASE("maps are compared where both have a value, on linear power and in dB"
   CHECK(mean(comparison.relative) == doctest::Approx(0.5));
 }
 
+TEST_CASE("a field of two quotes is an empty one, and a quote within quotes is doubled") {
+  const test::TemporaryFolder folder;
+  const auto map = read(folder, "x_m,y_m,p_dbm,kinds\n0,0,\"\",\"a \"\"b\"\", c\"\n\"1\",0,\"-70\",\"\"\n");
+  REQUIRE(map.rows.size() == 2);
+  CHECK(std::isnan(map.rows[0].value_db));
+  CHECK(map.rows[1].x_m == 1.0);
+  CHECK(map.rows[1].value_db == -70.0);
+}
+
 TEST_CASE("the charts of a comparison hold every place, however far apart the maps are") {
   const test::TemporaryFolder folder;
   const auto first = read(folder, "x_m,y_m,p_dbm\n0,0,-60\n1,0,40\n");

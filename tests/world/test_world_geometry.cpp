@@ -90,3 +90,37 @@ TEST_CASE("a cleared world is empty and numbers bodies from 0 again") {
   CHECK(world.facets()[0].body == BodyId(0U));
   CHECK(world.first(BodyId(0U)).vertex == 0);
 }
+
+TEST_CASE("the rim of a sheet is listed once at its facet, an edge of a box once at each of its two") {
+  TriangleMesh quad;
+  add_quad(quad, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, 2), Vec3(0, 0, 2)}, "wall");
+  WorldGeometry world;
+  world.append(build_surface_mesh(quad), std::vector<SurfaceMaterial>(1), at(Vec3(0)));
+  world.append(box(Vec3(1)), std::vector<SurfaceMaterial>(1), at(Vec3(5, 0, 0)));
+  REQUIRE(world.wedges().size() == 4 + 12);
+  std::vector<int> times(world.wedges().size(), 0);
+  for (std::uint32_t facet = 0; facet < world.facets().size(); ++facet) {
+    CHECK(world.wedges_of_facet(FacetId(facet)).size() == 4);
+    for (const WedgeId wedge : world.wedges_of_facet(FacetId(facet))) ++times[wedge.value];
+  }
+  for (std::size_t wedge = 0; wedge < times.size(); ++wedge) CHECK(times[wedge] == (wedge < 4 ? 1 : 2));
+}
+
+TEST_CASE("the edges of a body turn with it: their ends, and the frame from which azimuths count") {
+  WorldGeometry world;
+  const SurfaceMesh mesh = box(Vec3(2, 3, 1));
+  world.append(mesh, std::vector<SurfaceMaterial>(1), at(Vec3(0)));
+  const Pose pose{Vec3(3, -4, 5), 0.7, -0.4, 1.1};
+  world.append(mesh, std::vector<SurfaceMaterial>(1), {true, {pose, {}}});
+  const Mat3 rotation = rotation_matrix(pose);
+  REQUIRE(world.wedges().size() == 2 * mesh.wedges.size());
+  for (std::size_t index = 0; index < mesh.wedges.size(); ++index) {
+    const Wedge &local = mesh.wedges[index], &edge = world.wedges()[mesh.wedges.size() + index].edge;
+    // Coordinates below ten metres: a few of their roundings.
+    CHECK(glm::distance(edge.start_m, pose.position_m + rotation * local.start_m) < 1e-14);
+    CHECK(glm::distance(edge.end_m, pose.position_m + rotation * local.end_m) < 1e-14);
+    CHECK(glm::distance(edge.tangent, rotation * local.tangent) < 1e-15);
+    CHECK(glm::distance(edge.normal, rotation * local.normal) < 1e-15);
+    CHECK(glm::distance(edge_length_m(edge) * edge_direction(edge), edge.end_m - edge.start_m) < 1e-14);
+  }
+}

@@ -82,6 +82,15 @@ TEST_CASE("where the nodes of a pole differ, it has the mean of their powers") {
   CHECK(table.node_dbi(0, 1) == -3.0);
 }
 
+TEST_CASE("the pole straight down has one gain as well as that straight up") {
+  const PatternTable table(2, 3, {-3.0, -3.0, 1.0, 2.0, 0.0, 10.0});
+  CHECK(table.node_dbi(0, 2) == doctest::Approx(7.403626894942439).epsilon(1e-14));
+  CHECK(table.node_dbi(1, 2) == table.node_dbi(0, 2));
+  CHECK(table.gain_dbi(0.4, pi) == table.gain_dbi(-2.0, pi));
+  CHECK(table.node_dbi(0, 1) == 1.0);  // between the poles each node keeps its own
+  CHECK(table.node_dbi(1, 1) == 2.0);
+}
+
 TEST_CASE("tables that do not cover the sphere, and gains that are none, are refused") {
   const double infinity = std::numeric_limits<double>::infinity();
   CHECK_THROWS_AS(PatternTable(0, 2, {}), std::invalid_argument);

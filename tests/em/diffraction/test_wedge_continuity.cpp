@@ -304,3 +304,40 @@ TEST_CASE("lit from either side: the mirrored wedge gives the mirrored field") {
         CHECK(std::sqrt(norm_squared(first)) > 1e-4);
       }
 }
+
+TEST_CASE("holm: what meets both faces is reflected by the face towards the source first, at oblique incidence, too") {
+  // φ ≥ φ': face 0 stands on the right of the product, which belongs to D1; otherwise face n does, and it is D2's.
+  const FacedWedge wedge{1.5, half_space({5.24, -0.39}), half_space({15.0, -6.0})};
+  for (const bool forward : {true, false}) {
+    const WedgeAngles angles{1.5, forward ? 0.7 : 3.1, forward ? 3.1 : 0.7, 0.9};
+    const auto reflection = [&](WedgeFace face) {
+      const FaceModel& surface = face == WedgeFace::zero ? wedge.face_0 : wedge.face_n;
+      return face_reflection_matrix(angles, face, LossyWedge::holm_reciprocal,
+                                    [&](double cosine) { return surface(cosine).reflection; });
+    };
+    const ComplexMatrix2 g_0 = reflection(WedgeFace::zero), g_n = reflection(WedgeFace::n);
+    const ComplexMatrix2 expected = forward ? g_n * g_0 : g_0 * g_n;
+    const ComplexMatrix2 other_order = forward ? g_0 * g_n : g_n * g_0;
+    const WedgeMatrices matrices = wedge_matrices(
+        angles, [&](double cosine) { return wedge.face_0(cosine).reflection; },
+        [&](double cosine) { return wedge.face_n(cosine).reflection; }, LossyWedge::holm_reciprocal);
+    const ComplexMatrix2& twice = forward ? matrices.incident_plus : matrices.incident_minus;
+    CHECK(std::sqrt(norm_squared(twice + expected)) <= 1e-15);  // the same products, of numbers up to 1
+    CHECK(std::sqrt(norm_squared(twice + other_order)) > 1e-3);
+  }
+}
+
+TEST_CASE("luebbers84: with the source halfway between the faces one of them, face 0, takes its azimuth") {
+  // sin β0 = 1: the cosine of incidence is the sine of the azimuth that a face takes.
+  const WedgeAngles angles{1.5, 0.75 * pi, 1.1 * pi, 0.5 * pi};
+  const auto cosine_at = [&](WedgeFace face) {
+    double asked = 0.0;
+    face_reflection_matrix(angles, face, LossyWedge::luebbers84, [&](double cosine) {
+      asked = cosine;
+      return perfect_conductor_reflection();
+    });
+    return asked;
+  };
+  CHECK(cosine_at(WedgeFace::zero) == doctest::Approx(std::sin(0.75 * pi)).epsilon(1e-14));
+  CHECK(cosine_at(WedgeFace::n) == doctest::Approx(std::sin(pi - (1.5 - 1.1) * pi)).epsilon(1e-14));
+}

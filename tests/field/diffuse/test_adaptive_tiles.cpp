@@ -381,3 +381,30 @@ TEST_CASE(
     CHECK(std::abs(tiles.total() - square_solid_angle(1000.0, eye_m)) <= 0.005 * tiles.total());
   }
 }
+
+TEST_CASE("adaptive tiles: a triangle with equal edges is cut in the same way however it is turned") {
+  // Turned corners are rounded, and so one of the equal edges may come out longer by a unit of the last place.
+  const TriangleCorners corners_m{Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+  const auto cut = [&](const Mat3& rotation) {
+    Field flat = field([](const Vec3&) { return 1.0; }, 1.0);
+    AdaptiveTiles<Field> tiles(to(1e9, 100, 1.3), flat);  // no more than is halved unseen: two cuts leave 1.23 m
+    tiles.add({rotation * corners_m[0], rotation * corners_m[1], rotation * corners_m[2]}, 0);
+    tiles.refine();
+    std::map<std::uint64_t, Vec3> centroids_m;
+    for (const Tile& tile : tiles.tiles()) centroids_m.emplace(tile.place, tile.centroid_m());
+    return centroids_m;
+  };
+  const auto straight_m = cut(Mat3(1.0));
+  REQUIRE(straight_m.size() == 7);
+  CHECK(glm::distance(straight_m.at(2), Vec3(1.5, 0.5, 1.0) / 3.0) < 1e-15);  // of the first edge's first half
+  for (int turn = 1; turn <= 20; ++turn) {
+    const double angle_rad = 0.31 * turn, c = std::cos(angle_rad), s = std::sin(angle_rad);
+    const Mat3 rotation = Mat3(c, s, 0, -s, c, 0, 0, 0, 1) * Mat3(1, 0, 0, 0, c, s, 0, -s, c);
+    const auto turned_m = cut(rotation);
+    REQUIRE(turned_m.size() == straight_m.size());
+    for (const auto& [place, centroid_m] : straight_m) {
+      REQUIRE(turned_m.contains(place));
+      CHECK(glm::distance(turned_m.at(place), rotation * centroid_m) < 1e-14);  // lengths of 1: some roundings
+    }
+  }
+}

@@ -752,3 +752,31 @@ TEST_CASE("the edges of the small scenes are those of an independent script, and
   check_edges({"scenes/simple_street_canyon.obj", 72, 72, 4, 2231.782, 2231.782, 615.0622, rounding_m});
   check_edges({"scenes/simple_street_canyon_with_cars.obj", 216, 216, 4, 2489.45039, 2489.45039, 615.0622, rounding_m});
 }
+
+TEST_CASE("the rim of a sheet that touches itself at a point ends there: no free edge goes on across it") {
+  // A frame around a hole, whose upper bar has a point that stands on the lower bar at (2, 1).
+  TriangleMesh mesh;
+  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    add_quad(mesh, {a, b, c, d}, "x");
+  };
+  add(Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 1, 0), Vec3(0, 1, 0));
+  add(Vec3(2, 0, 0), Vec3(4, 0, 0), Vec3(4, 1, 0), Vec3(2, 1, 0));
+  add(Vec3(4, 0, 0), Vec3(5, 0, 0), Vec3(5, 1, 0), Vec3(4, 1, 0));
+  add(Vec3(4, 1, 0), Vec3(5, 1, 0), Vec3(5, 2, 0), Vec3(4, 2, 0));
+  add(Vec3(4, 2, 0), Vec3(5, 2, 0), Vec3(5, 3, 0), Vec3(4, 3, 0));
+  add(Vec3(3, 2, 0), Vec3(4, 2, 0), Vec3(4, 3, 0), Vec3(3, 3, 0));
+  add(Vec3(1, 2, 0), Vec3(3, 2, 0), Vec3(3, 3, 0), Vec3(1, 3, 0));
+  const auto first = static_cast<std::uint32_t>(mesh.vertices_m.size());
+  mesh.vertices_m.insert(mesh.vertices_m.end(), {Vec3(2, 1, 0), Vec3(3, 2, 0), Vec3(1, 2, 0)});
+  mesh.triangles.push_back({{first, first + 1, first + 2}, 0});
+  const SurfaceMesh surface = build_surface_mesh(mesh);
+  REQUIRE(surface.facets.size() == 1);
+  int ends = 0;
+  for (const Wedge& wedge : surface.wedges) {
+    const bool holds_point = distance_to_segment_m(Vec3(2, 1, 0), wedge.start_m, wedge.end_m) < 1e-9;
+    const bool ends_there = wedge.start_m == Vec3(2, 1, 0) || wedge.end_m == Vec3(2, 1, 0);
+    CHECK(holds_point == ends_there);
+    ends += ends_there ? 1 : 0;
+  }
+  CHECK(ends == 4);
+}

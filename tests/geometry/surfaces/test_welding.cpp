@@ -58,6 +58,13 @@ TEST_CASE("within the tolerance is one vertex, beyond it two") {
   }
 }
 
+TEST_CASE("vertices exactly as far apart as the tolerance are one vertex") {
+  // Sums of powers of two: the distances are exact.
+  for (const Vec3& along : {Vec3(0.125, 0, 0), Vec3(0, -0.125, 0), Vec3(0, 0, 0.125)}) {
+    CHECK(weld({Vec3(1, -2, 3), Vec3(1, -2, 3) + along}, 0.125).vertices_m.size() == 1);
+  }
+}
+
 TEST_CASE("a chain of close vertices is one vertex, its lexicographically smallest") {
   std::vector<Vec3> chain;
   for (int link = 0; link < 1000; ++link) chain.emplace_back(1.0 - 0.9e-4 * link, 5.0, -2.0);

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <vector>
@@ -136,6 +137,14 @@ TEST_CASE("beams discard what no ray can reach") {
   CHECK(visited.sequences.count(Sequence{near}) == 1);
   CHECK(visited.sequences.count(Sequence{near, under}) == 0);
   CHECK(visited.sequences.count(Sequence{under, near}) == 1);  // between the two there is room for it
+}
+
+TEST_CASE("no mirror follows itself: what leaves a plane does not come back to it") {
+  Draw draw(8);
+  TracedScene<> traced(scene_of(random_room(draw)));
+  for (const Sequence& sequence : visit_all(traced.scene, traced.end(Vec3(3, 2, 1)), 3).sequences) {
+    CHECK(std::adjacent_find(sequence.begin(), sequence.end()) == sequence.end());
+  }
 }
 
 TEST_CASE("order 0 is the direct path alone") {

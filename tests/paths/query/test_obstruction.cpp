@@ -36,6 +36,22 @@ TEST_CASE("inside a box is obstructed, outside, above and below it is not") {
   CHECK(inside > 400);
 }
 
+TEST_CASE("what stands without a floor is solid down to its foot, and not below") {
+  TriangleMesh house = make_box(Vec3(4, 2, 1.5), "opaque");
+  house.triangles.erase(house.triangles.begin(), house.triangles.begin() + 2);
+  for (const double pitch_rad : {0.0, 0.3}) {  // the foot is where the body's own axes say
+    Scene scene = scene_of_materials();
+    const Pose pose{Vec3(10, 5, 20), 0.7, pitch_rad, 0};
+    scene.add_object("house", house, LinearMotion{pose, Vec3(0.0), 0});
+    TracedScene<> traced(std::move(scene));
+    const auto at = [&](double height_m) { return pose.position_m + rotation_matrix(pose) * Vec3(0.3, 0.2, height_m); };
+    CHECK(obstructed(traced, {}, at(0.75)));
+    CHECK(obstructed(traced, {}, at(0.001)));
+    CHECK_FALSE(obstructed(traced, {}, at(-0.001)));
+    CHECK_FALSE(obstructed(traced, {}, at(-0.5)));
+  }
+}
+
 TEST_CASE("on a surface is obstructed, on open sheets too; beside it is not") {
   TriangleMesh mesh;
   add_sheet_across_x(mesh, 0.0, 5.0, "glass");

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "tests/paths/small_scenes.hpp"
@@ -88,6 +89,19 @@ TEST_CASE("coplanar sheets at one point count once, with the material whose name
   CHECK(follow(apart, Vec3(0, 1, 0.5), Vec3(3, 1, 0.5), 2).sheets == Names{"glass", "alpha"});
 }
 
+TEST_CASE("a stack of sheets, each within the tolerance of the one before, counts once, however thick it is") {
+  TracedScene<> traced(scene_of(sheets_across_x({{1, "glass"}, {1.00006, "wall"}, {1.00012, "alpha"}})));
+  CHECK(follow(traced, Vec3(0, 1, 0.5), Vec3(3, 1, 0.5), 3).sheets == Names{"alpha"});
+  CHECK(follow(traced, Vec3(3, 1, 0.5), Vec3(0, 1, 0.5), 3).sheets == Names{"alpha"});
+}
+
+TEST_CASE("whether two sheets are one place is measured across them, not along the leg") {
+  // Half a tolerance apart across, 2 mm along this leg.
+  TracedScene<> traced(scene_of(sheets_across_x({{1, "glass"}, {1.00005, "alpha"}})));
+  CHECK(follow(traced, Vec3(0.9, -4, 0.5), Vec3(1.1, 4, 0.7), 2).sheets == Names{"alpha"});
+  CHECK(follow(traced, Vec3(1.1, 4, 0.7), Vec3(0.9, -4, 0.5), 2).sheets == Names{"alpha"});
+}
+
 TEST_CASE("a hard facet in the plane of a sheet blocks, whatever its name") {
   TracedScene<> traced(scene_of(sheets_across_x({{1, "alpha"}, {1, "opaque"}})));
   CHECK_FALSE(follow(traced, Vec3(0, 1, 0.5), Vec3(3, 1, 0.5), 5).free);
@@ -122,6 +136,24 @@ TEST_CASE("a leg ignores the facet it starts or ends on and its coplanar duplica
   const LegEnd mounted{{&own, 1}, nullptr};
   CHECK(follow(traced, on_m, before_m, 0, mounted).free);
   CHECK_FALSE(follow(traced, on_m, between_m, 0, mounted).free);
+}
+
+TEST_CASE("a leg from the mean plane of an uneven facet is not blocked by the facet's own triangles") {
+  // One corner is lifted by 0.9 mm: the triangles stray from the mean plane by more than the weld tolerance.
+  TriangleMesh mesh;
+  add_quad(mesh, {Vec3(-5, -5, 0), Vec3(5, -5, 0), Vec3(5, 5, 0), Vec3(-5, 5, 9e-4)}, "opaque");
+  TracedScene<> traced(scene_of(mesh));
+  REQUIRE(traced.scene.facets().size() == 1);
+  const std::array<FacetId, 1> facets{FacetId(0U)};
+  const Plane& plane = traced.scene.facet(facets[0]).plane;
+  for (double x = -4.75; x < 5.0; x += 0.5) {
+    for (double y = -4.75; y < 5.0; y += 0.5) {
+      const Vec3 foot_m = Vec3(x, y, 0) - signed_distance_m(plane, Vec3(x, y, 0)) * plane.normal;
+      for (const double side_m : {-3.0, 3.0}) {
+        CHECK(follow(traced, foot_m, foot_m + side_m * plane.normal, 0, {facets, {&plane, nullptr}}).free);
+      }
+    }
+  }
 }
 
 TEST_CASE("a wall one centimetre from the point of reflection blocks") {

@@ -289,6 +289,19 @@ TEST_CASE("a place at or beyond the end of an edge is none") {
   CHECK_FALSE(on(-1, 0.999));
 }
 
+TEST_CASE("within the guard of either end of an edge there is no place, beyond it there is one") {
+  const std::vector<EdgeLine> lines{{Vec3(0), Vec3(0, 0, 1), 1.0}};
+  for (const bool at_end : {false, true}) {
+    const auto has_place = [&](double from_end_m) {
+      const double height_m = at_end ? 1.0 - from_end_m : from_end_m;
+      EdgePlaces places_m{};
+      return diffraction_places(Vec3(-2, 0, height_m), lines, Vec3(1, 1, height_m), places_m);
+    };
+    CHECK_FALSE(has_place(0.5 * in_plane_guard_m));  // the rounding of the height is a millionth of the guard
+    CHECK(has_place(2.0 * in_plane_guard_m));
+  }
+}
+
 TEST_CASE("nothing to diffract gives no places and no NaN") {
   const double none = std::numeric_limits<double>::quiet_NaN();
   const EdgeLine upright = edge_between(Vec3(0, 0, -10), Vec3(0, 0, 10));

@@ -264,6 +264,18 @@ TEST_CASE("a link that is missing or is there without its devices is a fault") {
   }
 }
 
+TEST_CASE("links of two receivers in each other's place are a fault: results are read in the order of the devices") {
+  for (const Discovery discovery : both_discoveries) {
+    const auto swap_two = [](FrameResult& result) {
+      REQUIRE(result.links.at(0).transmitter == result.links.at(1).transmitter);
+      std::swap(result.links[0], result.links[1]);
+    };
+    const VerificationReport report = falsified(discovery, swap_two);
+    CHECK(report.frames_with_other_links == 1);
+    CHECK_FALSE(report.passed());
+  }
+}
+
 TEST_CASE("paths that were not found are no fault of sampled discovery: they lower the recall") {
   const VerificationReport report = falsified(Discovery::sampled, [](FrameResult& result) {
     for (LinkResult& link : result.links) link.paths.clear();

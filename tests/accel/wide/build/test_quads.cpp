@@ -161,3 +161,22 @@ TEST_CASE("an object is paired within itself only") {
   CHECK(quads.size() == 2);
   check_promises(mesh, quads, 1e-3);
 }
+
+TEST_CASE("a ray that is steep to one half of a pair goes through the other half the same way, by 1e-3 at least") {
+  for (const double bend_rad : {1e-5, 1e-4, 1e-3, 1e-2, 0.1}) {
+    TrianglePlane level, bent;
+    level.normal = Vec3(0, 0, 1);
+    bent.normal = Vec3(0, -std::sin(bend_rad), std::cos(bend_rad));
+    const Vec3 difference = bent.normal - level.normal;
+    level.least_slope_squared = TrianglePlane::least_slope_squared_of(glm::dot(difference, difference));
+    const double least = std::sqrt(static_cast<double>(level.least_slope_squared));
+    for (const double slope : {-1.0001 * least, 1.0001 * least}) {
+      for (const double across : {-1.0, 1.0}) {  // down the bend and up
+        const Ray<double> ray{Vec3(0), Vec3(0, across * std::sqrt(1.0 - slope * slope), slope)};
+        REQUIRE(level.is_steep(ray));
+        CHECK(bent.slope(ray) * slope > 0.0);
+        CHECK(std::abs(bent.slope(ray)) > 1e-3);
+      }
+    }
+  }
+}
