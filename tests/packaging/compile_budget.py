@@ -19,10 +19,10 @@ REFERENCE = "".join(f"#include <{name}>\n" for name in (
 # References, and megabytes, per header; the first entry whose beginning fits. The whole simulator as a template, trees and
 # fields are for those who need them; what most programs include must be light.
 BUDGETS = [
-    ("dcem/dcem.hpp", 2.2, 330), ("dcem/sim/simulator.hpp", 2.2, 330),
+    ("dcem/dcem.hpp", 2.6, 330), ("dcem/sim/simulator.hpp", 2.6, 330),
     ("dcem/sim/basic_simulator.hpp", 7.0, 700), ("dcem/sim/verify/basic_verifier.hpp", 7.5, 750),
-    ("dcem/sim/", 2.2, 330), ("dcem/accel/", 3.5, 450), ("dcem/paths/", 4.5, 450), ("dcem/field/", 5.0, 500),
-    ("dcem/io/", 3.0, 400), ("dcem/", 2.2, 330),
+    ("dcem/sim/", 2.6, 330), ("dcem/accel/", 3.5, 450), ("dcem/paths/", 4.5, 450), ("dcem/field/", 5.0, 500),
+    ("dcem/io/", 3.5, 400), ("dcem/", 2.6, 330),
 ]
 
 
@@ -69,12 +69,13 @@ def main(arguments):
         text = f'#include "{header}"\n'
         seconds, megabytes = compile_once(compiler, root, text)
         most, most_mb = budget_of(header)
-        if seconds > most * reference_s:  # the machine may have been busy: once more
-            seconds = min(seconds, best_of(2, compiler, root, text)[0])
-        rows.append((seconds / reference_s, megabytes, header))
-        if seconds > most * reference_s or megabytes > most_mb:
-            over.append(f"{header}: {seconds / reference_s:.2f} references and {megabytes:.0f} MB; its budget is "
-                        f"{most} and {most_mb} MB")
+        cost = seconds / reference_s
+        if cost > most:  # the machine may be slower than it was at the beginning: both once more
+            now_s = best_of(3, compiler, root, REFERENCE)[0]
+            cost = min(cost, min(seconds, best_of(2, compiler, root, text)[0]) / now_s)
+        rows.append((cost, megabytes, header))
+        if cost > most or megabytes > most_mb:
+            over.append(f"{header}: {cost:.2f} references and {megabytes:.0f} MB; its budget is {most} and {most_mb} MB")
     if table:
         for cost, megabytes, header in sorted(rows, reverse=True):
             print(f"{cost:6.2f} {megabytes:6.0f} MB  {header}")
