@@ -7,6 +7,7 @@
 /// processors can: every processor then computes the same bits.
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -246,6 +247,21 @@ inline constexpr bool compares_integers = false;
   });
   return std::bit_cast<Mask8>(one.lanes);
 }
+/// Rounded as everywhere: each lane has the bits of std::sqrt.
+[[gnu::always_inline]] inline Float8 square_root(Float8 of) {
+#if defined(__AVX__)
+  of.lanes.low = __builtin_ia32_sqrtps256(of.lanes.low);
+#elif defined(__SSE2__)
+  of.lanes.low = __builtin_ia32_sqrtps(of.lanes.low);
+  of.lanes.high = __builtin_ia32_sqrtps(of.lanes.high);
+#else
+  of.lanes.each([](auto& part) {
+    for (std::size_t lane = 0; lane < detail::simd_part_lanes; ++lane) part[lane] = std::sqrt(part[lane]);
+  });
+#endif
+  return of;
+}
+
 }  // namespace simd
 
 }  // namespace DCEM_ISA

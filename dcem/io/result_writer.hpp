@@ -39,6 +39,7 @@ struct ResultFacts {
   bool diffuse_paths = false;  ///< and its tiles are listed among the paths
   std::size_t frames = 1;
   std::size_t first_frame = 0;  ///< `FrameResult::index` of the first of them
+  int exact_interactions = 0;   ///< up to which all paths are found, where discovery is sampled beyond them
 };
 
 /// The links that `output.plots` counts: transmitters times receivers, without those of a device to itself.

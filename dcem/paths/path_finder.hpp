@@ -15,12 +15,13 @@ namespace dcem {
 
 /// The paths from every transmitter to one receiver. An absent transmitter has none. With a `cache`, the sequences that
 /// it remembers are tried first, and afterwards it holds those of the paths found. `reached` says which edges each
-/// transmitter reaches, and is needed where diffractions are wanted.
+/// transmitter reaches, and is needed where diffractions are wanted; `halves` are needed where the settings say so.
 template <typename Index>
 std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSearchSettings& settings,
                                   const LinkEnd& receiver, const SphereKey& key,
                                   std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters,
-                                  PathCache* cache = nullptr, std::span<const ReachedEdges> reached = {});
+                                  PathCache* cache = nullptr, std::span<const ReachedEdges> reached = {},
+                                  const LinkHalves* halves = nullptr);
 
 /// The edges that one end reaches: by exhaustive search every one, in place of what `reach` holds; otherwise those that
 /// `rays` rays come by, in addition to it.
@@ -66,17 +67,20 @@ template <typename Index>
 std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSearchSettings& settings,
                                   const LinkEnd& receiver, const SphereKey& key,
                                   std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters,
-                                  PathCache* cache, std::span<const ReachedEdges> reached) {
+                                  PathCache* cache, std::span<const ReachedEdges> reached, const LinkHalves* halves) {
   DCEM_ASSERT(settings.max_diffractions == 0 || reached.size() == transmitters.size());
+  DCEM_ASSERT(!settings.halves || halves != nullptr);
   detail::PathSearch<Index> search(tracer, settings, receiver, transmitters, counters);
   const bool steady = cache != nullptr && detail::remembers_all(*cache, transmitters);
   EdgeReach seen_now;
   EdgeReach& seen = cache != nullptr ? cache->reach() : seen_now;
-  EdgeReach* const noted = settings.max_diffractions > 0 ? &seen : nullptr;
+  const bool joins_edges = settings.max_diffractions > 0 && (settings.exhaustive || needs_rays(settings));
+  EdgeReach* const noted = joins_edges ? &seen : nullptr;
   if (cache != nullptr) search.revalidate(*cache);
+  if (settings.halves) search.join_halves(*halves);
   if (settings.exhaustive) {
     search.search_all(noted);
-  } else {
+  } else if (needs_rays(settings)) {
     search.shoot(key, steady ? settings.rays_steady : settings.rays, cache != nullptr ? &cache->proposals() : nullptr,
                  noted);
   }

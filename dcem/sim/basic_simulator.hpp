@@ -23,6 +23,7 @@
 #include "dcem/paths/path_finder.hpp"
 #include "dcem/paths/query/obstruction.hpp"
 #include "dcem/scene/scene.hpp"
+#include "dcem/sim/detail/link_work.hpp"
 #include "dcem/sim/detail/material_table_of.hpp"
 #include "dcem/sim/discovery.hpp"
 #include "dcem/sim/frame_result.hpp"
@@ -45,8 +46,8 @@ class BasicSimulator {
   const SimulationSettings& settings() const { return settings_; }
   const Index& index() const { return index_; }
   const Surface& surface() const { return surface_; }
-  Discovery discovery() const { return discovery_; }  ///< exact or sampled: what is really done
-  CacheMode cache() const { return cache_; }          ///< off or seed: what is really remembered
+  Discovery discovery() const { return plan_.discovery; }  ///< exact or sampled: what is really done
+  CacheMode cache() const { return cache_; }               ///< off or seed: what is really remembered
 
   /// Moves the scene to a frame and solves all links, starting from what is remembered of the frame before.
   FrameResult advance(const Frame& frame);
@@ -82,6 +83,8 @@ class BasicSimulator {
     std::vector<RadioEnd> radio;
     std::vector<ReachedEdges> reached;  ///< the edges within reach; empty lists where no diffraction is wanted
     std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
+    std::span<const KeptHalf> halves;   ///< none where the plan has none
+    std::vector<KeptHalf> own_halves;   ///< holds them where nothing is kept
     std::vector<char> embedded;         ///< edges that no path can use; empty where nobody has looked
     WorkCounters work;                  ///< what finding them took
   };
@@ -109,8 +112,15 @@ class BasicSimulator {
                    std::span<PathCache> caches) const;
   /// With `reach`, which has an entry per transmitter, edges that were within reach in frames before count, too.
   /// `embedded` as in `EdgeRules`.
-  TransmitterEnds transmitter_ends(std::span<EdgeReach> reach, std::vector<char> embedded = {}) const;
+  /// With `halves`, which has an entry per transmitter too, what is kept of them is used.
+  TransmitterEnds transmitter_ends(std::span<EdgeReach> reach, std::span<KeptHalf> halves,
+                                   std::vector<char> embedded = {}) const;
   void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
+  void find_transmitter_halves(TransmitterEnds& ends, std::span<KeptHalf> halves) const;
+  /// Room for the halves of receivers, one per thread; empty where the plan has none.
+  std::vector<PathHalf> rooms_for_halves() const {
+    return std::vector<PathHalf>(plan_.halves ? std::max(1U, pool_->size()) : 0U);
+  }
   Evaluator evaluator() const {
     const PropagationSettings& propagation = settings_.propagation;
     return Evaluator(scene_, surface_, propagation.path_loss, settings_.frequency_hz,
@@ -121,7 +131,7 @@ class BasicSimulator {
                                                       std::vector<std::optional<LinkEnd>>& others) const;
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
   Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
-                        PathCache* cache) const;
+                        PathCache* cache, PathHalf* room) const;
   /// What rough surfaces bring to one receiver, by transmitter; empty entries where it is not asked for.
   std::vector<DiffusePower> diffuse_powers(const std::string& receiver, const LinkEnd& end, const RadioEnd& to,
                                            const TransmitterEnds& transmitters,
@@ -138,11 +148,13 @@ class BasicSimulator {
   Surface surface_;
   Index index_;
   MediumLoss medium_;
-  Discovery discovery_;
+  SearchPlan plan_;
   CacheMode cache_;
-  std::vector<std::uint32_t> moved_;  ///< triangles that the index has still to hear of
-  std::vector<PathCache> caches_;     ///< one per receiver of the scene; none where the cache is off
-  std::vector<EdgeReach> reach_;      ///< one per transmitter; none where the cache is off
+  std::vector<std::uint32_t> moved_;       ///< triangles that the index has still to hear of
+  std::vector<PathCache> caches_;          ///< one per receiver of the scene; none where the cache is off
+  std::vector<EdgeReach> reach_;           ///< one per transmitter; none where the cache is off
+  std::optional<FacetOutlines> outlines_;  ///< where the plan has halves
+  std::vector<KeptHalf> halves_;           ///< one per transmitter, where the plan has them
   Frame frame_;
   std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
 };
@@ -159,8 +171,8 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   validate(settings_);
   check_surface_model();
   medium_ = MediumLoss(settings_.propagation.atmosphere, scene_.materials(), settings_.frequency_hz);
-  discovery_ = resolve_discovery(settings_.propagation, scene_);
-  cache_ = resolve_cache(settings_.propagation, discovery_);
+  plan_ = plan_search(settings_.propagation, scene_);
+  cache_ = resolve_cache(settings_.propagation, plan_.discovery);
   if (cache_ == CacheMode::seed) {
     caches_.resize(scene_.receivers().size());
     reach_.resize(scene_.transmitters().size());
@@ -168,6 +180,10 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   frame_ = scene_.frame_at(0.0);
   scene_.apply(frame_);
   index_.build(scene_.triangle_view(), scene_.triangle_boxes(), scene_.first_triangles());
+  if (!plan_.halves) return;
+  outlines_.emplace(scene_);
+  const std::size_t transmitters = scene_.transmitters().size();
+  halves_.assign(transmitters, KeptHalf(detail::map_pixels_for(transmitters)));
 }
 
 /// What a model of the caller's own cannot do would otherwise be left out in silence.

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "dcem/paths/discover/path_cache.hpp"
+#include "dcem/paths/halves/half_joiner.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/settings.hpp"
 
@@ -21,16 +23,46 @@ inline std::size_t automatic_exact_facet_limit(const PropagationSettings& propag
   return std::min(by_reflections, by_diffractions);
 }
 
-/// Exact or sampled: what a simulation with these settings really does. Throws std::invalid_argument where exact
-/// discovery is asked for by name in a scene that is too large for it: what was asked for is never weakened in silence.
-inline Discovery resolve_discovery(const PropagationSettings& propagation, const Scene& scene) {
+/// How a scene is searched.
+struct SearchPlan {
+  Discovery discovery;      ///< exact or sampled: whether every path within the declared orders is found
+  bool exhaustive = false;  ///< all sequences are tried: small scenes
+  bool halves = false;      ///< sequences of two mirrors and edges, one edge at most, are all found from halves
+};
+
+/// What a simulation with these settings really does: small scenes are searched exhaustively; in others short sequences
+/// are found from halves, and rays look for longer ones. Throws std::invalid_argument where exact discovery is asked
+/// for by name and cannot be had: what was asked for is never weakened in silence.
+inline SearchPlan plan_search(const PropagationSettings& propagation, const Scene& scene) {
+  if (propagation.discovery == Discovery::sampled) return {Discovery::sampled};
   const std::size_t facets = scene.surface_count();
-  if (propagation.discovery == Discovery::exact && facets > exact_discovery_facet_limit) {
-    throw std::invalid_argument("discovery exact: not in this version for " + std::to_string(facets) +
-                                " facets; expected at most " + std::to_string(exact_discovery_facet_limit));
+  if (facets <= automatic_exact_facet_limit(propagation)) return {Discovery::exact, true};
+  if (HalfJoiner::covers(diffraction_order(propagation), interaction_order(propagation))) {
+    return {Discovery::exact, false, true};
   }
-  if (propagation.discovery != Discovery::automatic) return propagation.discovery;
-  return facets <= automatic_exact_facet_limit(propagation) ? Discovery::exact : Discovery::sampled;
+  if (propagation.discovery == Discovery::automatic) return {Discovery::sampled, false, true};
+  if (facets <= exact_discovery_facet_limit) return {Discovery::exact, true};
+  throw std::invalid_argument("discovery exact: not in this version for " + std::to_string(facets) +
+                              " facets, except for at most two interactions, at most one of them a diffraction; "
+                              "expected max_interactions 2 and max_diffractions 1, or at most " +
+                              std::to_string(exact_discovery_facet_limit) + " facets");
+}
+
+/// Exact or sampled: whether a simulation with these settings finds every path. Throws as `plan_search` does.
+inline Discovery resolve_discovery(const PropagationSettings& propagation, const Scene& scene) {
+  return plan_search(propagation, scene).discovery;
+}
+
+/// Reflections and diffractions together up to which all paths are found, one diffraction among them: `done` is what
+/// `resolve_discovery` has said.
+inline int exactly_searched_interactions(const PropagationSettings& propagation, Discovery done) {
+  if (done == Discovery::exact) return interaction_order(propagation);
+  return propagation.discovery == Discovery::sampled ? 0 : std::min(2, interaction_order(propagation));
+}
+
+/// Whether all paths of a path's kind are found, not only those that rays come by. `exact_interactions` as above.
+inline bool is_found_exactly(const Path& path, int exact_interactions, Discovery done) {
+  return done == Discovery::exact || (exact_interactions > 0 && HalfJoiner::covers(sequence_of(path)));
 }
 
 /// Off or seed: what a simulation that discovers in this way really remembers. Throws std::invalid_argument where

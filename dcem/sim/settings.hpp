@@ -16,7 +16,7 @@ namespace dcem {
 
 /// How paths are found.
 enum class Discovery {
-  automatic,  ///< exact where the scene is small enough for it, else sampled; the result says which
+  automatic,  ///< exact as far as that is offered; beyond, rays look for longer paths, and the result says so
   exact,      ///< every valid path within the declared orders
   sampled     ///< rays shot from the receiver propose sequences; completeness is not promised
 };
@@ -34,7 +34,7 @@ enum class ArrayChannel {
   exact        ///< each pair of elements has a path of its own
 };
 
-/// Exact discovery tries sequences of facets; this version offers it up to this many facets.
+/// Exact discovery beyond two interactions tries sequences of facets; this version offers it up to this many facets.
 inline constexpr std::size_t exact_discovery_facet_limit = 1000;
 
 /// Where around an edge diffracted paths are reported.

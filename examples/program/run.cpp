@@ -5,6 +5,7 @@
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/result_writer.hpp"
+#include "dcem/sim/discovery.hpp"
 #include "job.hpp"
 
 namespace dcem::program {
@@ -37,9 +38,13 @@ void solve_frames(Simulator& simulator, const Job& job, const ScenarioOptions& o
 io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
                              const ScenarioOptions& options) {
   const DiffuseSettings& diffuse = simulator.settings().propagation.diffuse;
-  const io::ResultFacts facts{simulator.discovery(), simulator.settings().frequency_hz,
-                              diffuse.enabled,       diffuse.enabled && diffuse.list_paths,
-                              job.frames.count(),    job.frames.first};
+  const io::ResultFacts facts{simulator.discovery(),
+                              simulator.settings().frequency_hz,
+                              diffuse.enabled,
+                              diffuse.enabled && diffuse.list_paths,
+                              job.frames.count(),
+                              job.frames.first,
+                              exactly_searched_interactions(simulator.settings().propagation, simulator.discovery())};
   try {
     return {folder, simulator.scene(), simulator.scene().receivers(), facts, job.scenario.output};
   } catch (const std::invalid_argument& error) {

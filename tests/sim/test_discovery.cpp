@@ -40,7 +40,7 @@ Discovery resolved(Discovery asked, int reflections, std::size_t facets, int dif
 TEST_CASE("left to itself, discovery is exact while the scene is small for its order") {
   for (const int order : {0, 1, 2}) {
     CHECK(resolved(Discovery::automatic, order, 1000) == Discovery::exact);
-    CHECK(resolved(Discovery::automatic, order, 1001) == Discovery::sampled);
+    CHECK(resolved(Discovery::automatic, order, 1001) == Discovery::exact);  // two interactions are, in any scene
   }
   CHECK(resolved(Discovery::automatic, 3, 200) == Discovery::exact);
   CHECK(resolved(Discovery::automatic, 3, 201) == Discovery::sampled);
@@ -50,7 +50,7 @@ TEST_CASE("left to itself, discovery is exact while the scene is small for its o
 
 TEST_CASE("edges make a scene large for exact discovery: each further diffraction sooner") {
   std::size_t most = 1000, before = 1001;
-  for (const int diffractions : {0, 1, 2, 3}) {
+  for (const int diffractions : {1, 2, 3}) {
     while (most > 0 && resolved(Discovery::automatic, 2, most, diffractions) == Discovery::sampled) --most;
     MESSAGE(diffractions << " diffractions: exact up to " << most << " facets");
     CHECK(most >= 10);  // two boxes without a floor
@@ -58,6 +58,27 @@ TEST_CASE("edges make a scene large for exact discovery: each further diffractio
     CHECK(most < before);
     before = most;
   }
+}
+
+TEST_CASE("small scenes are searched exhaustively; in others short paths are found from halves, longer ones by rays") {
+  PropagationSettings propagation;
+  propagation.max_diffractions = 0;
+  const SearchPlan small = plan_search(propagation, scene_with_facets(1000));
+  CHECK((small.exhaustive && !small.halves));
+  SearchPlan large = plan_search(propagation, scene_with_facets(1001));
+  CHECK((!large.exhaustive && large.halves && large.discovery == Discovery::exact));
+  propagation.max_diffractions = 1;
+  large = plan_search(propagation, scene_with_facets(1001));
+  CHECK((!large.exhaustive && large.halves && large.discovery == Discovery::sampled));
+  CHECK(exactly_searched_interactions(propagation, large.discovery) == 2);
+  propagation.max_interactions = 2;
+  CHECK(resolve_discovery(propagation, scene_with_facets(1001)) == Discovery::exact);
+  propagation.max_diffractions = 2;  // two edges are not yet among what halves join
+  CHECK(resolve_discovery(propagation, scene_with_facets(1001)) == Discovery::sampled);
+  propagation.discovery = Discovery::sampled;
+  large = plan_search(propagation, scene_with_facets(1001));
+  CHECK((!large.exhaustive && !large.halves));
+  CHECK(exactly_searched_interactions(propagation, large.discovery) == 0);
 }
 
 TEST_CASE("max_interactions counts when the order is judged") {
@@ -73,7 +94,7 @@ TEST_CASE("what is asked for by name is done, or refused with a reason") {
   CHECK(resolved(Discovery::exact, 3, 500) == Discovery::exact);
   CHECK(resolved(Discovery::exact, 1, 1000) == Discovery::exact);
   try {
-    resolved(Discovery::exact, 1, 1001);
+    resolved(Discovery::exact, 3, 1001);
     FAIL("nothing was refused");
   } catch (const std::invalid_argument& error) {
     CHECK(std::string(error.what()).find("1001") != std::string::npos);

@@ -13,6 +13,8 @@
 #include "dcem/paths/discover/exact_search.hpp"
 #include "dcem/paths/discover/path_cache.hpp"
 #include "dcem/paths/discover/ray_launcher.hpp"
+#include "dcem/paths/halves/half_joiner.hpp"
+#include "dcem/paths/halves/kept_half.hpp"
 #include "dcem/paths/solve/path_solver.hpp"
 
 namespace dcem {
@@ -27,6 +29,26 @@ struct PathSearchSettings {
   int max_diffractions = 0;
   int max_interactions = 10;  ///< reflections and diffractions together
   EdgeRules edges{};          ///< which edges diffract
+  /// Where the search is not exhaustive: the sequences that `HalfJoiner` covers are all found, from halves, and rays
+  /// look for the others alone.
+  bool halves = false;
+};
+
+/// Whether rays have anything to look for.
+inline bool needs_rays(const PathSearchSettings& settings) {
+  return !settings.exhaustive &&
+         !(settings.halves && HalfJoiner::covers(settings.max_diffractions, settings.max_interactions));
+}
+
+inline HalfSettings half_settings(const PathSearchSettings& settings) {
+  return {settings.max_diffractions > 0, settings.max_transmissions == 0, settings.edges};
+}
+
+/// The halves that a search from one receiver joins.
+struct LinkHalves {
+  const FacetOutlines& outlines;
+  std::span<const KeptHalf> transmitters;  ///< by their numbers; those of absent ones are not looked at
+  PathHalf& receiver;                      ///< room for the receiver's own
 };
 
 inline ChainLimits chain_limits(const PathSearchSettings& settings) {
@@ -108,6 +130,30 @@ class PathSearch {
         receiver_, [&](const Sequence& sequence, const std::vector<Vec3>& images_m) { try_all(sequence, images_m); });
   }
 
+  /// Solves every sequence that `HalfJoiner` covers and that may carry a path.
+  void join_halves(const LinkHalves& halves) {
+    const Scene& scene = tracer_.scene();
+    const bool direct_alone = settings_.max_interactions == 0;
+    if (!direct_alone) {
+      halves.receiver.find_scenery(scene, halves.outlines, receiver_, half_settings(settings_));
+      halves.receiver.find_bodies(scene, halves.outlines, receiver_, half_settings(settings_));
+    }
+    HalfJoiner joiner(scene, halves.outlines,
+                      {settings_.max_reflections, settings_.max_diffractions, settings_.max_interactions});
+    for (std::size_t index = 0; index < transmitters_.size(); ++index) {
+      if (!transmitters_[index]) continue;
+      const auto solve = [&](const Sequence& sequence) {
+        ++counters_.sequences_proposed;
+        if (!is_remembered(index, sequence)) keep(index, solver_.solve(*transmitters_[index], receiver_, sequence));
+      };
+      if (direct_alone) {
+        solve({});
+      } else {
+        joiner.for_each_sequence(halves.receiver, halves.transmitters[index].half(), solve);
+      }
+    }
+  }
+
   /// Solves what rays propose in this frame and, with a memory, what they proposed in the frames before.
   void shoot(const SphereKey& key, std::uint32_t rays, ProposalMemory* memory, EdgeReach* reach) {
     if (memory != nullptr) try_again(*memory);
@@ -128,6 +174,7 @@ class PathSearch {
     for (std::size_t index = 0; index < transmitters_.size(); ++index) {
       if (!transmitters_[index]) continue;
       joiner.for_each_chain(own, transmitters[index], [&](const Sequence& sequence) {
+        if (is_joined(sequence)) return;
         ++counters_.sequences_proposed;
         if (!is_remembered(index, sequence)) {
           keep(index, solver_.solve(*transmitters_[index], receiver_, sequence));
@@ -160,12 +207,16 @@ class PathSearch {
 
   /// Solves mirrors for every transmitter for which they were not remembered.
   void try_all(const Sequence& mirrors, const std::vector<Vec3>& images_m) {
+    if (is_joined(mirrors)) return;
     ++counters_.sequences_proposed;
     for (std::size_t index = 0; index < transmitters_.size(); ++index) {
       if (!transmitters_[index] || is_remembered(index, mirrors)) continue;
       keep(index, solver_.solve(*transmitters_[index], receiver_, mirrors, images_m));
     }
   }
+
+  /// Whether halves have proposed a sequence, if it may carry a path at all.
+  bool is_joined(const Sequence& sequence) const { return settings_.halves && HalfJoiner::covers(sequence); }
 
   bool is_remembered(std::size_t transmitter, const Sequence& sequence) const {
     return tried_[transmitter].size() > 0 && tried_[transmitter].contains(sequence);

@@ -20,6 +20,11 @@ inline void add_search_work(const SearchCounters& counters, WorkCounters& work) 
   work.primitives_tested += counters.solver.traversal.primitives_tested;
 }
 
+/// Pixels of the view maps of so many transmitters: 1.5 MB each, less where they are many.
+inline int map_pixels_for(std::size_t transmitters) {
+  return transmitters <= 64 ? PathHalf::default_pixels : transmitters <= 1024 ? PathHalf::default_pixels / 2 : 64;
+}
+
 /// A device in a frame as fields see it.
 inline RadioEnd radio_end(const Device& device, const DeviceState& state) {
   return {state.position_m, state.velocity_mps, device.antenna, state.rotation};

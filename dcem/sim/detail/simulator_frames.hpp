@@ -31,7 +31,7 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   frame_ = frame;
   result.update_time_s = update_watch.seconds();
   const detail::Stopwatch solve_watch;
-  Solved solved = solve_all(scene_.receivers(), transmitter_ends(reach_), caches_);
+  Solved solved = solve_all(scene_.receivers(), transmitter_ends(reach_, halves_), caches_);
   result.links = std::move(solved.links);
   result.work = solved.work;
   result.cache += solved.cache;
@@ -55,6 +55,7 @@ TreeUpdateReport BasicSimulator<Surface, Index>::update_index(const ChangeSet& c
     const auto [first, last] = scene_.triangle_range(body);
     for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
   }
+  if (outlines_) outlines_->update(scene_, changes.moved);
   // Kept where this throws (a box too far away): the index must hear of them in a later frame.
   const TreeUpdateReport report = index_.update(scene_.triangle_view(), scene_.triangle_boxes(), moved_);
   moved_.clear();
@@ -78,7 +79,7 @@ void BasicSimulator<Surface, Index>::forget_replaced(const ChangeSet& changes, C
 
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::transmitter_ends(
-    std::span<EdgeReach> reach, std::vector<char> embedded) const {
+    std::span<EdgeReach> reach, std::span<KeptHalf> halves, std::vector<char> embedded) const {
   TransmitterEnds ends;
   ends.embedded = std::move(embedded);
   for (const Device& device : scene_.transmitters()) {
@@ -88,8 +89,23 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
     ends.radio.push_back(detail::radio_end(device, state));
   }
   ends.reached.resize(ends.link.size());
-  if (diffraction_order(settings_.propagation) > 0) find_transmitter_reach(ends, reach);
+  const PathSearchSettings search = search_settings(ends.embedded);
+  if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
+  if (plan_.halves && search.max_interactions > 0) find_transmitter_halves(ends, halves);
   return ends;
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& ends, std::span<KeptHalf> halves) const {
+  if (halves.empty()) {
+    ends.own_halves.assign(ends.link.size(), KeptHalf(detail::map_pixels_for(ends.link.size())));
+    halves = ends.own_halves;
+  }
+  const HalfSettings settings = half_settings(search_settings(ends.embedded));
+  pool_->for_each(ends.link.size(), [&](std::size_t index, unsigned) {
+    if (ends.link[index]) halves[index].update(scene_, *outlines_, *ends.link[index], settings);
+  });
+  ends.halves = halves;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -115,7 +131,7 @@ void BasicSimulator<Surface, Index>::find_transmitter_reach(TransmitterEnds& end
 template <SurfaceModel Surface, SpatialIndex Index>
 PathSearchSettings BasicSimulator<Surface, Index>::search_settings(std::span<const char> embedded_edges) const {
   const PropagationSettings& propagation = settings_.propagation;
-  return {discovery_ == Discovery::exact,
+  return {plan_.exhaustive,
           reflection_order(propagation),
           propagation.max_transmissions,
           propagation.rays,
@@ -124,7 +140,8 @@ PathSearchSettings BasicSimulator<Surface, Index>::search_settings(std::span<con
           diffraction_order(propagation),
           interaction_order(propagation),
           {degrees_to_radians(propagation.diffraction.min_exterior_angle_deg), propagation.diffraction.free_edges,
-           propagation.diffraction.region == DiffractionRegion::shadow, embedded_edges}};
+           propagation.diffraction.region == DiffractionRegion::shadow, embedded_edges},
+          plan_.halves};
 }
 
 }  // namespace dcem

@@ -11,7 +11,7 @@ namespace dcem {
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const Device> receivers,
                                                               WorkCounters* work) const {
-  Solved solved = solve_all(receivers, transmitter_ends({}), {});
+  Solved solved = solve_all(receivers, transmitter_ends({}, {}), {});
   if (work != nullptr) *work += solved.work;
   return std::move(solved.links);
 }
@@ -20,9 +20,11 @@ template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_all(
     std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches) const {
   std::vector<Solved> by_receiver(receivers.size());
-  pool_->for_each(receivers.size(), [&](std::size_t index, unsigned) {
+  std::vector<PathHalf> rooms = rooms_for_halves();
+  pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
     PathCache* cache = caches.empty() ? nullptr : &caches[index];
-    by_receiver[index] = solve_receiver(receivers[index], index, transmitters, cache);
+    PathHalf* room = rooms.empty() ? nullptr : &rooms[worker];
+    by_receiver[index] = solve_receiver(receivers[index], index, transmitters, cache, room);
   });
   Solved sum;
   sum.work = transmitters.work;
@@ -51,7 +53,8 @@ std::span<const std::optional<LinkEnd>> BasicSimulator<Surface, Index>::ends_bes
 
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_receiver(
-    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, PathCache* cache) const {
+    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, PathCache* cache,
+    PathHalf* room) const {
   const Tracer tracer(scene_, index_);
   const DeviceState state = scene_.device_state(receiver, frame_);
   Solved solved;
@@ -64,8 +67,10 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const PathSearchSettings search = search_settings(transmitters.embedded);
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
-  std::vector<LinkPaths> found =
-      find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached);
+  std::optional<LinkHalves> halves;
+  if (room != nullptr) halves.emplace(LinkHalves{*outlines_, transmitters.halves, *room});
+  std::vector<LinkPaths> found = find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache,
+                                            transmitters.reached, halves ? &*halves : nullptr);
   const Evaluator field = evaluator();
   const RadioEnd to = detail::radio_end(receiver, state);
   std::vector<DiffusePower> diffuse = diffuse_powers(receiver.id, end, to, transmitters, ends, solved.work);
@@ -75,7 +80,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
         solved.links.emplace_back(make_link(std::move(found[transmitter]), std::move(diffuse[transmitter]), transmitter,
                                             {*ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field));
     link.receiver = index;
-    link.complete = search.exhaustive || (search.max_reflections == 0 && search.max_diffractions == 0);
+    link.complete = !needs_rays(search) || search.max_interactions == 0;
     solved.work.paths += link.paths.size();
   }
   detail::add_search_work(counters, solved.work);

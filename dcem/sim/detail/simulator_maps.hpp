@@ -25,7 +25,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverG
   const bool looks_for_embedded = settings_.share_map_work && diffraction_order(settings_.propagation) > 0 &&
                                   grid.size() >= scene_.wedges().size() / 10;
   TransmitterEnds transmitters =
-      transmitter_ends({}, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{});
+      transmitter_ends({}, {}, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{});
   // Maps hold no channel between elements, and their powers are those of one: none is computed.
   for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
   ReceiverGrid single = grid;
@@ -39,14 +39,16 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverG
   }
   const ObstructionTest<Index> obstruction(tracer, index_, transmitters_m);
   std::vector<WorkCounters> spent(grid.rows());
-  pool_->for_each(grid.rows(), [&](std::size_t row, unsigned) {
+  std::vector<PathHalf> rooms = rooms_for_halves();
+  pool_->for_each(grid.rows(), [&](std::size_t row, unsigned worker) {
+    PathHalf* const room = rooms.empty() ? nullptr : &rooms[worker];
     for (std::size_t column = 0; column < grid.columns(); ++column) {
       const std::size_t cell = row * grid.columns() + column;
       const Vec3 position_m = grid_point_m(grid, row, column);
       const bool obstructed = obstruction.obstructed(position_m);
       for (RadioMap& map : maps) map.points[cell] = {position_m, obstructed, {}, {}};
       if (obstructed) continue;
-      const Solved solved = solve_receiver(grid_receiver(single, row, column), cell, transmitters, nullptr);
+      const Solved solved = solve_receiver(grid_receiver(single, row, column), cell, transmitters, nullptr, room);
       for (const LinkResult& link : solved.links) maps[link.transmitter].points[cell] = map_point(link, position_m);
       spent[row] += solved.work;
     }

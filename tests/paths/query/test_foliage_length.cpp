@@ -73,15 +73,15 @@ double inside_m(const Scene& scene, const Vec3& from_m, const Vec3& to_m, const 
 }
 
 /// A half space: points with dot(normal, point) ≤ offset.
-struct HalfSpace {
+struct SolidSide {
   Vec3 normal;
   double offset;
 };
 
 /// The length of a leg within all half spaces (Cyrus and Beck).
-double clipped_m(const std::vector<HalfSpace>& convex, const Vec3& from_m, const Vec3& to_m) {
+double clipped_m(const std::vector<SolidSide>& convex, const Vec3& from_m, const Vec3& to_m) {
   double enter = 0.0, leave = 1.0;
-  for (const HalfSpace& half : convex) {
+  for (const SolidSide& half : convex) {
     const double outside = glm::dot(half.normal, from_m) - half.offset;
     const double slope = glm::dot(half.normal, to_m - from_m);
     if (slope > 0.0) leave = std::min(leave, -outside / slope);
@@ -91,8 +91,8 @@ double clipped_m(const std::vector<HalfSpace>& convex, const Vec3& from_m, const
   return std::max(0.0, leave - enter) * glm::distance(from_m, to_m);
 }
 
-std::vector<HalfSpace> half_spaces(const Vec3& low_m, const Vec3& high_m) {
-  std::vector<HalfSpace> all;
+std::vector<SolidSide> half_spaces(const Vec3& low_m, const Vec3& high_m) {
+  std::vector<SolidSide> all;
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 normal(0.0);
     normal[axis] = 1.0;
@@ -103,8 +103,8 @@ std::vector<HalfSpace> half_spaces(const Vec3& low_m, const Vec3& high_m) {
 }
 
 /// The half spaces of a convex mesh around the origin.
-std::vector<HalfSpace> half_spaces(const TriangleMesh& convex) {
-  std::vector<HalfSpace> all;
+std::vector<SolidSide> half_spaces(const TriangleMesh& convex) {
+  std::vector<SolidSide> all;
   for (const TriangleMesh::Triangle& triangle : convex.triangles) {
     const Vec3 &a = convex.vertices_m[triangle.vertices[0]], &b = convex.vertices_m[triangle.vertices[1]],
                &c = convex.vertices_m[triangle.vertices[2]];
@@ -209,7 +209,7 @@ TEST_CASE("a leg loses by its length inside a box, wherever it begins and ends")
   Draw draw(1);
   const auto holds = [&](const Vec3& point_m) {
     return std::all_of(reference.begin(), reference.end(),
-                       [&](const HalfSpace& half) { return glm::dot(half.normal, point_m) < half.offset; });
+                       [&](const SolidSide& half) { return glm::dot(half.normal, point_m) < half.offset; });
   };
   int through = 0, one_end = 0, both_ends = 0;
   for (int trial = 0; trial < 5000; ++trial) {
@@ -283,7 +283,7 @@ TEST_CASE("a ball of triangles: the chord of its half spaces, and that of the sp
   const Scene scene = scene_with(mesh);
   // The nearest a face comes to the centre; beyond it a leg may or may not meet the ball.
   double least_m = radius_m;
-  for (const HalfSpace& half : reference) least_m = std::min(least_m, half.offset);
+  for (const SolidSide& half : reference) least_m = std::min(least_m, half.offset);
   CHECK(least_m > 0.97 * radius_m);
   Draw draw(4);
   int through = 0;
@@ -660,7 +660,7 @@ TEST_CASE("a path's foliage is that of its legs, each clipped on its own") {
       std::map<std::string, double> expected_m;
       for (std::size_t leg = 0; leg + 1 < points_m.size(); ++leg) {
         const Vec3 &from_m = points_m[leg], &to_m = points_m[leg + 1];
-        const auto add = [&](const char* body, const std::vector<HalfSpace>& convex, const char* material) {
+        const auto add = [&](const char* body, const std::vector<SolidSide>& convex, const char* material) {
           const Pose& pose = scene.body_state(*scene.find_body(body)).placement.pose;
           expected_m[material] += clipped_m(convex, local_m(pose, from_m), local_m(pose, to_m));
         };

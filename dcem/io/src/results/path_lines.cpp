@@ -7,6 +7,7 @@
 #include "dcem/io/src/results/link_entries.hpp"
 #include "dcem/io/src/text/number_text.hpp"
 #include "dcem/paths/path_id.hpp"
+#include "dcem/sim/discovery.hpp"
 
 namespace dcem::io {
 namespace {
@@ -153,7 +154,7 @@ void PathLines::append_power(std::string& text, const LinkResult& link, const Po
 }
 
 void PathLines::append_path(std::string& text, const LinkResult& link, const PathContribution& path) const {
-  const bool is_exact = facts_.discovery == Discovery::exact;
+  const bool is_exact = is_found_exactly(path.path, facts_.exact_interactions, facts_.discovery);
   append_geometry(text, path.path, path_id(scene_, path.path), path.delay_s, is_exact ? "\"exact\"" : "\"sampled\"");
   JsonLine line(text);
   append_transfer(line, path.transfer);

@@ -7,6 +7,7 @@
 #include "dcem/field/medium_loss.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/text_input.hpp"
+#include "dcem/sim/discovery.hpp"
 
 namespace dcem::io {
 
@@ -40,12 +41,10 @@ nlohmann::json command_line_values(const ScenarioOverrides& overrides, const nlo
 
 /// What is asked for by name and cannot be done is refused, never weakened.
 void check_exact_discovery(const Scenario& scenario, const JsonObject& file, const JsonObject& command_line) {
-  const std::size_t facets = scenario.scene.surface_count();
-  if (scenario.settings.propagation.discovery != Discovery::exact || facets <= exact_discovery_facet_limit) return;
+  if (scenario.settings.propagation.discovery != Discovery::exact) return;
   const auto option = command_line.find("--discovery");
   const JsonValue place = option ? *option : file.at("propagation").member("discovery");
-  place.fail("'exact' for " + std::to_string(facets) + " facets is not in this version; expected at most " +
-             std::to_string(exact_discovery_facet_limit) + " facets, or 'sampled'");
+  reported_at(place, [&] { plan_search(scenario.settings.propagation, scenario.scene); });
 }
 
 /// Air, foliage and the band of a frequency response must fit the frequency.

@@ -1,0 +1,176 @@
+#pragma once
+/// What an image of an end may see through its mirror, as half spaces, and many points tested against them at once.
+///
+/// All in single precision around an origin in the middle of the scene, with room for its rounding: what a cone leaves
+/// out cannot be reached.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dcem/core/simd.hpp"
+#include "dcem/geometry/aabb.hpp"
+#include "dcem/geometry/plane.hpp"
+
+namespace dcem {
+
+/// The half space normal·x ≥ offset.
+struct HalfSpace {
+  float x, y, z, offset;
+};
+
+/// Cones of many images, one after another.
+class ConeList {
+ public:
+  void clear() {
+    planes_.clear();
+    first_.assign(1, 0);
+  }
+  std::size_t size() const { return first_.size() - 1; }
+  std::span<const HalfSpace> operator[](std::size_t cone) const {
+    return std::span(planes_).subspan(first_[cone], first_[cone + 1] - first_[cone]);
+  }
+
+  /// The cone with its apex at an image, through a convex window on the mirror, beyond the mirror. All counted from
+  /// `origin_m`.
+  void add(const Vec3& origin_m, const Vec3& apex_m, const Plane& mirror, std::span<const Vec3> window_m) {
+    const double side = signed_distance_m(mirror, apex_m) > 0.0 ? -1.0 : 1.0;
+    // The farther away the apex, the coarser its coordinates in single precision.
+    const double slack_m = 5e-3 + 1e-6 * glm::length(apex_m - origin_m);
+    add_plane(origin_m, side * mirror.normal, mirror.point_m, slack_m);
+    Vec3 centre_m(0.0);
+    for (const Vec3& corner : window_m) centre_m += corner / static_cast<double>(window_m.size());
+    for (std::size_t index = 0; index < window_m.size(); ++index) {
+      const Vec3 from = window_m[index] - apex_m, to = window_m[(index + 1) % window_m.size()] - apex_m;
+      const Vec3 across = glm::cross(from, to);
+      const double length = glm::length(across);
+      if (!(length > 1e-6 * glm::length(from) * glm::length(to)))
+        continue;  // says nothing: left out, the cone is wider
+      add_plane(origin_m, (glm::dot(across, centre_m - apex_m) < 0.0 ? -across : across) / length, apex_m, slack_m);
+    }
+    first_.push_back(planes_.size());
+  }
+
+ private:
+  void add_plane(const Vec3& origin_m, const Vec3& normal, const Vec3& point_m, double slack_m) {
+    planes_.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
+                       static_cast<float>(glm::dot(normal, point_m - origin_m) - slack_m)});
+  }
+
+  std::vector<HalfSpace> planes_;
+  std::vector<std::size_t> first_{0};
+};
+
+/// Items, each with a box, in clusters of eight, and clusters in groups of eight: those that a cone may hold.
+class ConeClusters {
+ public:
+  /// `box_of(item)` for the items 0 … count − 1, counted from the origin of the cones.
+  template <typename BoxOf>
+  void build(std::size_t count, BoxOf&& box_of) {
+    std::vector<Vec3> centre(count);
+    std::vector<std::uint32_t> items(count);
+    for (std::uint32_t item = 0; item < count; ++item) {
+      items[item] = item;
+      centre[item] = box_of(item).center();
+    }
+    items_.clear();
+    arrange(items, centre);
+    const std::size_t clusters = items_.size() / simd_lanes, groups = (clusters + simd_lanes - 1) / simd_lanes;
+    clusters_.assign(groups, Boxes{});
+    groups_.assign((groups + simd_lanes - 1) / simd_lanes, Boxes{});
+    for (std::size_t group = 0; group < groups; ++group) {
+      Aabb<double> all;
+      for (std::size_t cluster = group * simd_lanes; cluster < std::min(clusters, (group + 1) * simd_lanes);
+           ++cluster) {
+        Aabb<double> box;
+        for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+          const std::uint32_t item = items_[cluster * simd_lanes + lane];
+          if (item != nothing) box.extend(box_of(item));
+        }
+        clusters_[group].set(cluster % simd_lanes, box);
+        all.extend(box);
+      }
+      groups_[group / simd_lanes].set(group % simd_lanes, all);
+    }
+  }
+
+  static constexpr std::uint32_t nothing = 0xffffffffU;
+  /// The items in the order of the clusters, eight to a cluster, the last places of which may hold `nothing`.
+  std::span<const std::uint32_t> items() const { return items_; }
+
+  /// Calls `visit(first)` for each cluster that a cone may reach: its items stand from `first` on.
+  template <typename Visit>
+  void for_each_in(std::span<const HalfSpace> cone, Visit&& visit) const {
+    for (std::size_t upper = 0; upper < groups_.size(); ++upper) {
+      for (std::uint32_t met = groups_[upper].met_by(cone); met != 0; met &= met - 1) {
+        const std::size_t group = upper * simd_lanes + static_cast<std::size_t>(std::countr_zero(met));
+        for (std::uint32_t inside = clusters_[group].met_by(cone); inside != 0; inside &= inside - 1) {
+          visit((group * simd_lanes + static_cast<std::size_t>(std::countr_zero(inside))) * simd_lanes);
+        }
+      }
+    }
+  }
+
+ private:
+  /// Eight boxes as centres and half sizes.
+  struct Boxes {
+    std::array<std::array<float, simd_lanes>, 3> centre{}, half{};
+    std::uint32_t used = 0;
+
+    void set(std::size_t lane, const Aabb<double>& box) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<std::size_t>(axis);
+        centre[at][lane] = static_cast<float>(0.5 * (box.min[axis] + box.max[axis]));
+        const double size = std::max(std::abs(box.min[axis]), std::abs(box.max[axis]));
+        half[at][lane] = static_cast<float>(0.5 * (box.max[axis] - box.min[axis]) + 1e-3 + 1e-6 * size);
+      }
+      used |= 1U << lane;
+    }
+    std::uint32_t met_by(std::span<const HalfSpace> cone) const {
+      const Float8 x(centre[0]), y(centre[1]), z(centre[2]), dx(half[0]), dy(half[1]), dz(half[2]);
+      std::uint32_t met = used;
+      for (const HalfSpace& plane : cone) {
+        const Float8 reach = x * plane.x + y * plane.y + z * plane.z + dx * std::abs(plane.x) + dy * std::abs(plane.y) +
+                             dz * std::abs(plane.z);
+        met &= (Float8(plane.offset) <= reach).bits();
+        if (met == 0) break;
+      }
+      return met;
+    }
+  };
+
+  /// Halves along the longest side, at whole clusters and, where there are many, at whole groups.
+  void arrange(std::span<std::uint32_t> items, const std::vector<Vec3>& centre) {
+    if (items.empty()) return;
+    if (items.size() <= simd_lanes) {
+      items_.insert(items_.end(), items.begin(), items.end());
+      items_.resize((items_.size() + simd_lanes - 1) / simd_lanes * simd_lanes, nothing);
+      return;
+    }
+    Aabb<double> box;
+    for (const std::uint32_t item : items) box.extend(centre[item]);
+    const Vec3 size = box.extent();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::size_t group = std::size_t{simd_lanes} * simd_lanes;
+    const std::size_t unit = items.size() > group ? group : simd_lanes;
+    const std::size_t first = std::max<std::size_t>(1, (items.size() + unit - 1) / unit / 2) * unit;
+    const auto middle = items.begin() + static_cast<std::ptrdiff_t>(first);
+    std::nth_element(items.begin(), middle, items.end(), [&](std::uint32_t one, std::uint32_t other) {
+      const double a = centre[one][axis], b = centre[other][axis];
+      return a != b ? a < b : one < other;
+    });
+    arrange(items.first(first), centre);
+    arrange(items.subspan(first), centre);
+  }
+
+  std::vector<std::uint32_t> items_;
+  std::vector<Boxes> clusters_, groups_;
+};
+
+}  // namespace dcem

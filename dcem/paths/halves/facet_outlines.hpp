@@ -1,0 +1,235 @@
+#pragma once
+/// What the exact search asks of the facets of a scene: where they lie, what they hide, and in which order they come
+/// from a point.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dcem/geometry/aabb.hpp"
+#include "dcem/scene/scene.hpp"
+
+namespace dcem {
+
+/// A facet as the exact search sees it. Its plane is that of the `WorldFacet`.
+struct FacetOutline {
+  Aabb<double> box;
+  double stray_m = 0.0;     ///< how far its triangles leave its plane
+  double lift_m = 0.0;      ///< what is no farther from its plane does not hide it: legs ignore it there
+  bool fills_hull = false;  ///< its triangles are its convex hull, without holes or dents
+  std::uint32_t first_side = 0, side_count = 0;
+};
+
+/// A side of a facet's hull: points of the plane with normal·x ≥ offset are on the inner side.
+struct HullSide {
+  Vec3 normal{0.0};
+  double offset_m = 0.0;
+};
+
+/// The outlines of all facets, and a binary tree of boxes over those of the standing scenery; each other body has one
+/// box.
+class FacetOutlines {
+ public:
+  /// Those of one body that is not the scenery: a run of facets.
+  struct BodyFacets {
+    Aabb<double> box;  ///< empty while the body is not there
+    std::uint32_t first = 0, count = 0;
+  };
+
+  explicit FacetOutlines(const Scene& scene) : outlines_(scene.facets().size()) {
+    std::uint32_t sides = 0;
+    for (std::uint32_t index = 0; index < outlines_.size(); ++index) {
+      outlines_[index].first_side = std::exchange(sides, sides + scene.facets()[index].hull_point_count);
+    }
+    sides_.resize(sides);
+    for (std::uint32_t index = 0; index < outlines_.size(); ++index) {
+      place(scene, index);
+      measure(scene, index);
+    }
+    const std::uint32_t scenery = end_of_body(scene, 0);
+    for (std::uint32_t index = 0; index < scenery; ++index) {
+      if (!outlines_[index].box.empty()) items_.push_back(index);
+    }
+    if (!items_.empty()) {
+      grow(0, static_cast<std::uint32_t>(items_.size()));
+      middle_m_ = glm::round(nodes_.front().box.center());
+    }
+    for (std::uint32_t body = 1; body < scene.bodies().size(); ++body) {
+      const std::uint32_t first = end_of_body(scene, body - 1);
+      bodies_.push_back({{}, first, end_of_body(scene, body) - first});
+      fit(bodies_.back());
+    }
+  }
+
+  /// Follows bodies that have moved, come or gone.
+  void update(const Scene& scene, std::span<const BodyId> moved) {
+    for (const BodyId body : moved) {
+      if (body.value == 0) continue;  // the scenery stands
+      BodyFacets& facets = bodies_[body.value - 1];
+      for (std::uint32_t index = facets.first; index < facets.first + facets.count; ++index) place(scene, index);
+      fit(facets);
+    }
+  }
+
+  const FacetOutline& of(FacetId facet) const { return outlines_[facet.value]; }
+  /// In the middle of the scenery: from here the exact search counts in single precision.
+  const Vec3& middle_m() const { return middle_m_; }
+  std::size_t size() const { return outlines_.size(); }
+  /// All bodies but the scenery.
+  std::span<const BodyFacets> bodies() const { return bodies_; }
+  /// Facets of the scenery that are there, in no order that matters.
+  std::span<const std::uint32_t> scenery() const { return items_; }
+  std::span<const HullSide> sides(FacetId facet) const {
+    return std::span(sides_).subspan(outlines_[facet.value].first_side, outlines_[facet.value].side_count);
+  }
+
+  /// Whether a point of a facet's plane is over its hull, or no farther from it than `margin_m`.
+  bool is_over(FacetId facet, const Vec3& point_m, double margin_m) const {
+    const auto inside = [&](const HullSide& side) {
+      return glm::dot(side.normal, point_m) >= side.offset_m - margin_m;
+    };
+    const std::span<const HullSide> all = sides(facet);
+    return std::all_of(all.begin(), all.end(), inside);
+  }
+
+  /// Calls `visit(facet)` for all facets of the scenery but those in boxes of which `hidden(box)` is true when their
+  /// turn comes: boxes near to the point come before those behind them.
+  template <typename Hidden, typename Visit>
+  void visit_from(const Vec3& point_m, Hidden&& hidden, Visit&& visit) const {
+    if (nodes_.empty()) return;
+    std::vector<Waiting> waiting{{distance_squared(nodes_[0].box, point_m), 0}};
+    const auto push = [&](std::uint32_t node) {
+      waiting.push_back({distance_squared(nodes_[node].box, point_m), node});
+      std::push_heap(waiting.begin(), waiting.end());
+    };
+    while (!waiting.empty()) {
+      std::pop_heap(waiting.begin(), waiting.end());
+      const std::uint32_t number = waiting.back().node;
+      const Node& node = nodes_[number];
+      waiting.pop_back();
+      if (hidden(node.box)) continue;
+      if (node.right != 0) {
+        push(number + 1);
+        push(node.right);
+      }
+      for (std::uint32_t index = node.first; index < node.first + node.count; ++index) visit(FacetId(items_[index]));
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t leaf_size = 4;
+
+  struct Node {
+    Aabb<double> box;
+    std::uint32_t first = 0, count = 0;  ///< of `items_`; none at a node with children
+    std::uint32_t right = 0;             ///< the second child; the first one follows the node. 0: a leaf
+  };
+
+  /// Nearest first; of equals the one with the smaller number, so that the order is that of the scene alone.
+  struct Waiting {
+    double distance_squared;
+    std::uint32_t node;
+    bool operator<(const Waiting& other) const {
+      return distance_squared != other.distance_squared ? distance_squared > other.distance_squared : node > other.node;
+    }
+  };
+
+  static double distance_squared(const Aabb<double>& box, const Vec3& point_m) {
+    const Vec3 way_m = glm::clamp(point_m, box.min, box.max) - point_m;
+    return glm::dot(way_m, way_m);
+  }
+
+  static std::uint32_t end_of_body(const Scene& scene, std::uint32_t body) {
+    const bool last = body + 1 == scene.bodies().size();
+    return last ? static_cast<std::uint32_t>(scene.facets().size()) : scene.world().first(BodyId(body + 1)).facet;
+  }
+
+  /// Works out where a facet lies now.
+  void place(const Scene& scene, std::uint32_t index) {
+    const WorldFacet& facet = scene.facets()[index];
+    FacetOutline& outline = outlines_[index];
+    const std::span<const Vec3> hull_m = scene.hull_m(facet);
+    outline.side_count = facet.hull_point_count;
+    outline.box = {};
+    Vec3 centre_m(0.0);
+    for (const Vec3& corner : hull_m) {
+      if (facet.present) outline.box.extend(corner);
+      centre_m += corner / static_cast<double>(hull_m.size());
+    }
+    for (std::size_t corner = 0; corner < hull_m.size(); ++corner) {
+      const Vec3 &from = hull_m[corner], &to = hull_m[(corner + 1) % hull_m.size()];
+      const Vec3 across = glm::cross(facet.plane.normal, to - from);
+      const double length = glm::length(across);
+      HullSide& side = sides_[outline.first_side + corner];
+      side = {};
+      if (!(length > 1e-9)) continue;  // too short to say: everything is inside
+      side.normal = (glm::dot(across, centre_m - from) < 0.0 ? -across : across) / length;
+      side.offset_m = glm::dot(side.normal, from);
+    }
+  }
+
+  /// Works out what does not change when the facet moves.
+  void measure(const Scene& scene, std::uint32_t index) {
+    const WorldFacet& facet = scene.facets()[index];
+    FacetOutline& outline = outlines_[index];
+    const std::span<const Vec3> hull_m = scene.hull_m(facet);
+    double hull = 0.0, area = 0.0;
+    for (std::size_t corner = 2; corner < hull_m.size(); ++corner) {
+      hull += glm::length(glm::cross(hull_m[corner - 1] - hull_m[0], hull_m[corner] - hull_m[0]));
+    }
+    for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
+      const auto corners_m = scene.corners_m(facet.first_triangle + triangle);
+      area += glm::length(glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]));
+      for (const Vec3& corner : corners_m) {
+        outline.stray_m = std::max(outline.stray_m, std::abs(signed_distance_m(facet.plane, corner)));
+      }
+    }
+    // Areas agree to rounding: a slit of a micrometre would not.
+    outline.fills_hull = std::abs(hull - area) <= 1e-6 * std::min(1.0, hull);
+    // A leg ignores what lies along its mirror within the weld tolerance, and the mirror's own triangles wherever they
+    // are.
+    outline.lift_m = 2.0 * scene.settings().weld_tolerance_m + 1.01 * outline.stray_m;
+  }
+
+  void fit(BodyFacets& facets) const {
+    facets.box = {};
+    for (std::uint32_t index = facets.first; index < facets.first + facets.count; ++index) {
+      facets.box.extend(outlines_[index].box);
+    }
+  }
+
+  /// Halves items along the longest side of the box of their centres; a node stands before its children.
+  void grow(std::uint32_t first, std::uint32_t count) {
+    const std::size_t number = nodes_.size();
+    nodes_.push_back({{}, first, count, 0});
+    Aabb<double> centres;
+    for (std::uint32_t index = first; index < first + count; ++index) {
+      nodes_[number].box.extend(outlines_[items_[index]].box);
+      centres.extend(outlines_[items_[index]].box.center());
+    }
+    if (count <= leaf_size) return;
+    const Vec3 size = centres.extent();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto begin = items_.begin() + first;
+    std::nth_element(begin, begin + count / 2, begin + count, [&](std::uint32_t one, std::uint32_t other) {
+      const double a = outlines_[one].box.center()[axis], b = outlines_[other].box.center()[axis];
+      return a != b ? a < b : one < other;
+    });
+    nodes_[number].count = 0;
+    grow(first, count / 2);
+    nodes_[number].right = static_cast<std::uint32_t>(nodes_.size());
+    grow(first + count / 2, count - count / 2);
+  }
+
+  std::vector<FacetOutline> outlines_;
+  std::vector<HullSide> sides_;
+  std::vector<std::uint32_t> items_;  ///< facets of the scenery, in the order of the leaves
+  std::vector<Node> nodes_;           ///< the root first
+  std::vector<BodyFacets> bodies_;
+  Vec3 middle_m_{0.0};
+};
+
+}  // namespace dcem

@@ -1,0 +1,217 @@
+/// Joined halves find what trying every sequence finds: two searches that share the solver alone.
+#include "dcem/paths/halves/half_joiner.hpp"
+
+#include <doctest/doctest.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "dcem/paths/path_finder.hpp"
+#include "tests/paths/small_scenes.hpp"
+
+using namespace dcem;
+using namespace dcem::test;
+
+namespace {
+
+/// A ground, houses, sheets, and two cars that are bodies of their own.
+Scene small_town(Draw& draw) {
+  TriangleMesh mesh;
+  if (draw.below(4) != 0) add_sheet(mesh, Vec3(0.0), Vec3(30, 0, 0), Vec3(0, 30, 0), "opaque");
+  const std::size_t houses = 1 + draw.below(4), sheets = draw.below(4);
+  for (std::size_t house = 0; house < houses; ++house) {
+    const Vec3 low_m(draw.between(-20, 15), draw.between(-20, 15), draw.below(2) == 0 ? 0.0 : 0.01);
+    add_box_faces(mesh, low_m, low_m + draw.inside(Vec3(2, 2, 2), Vec3(10, 10, 12)), "metal");
+  }
+  for (std::size_t sheet = 0; sheet < sheets; ++sheet) {
+    const double turn = draw.between(-pi, pi);
+    const Vec3 along(std::cos(turn), std::sin(turn), 0);
+    add_sheet(mesh, draw.inside(Vec3(-20, -20, 2), Vec3(20, 20, 4)), draw.between(1, 6) * along, Vec3(0, 0, 2),
+              draw.below(2) == 0 ? "glass" : "wall");
+  }
+  Scene scene = scene_of(mesh);
+  for (const char* name : {"one", "two"}) {
+    TriangleMesh car;
+    add_box_faces(car, Vec3(-2, -0.9, 0), Vec3(2, 0.9, 1.5), "metal");
+    const double turn_rad = draw.between(-pi, pi);
+    scene.add_object(name, car, LinearMotion{{draw.inside(Vec3(-20, -20, 0.02), Vec3(20, 20, 0.05)), turn_rad, 0, 0}});
+  }
+  return scene;
+}
+
+/// How two ends are searched.
+struct Asked {
+  int transmissions = 0;
+  int reflections = 2, diffractions = 1, interactions = 2;
+};
+
+std::vector<Path> all_sequences(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked) {
+  PathSearchSettings settings;
+  settings.max_reflections = asked.reflections;
+  settings.max_diffractions = asked.diffractions;
+  settings.max_interactions = asked.interactions;
+  settings.max_transmissions = asked.transmissions;
+  SearchCounters counters;
+  EdgeReach reach;
+  find_reach(traced.tracer, settings, from, {"tx", 0}, 0, reach, counters);
+  const std::vector<std::optional<LinkEnd>> ends{from};
+  const std::vector<ReachedEdges> reached{reach.edges()};
+  return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached).front().paths;
+}
+
+std::vector<Path> joined(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
+                         int pixels = 256) {
+  PathSearchSettings settings;
+  settings.exhaustive = false;
+  settings.halves = true;
+  settings.rays = 0;
+  settings.max_reflections = asked.reflections;
+  settings.max_diffractions = asked.diffractions;
+  settings.max_interactions = asked.interactions;
+  settings.max_transmissions = asked.transmissions;
+  const FacetOutlines outlines(traced.scene);
+  std::vector<KeptHalf> transmitters(1, KeptHalf(pixels));
+  transmitters[0].update(traced.scene, outlines, from, half_settings(settings));
+  PathHalf room(pixels);
+  const LinkHalves halves{outlines, transmitters, room};
+  SearchCounters counters;
+  const std::vector<std::optional<LinkEnd>> ends{from};
+  const std::vector<ReachedEdges> reached(1);
+  return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached, &halves).front().paths;
+}
+
+/// The same sequences, and the same bits of every point.
+bool same_paths(const std::vector<Path>& one, const std::vector<Path>& other) {
+  if (one.size() != other.size()) return false;
+  for (std::size_t path = 0; path < one.size(); ++path) {
+    if (!same_sequence(one[path], other[path]) || one[path].length_m != other[path].length_m) return false;
+    for (std::size_t point = 0; point < one[path].interactions.size(); ++point) {
+      if (one[path].interactions[point].point_m != other[path].interactions[point].point_m) return false;
+    }
+  }
+  return true;
+}
+
+LinkEnd somewhere(TracedScene<>& traced, Draw& draw) {
+  return traced.end(draw.inside(Vec3(-20, -20, 0.3), Vec3(20, 20, 14)));
+}
+
+}  // namespace
+
+TEST_CASE("joined halves find every path of two interactions, and the same bits") {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 0; seed < 150; ++seed) {
+    Draw draw(seed);
+    TracedScene<> traced(small_town(draw));
+    for (int link = 0; link < 4; ++link) {
+      const LinkEnd from = somewhere(traced, draw), to = somewhere(traced, draw);
+      const Asked asked{static_cast<int>(draw.below(3))};
+      const std::vector<Path> expected = all_sequences(traced, from, to, asked);
+      CAPTURE(seed);
+      CAPTURE(link);
+      CHECK(same_paths(joined(traced, from, to, asked, draw.below(2) == 0 ? 256 : 64), expected));
+      found += expected.size();
+    }
+  }
+  MESSAGE(found << " paths");
+  CHECK(found > 2'000);
+}
+
+TEST_CASE("every bound on reflections, diffractions and interactions is kept") {
+  for (const Asked& asked : {Asked{1, 0, 0, 0}, Asked{0, 1, 0, 1}, Asked{0, 0, 1, 1}, Asked{2, 2, 0, 2},
+                             Asked{0, 2, 1, 1}, Asked{1, 1, 1, 2}}) {
+    Draw draw(7);
+    TracedScene<> traced(small_town(draw));
+    const LinkEnd from = somewhere(traced, draw), to = somewhere(traced, draw);
+    CHECK(same_paths(joined(traced, from, to, asked), all_sequences(traced, from, to, asked)));
+  }
+}
+
+TEST_CASE("an end that touches a wall, the ground or a car sees past it") {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 1000; seed < 1060; ++seed) {
+    Draw draw(seed);
+    TracedScene<> traced(small_town(draw));
+    const auto on_surface = [&] {
+      const auto triangle = static_cast<std::uint32_t>(draw.below(traced.scene.triangles().size()));
+      const auto corners_m = traced.scene.corners_m(triangle);
+      const double u = draw.between(0.1, 0.5), v = draw.between(0.1, 0.4);
+      const Vec3 normal = traced.scene.facet(traced.scene.facet_of_triangle(triangle)).plane.normal;
+      return corners_m[0] + u * (corners_m[1] - corners_m[0]) + v * (corners_m[2] - corners_m[0]) +
+             draw.between(-1.5e-4, 1.5e-4) * normal;
+    };
+    const LinkEnd from = traced.end(on_surface()), to = traced.end(on_surface());
+    CAPTURE(seed);
+    const std::vector<Path> expected = all_sequences(traced, from, to, {1});
+    CHECK(same_paths(joined(traced, from, to, {1}), expected));
+    found += expected.size();
+  }
+  CHECK(found > 50);
+}
+
+TEST_CASE("the body that a device rides on is not there for it") {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 2000; seed < 2040; ++seed) {
+    Draw draw(seed);
+    TracedScene<> traced(small_town(draw));
+    const BodyId car = *traced.scene.find_body("one");
+    const Vec3 place_m = traced.scene.body_state(car).placement.pose.position_m + Vec3(0, 0, draw.between(0.2, 1.6));
+    const LinkEnd from = somewhere(traced, draw), to = traced.end(place_m, car);
+    CAPTURE(seed);
+    const std::vector<Path> expected = all_sequences(traced, from, to, {});
+    CHECK(same_paths(joined(traced, from, to, {}), expected));
+    CHECK(same_paths(joined(traced, to, from, {}), all_sequences(traced, to, from, {})));
+    found += expected.size();
+  }
+  CHECK(found > 100);
+}
+
+TEST_CASE("patches on top of each other, tilted by dirt, hide nothing from rays that graze them") {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 3000; seed < 3060; ++seed) {
+    Draw draw(seed);
+    TriangleMesh mesh;
+    add_sheet(mesh, Vec3(0.0), Vec3(30, 0, 0), Vec3(0, 30, 0), "opaque");
+    for (int patch = 0; patch < 6; ++patch) {  // within the weld tolerance of the ground, or just above it
+      const Vec3 tilt(1, 0, draw.between(-3e-6, 3e-6));
+      add_sheet(mesh, Vec3(draw.between(-20, 20), draw.between(-20, 20), draw.between(-2e-4, 2e-4)),
+                draw.between(1, 8) * tilt, Vec3(0, draw.between(1, 8), 0), draw.below(2) == 0 ? "metal" : "opaque");
+    }
+    add_box_faces(mesh, Vec3(3, 3, 0), Vec3(8, 8, 6), "metal");
+    TracedScene<> traced(scene_of(mesh));
+    const auto low = [&] { return traced.end(draw.inside(Vec3(-25, -25, 0.001), Vec3(25, 25, 0.4))); };
+    const LinkEnd from = low(), to = low();
+    CAPTURE(seed);
+    const std::vector<Path> expected = all_sequences(traced, from, to, {});
+    CHECK(same_paths(joined(traced, from, to, {}), expected));
+    found += expected.size();
+  }
+  CHECK(found > 60);
+}
+
+TEST_CASE("a half that is kept while bodies move is the half made anew") {
+  Draw draw(5);
+  TracedScene<> traced(small_town(draw));
+  FacetOutlines outlines(traced.scene);
+  KeptHalf kept;
+  const LinkEnd end = somewhere(traced, draw);
+  for (int step = 0; step < 6; ++step) {
+    Frame frame = traced.scene.frame_at(0.0, static_cast<std::size_t>(step));
+    for (std::size_t body = 1; body < frame.bodies.size(); ++body) {
+      frame.bodies[body].present = draw.below(4) != 0;
+      frame.bodies[body].placement.pose.position_m = draw.inside(Vec3(-20, -20, 0), Vec3(20, 20, 0.1));
+    }
+    const ChangeSet changes = traced.scene.apply(frame);
+    outlines.update(traced.scene, changes.moved);
+    kept.update(traced.scene, outlines, end, {});
+    PathHalf fresh;
+    const FacetOutlines now(traced.scene);
+    fresh.find_scenery(traced.scene, now, end, {});
+    fresh.find_bodies(traced.scene, now, end, {});
+    for (std::size_t layer = 0; layer < 2; ++layer) {
+      CHECK(kept.half().layers()[layer].mirrors == fresh.layers()[layer].mirrors);
+      CHECK(kept.half().layers()[layer].edges == fresh.layers()[layer].edges);
+    }
+  }
+}

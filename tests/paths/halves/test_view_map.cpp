@@ -1,0 +1,133 @@
+/// What a view map calls hidden is hidden: no ray from its point ever meets it.
+#include "dcem/paths/halves/view_map.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <vector>
+
+#include "dcem/paths/halves/path_half.hpp"
+#include "tests/paths/small_scenes.hpp"
+
+using namespace dcem;
+using namespace dcem::test;
+
+namespace {
+
+/// Boxes, tilted sheets and a ground, about 60 m across.
+TriangleMesh heap_of_boxes(Draw& draw, int boxes) {
+  TriangleMesh mesh;
+  add_sheet(mesh, Vec3(0.0), Vec3(40, 0, 0), Vec3(0, 40, 0), "opaque");
+  for (int box = 0; box < boxes; ++box) {
+    const Vec3 low_m = draw.inside(Vec3(-30, -30, 0.5), Vec3(30, 30, 2));
+    add_box_faces(mesh, low_m, low_m + draw.inside(Vec3(1.0), Vec3(9, 9, 15)), "metal");
+  }
+  for (int sheet = 0; sheet < boxes; ++sheet) {
+    const Vec3 u = draw.direction(), v = glm::normalize(glm::cross(u, draw.direction()));
+    add_sheet(mesh, draw.inside(Vec3(-30, -30, 2), Vec3(30, 30, 20)), draw.between(0.5, 5) * u,
+              draw.between(0.5, 5) * v, draw.below(2) == 0 ? "metal" : "glass");
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("no ray meets a facet that a half calls hidden") {
+  Draw draw(1);
+  std::size_t met = 0, hidden = 0, lost = 0;
+  for (int round = 0; round < 12; ++round) {
+    TracedScene<> traced(scene_of(heap_of_boxes(draw, 25)));
+    const FacetOutlines outlines(traced.scene);
+    for (const int pixels : {64, 256}) {
+      PathHalf half(pixels);
+      for (int place = 0; place < 3; ++place) {
+        const LinkEnd end = traced.end(draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20)));
+        half.find_scenery(traced.scene, outlines, end, {});
+        const std::vector<FacetId>& seen = half.layers()[0].mirrors;
+        hidden += outlines.size() - seen.size();
+        for (int ray = 0; ray < 30'000; ++ray) {
+          // Sheets let rays pass: everything up to the first opaque facet may be seen.
+          const Ray<double> way{end.position_m, draw.direction()};
+          double nearest = 1e30;
+          std::vector<std::pair<double, FacetId>> hits;
+          traced.index.visit_hits(way, HitFilter{}, [&](const TriangleHit& hit) {
+            const FacetId id = traced.scene.facet_of_triangle(hit.triangle);
+            if (hit.t > 0.0) hits.emplace_back(hit.t, id);
+            if (hit.t > 0.0 && !traced.scene.facet(id).transmits) nearest = std::min(nearest, hit.t);
+            return false;
+          });
+          for (const auto& [t, id] : hits) {
+            if (t > nearest) continue;
+            ++met;
+            lost += std::ranges::binary_search(seen, id) ? 0U : 1U;
+          }
+        }
+      }
+    }
+  }
+  MESSAGE(met << " hits, " << hidden << " facets hidden");
+  CHECK(lost == 0);
+  CHECK(met > 1'000'000);
+  CHECK(hidden > 1'000);  // or nothing was tested
+}
+
+TEST_CASE("points of facets that rays reach are never masked, and many of the others are") {
+  Draw draw(2);
+  TracedScene<> traced(scene_of(heap_of_boxes(draw, 30)));
+  const FacetOutlines outlines(traced.scene);
+  std::size_t free = 0, masked = 0, blocked = 0, lost = 0;
+  PathHalf half;
+  for (int place = 0; place < 20; ++place) {
+    const LinkEnd end = traced.end(draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20)));
+    half.find_scenery(traced.scene, outlines, end, {});
+    for (int point = 0; point < 5'000; ++point) {
+      const auto triangle = static_cast<std::uint32_t>(draw.below(traced.scene.triangles().size()));
+      const FacetId facet = traced.scene.facet_of_triangle(triangle);
+      const auto corners_m = traced.scene.corners_m(triangle);
+      const double u = draw.between(0, 1), v = draw.between(0, 1 - u);
+      const Vec3 point_m = corners_m[0] + u * (corners_m[1] - corners_m[0]) + v * (corners_m[2] - corners_m[0]);
+      const LegEnd own{{&facet, 1}, {&traced.scene.facet(facet).plane, nullptr}};
+      std::vector<Crossing> crossings;
+      const bool reached =
+          traced.tracer.follow_leg(end.position_m, point_m, {}, own, {}, 1000, crossings, traced.counters);
+      const bool hides = half.hides(traced.scene, outlines, facet, point_m);
+      free += reached ? 1U : 0U;
+      blocked += reached ? 0U : 1U;
+      lost += reached && hides ? 1U : 0U;
+      masked += hides ? 1U : 0U;
+    }
+  }
+  CHECK(lost == 0);
+  CHECK(free > 10'000);
+  CHECK(masked > blocked / 2);  // or the mask is not worth having
+}
+
+TEST_CASE("what fills the whole view hides everything behind it, and nothing in front") {
+  ViewMap map(64);
+  map.look_from(Vec3(0.0));
+  const Plane wall{Vec3(2, 0, 0), Vec3(-1, 0, 0)};
+  const std::array<Vec3, 4> corners_m{Vec3(2, -9, -9), {2, 9, -9}, {2, 9, 9}, {2, -9, 9}};
+  map.cover(corners_m, wall);
+  CHECK(map.hides(Vec3(3, 1, 1), 1.0));
+  CHECK_FALSE(map.hides(Vec3(1.9, 1, 1), 1.0));
+  CHECK_FALSE(map.hides(Vec3(-3, 1, 1), 1.0));
+  CHECK(map.hides(Aabb<double>{Vec3(3, -1, -1), Vec3(4, 1, 1)}, 0.5));
+  CHECK_FALSE(map.hides(Aabb<double>{Vec3(2.4, -1, -1), Vec3(4, 1, 1)}, 0.5));  // within the margin
+  CHECK_FALSE(map.hides(Aabb<double>{Vec3(-1, -1, -1), Vec3(4, 1, 1)}, 0.0));   // it holds the point
+  CHECK_FALSE(map.shows(Vec3(3, -1, 0), Vec3(3, 1, 0), 1.0));
+  CHECK(map.shows(Vec3(3, -1, 0), Vec3(3, 1, 0), 1.6));   // as if it were at 1.9
+  CHECK(map.shows(Vec3(3, -40, 0), Vec3(3, 1, 0), 1.0));  // one end looks past the wall
+}
+
+TEST_CASE("a gap between two walls narrower than a pixel is seen through") {
+  ViewMap map(64);
+  map.look_from(Vec3(0.0));
+  const Plane wall{Vec3(2, 0, 0), Vec3(-1, 0, 0)};
+  for (const double side : {-1.0, 1.0}) {
+    const std::array<Vec3, 4> corners_m{
+        Vec3(2, side * 1e-4, -9), {2, side * 9, -9}, {2, side * 9, 9}, {2, side * 1e-4, 9}};
+    map.cover(corners_m, wall);
+  }
+  CHECK(map.shows(Vec3(5, -1, 0), Vec3(5, 1, 0), 1.0));
+  CHECK_FALSE(map.shows(Vec3(5, 1, 0), Vec3(5, 2, 0), 1.0));
+}
