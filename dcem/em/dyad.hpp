@@ -2,7 +2,8 @@
 /// Reflection and transmission of a field given as a Cartesian vector: nothing depends on a basis chosen elsewhere.
 ///   e⊥ = k × n/|k × n|,  e∥ = e⊥ × k,  k_r = k − 2(k·n)n,  e∥r = e⊥ × k_r
 ///   E_r = R_te (E·e⊥) e⊥ + R_tm (E·e∥) e∥r,   E_t = T_te (E·e⊥) e⊥ + T_tm (E·e∥) e∥.
-/// With the signs of em/surface/fresnel.hpp a perfect conductor gives E_r = 2(n·E)n − E. Both are the same for n and −n.
+/// With the signs of em/surface/fresnel.hpp a perfect conductor gives E_r = 2(n·E)n − E. Both are the same for n and
+/// −n.
 #include "dcem/em/complex.hpp"
 #include "dcem/em/surface/fresnel.hpp"
 #include "dcem/geometry/plane.hpp"

@@ -94,8 +94,8 @@ inline double cascade_distance_parameter_m(CascadeDistances choice, std::span<co
                                          edge_angle_rad);
 }
 
-/// One edge of a cascade. `Transfer` is ComplexMatrix2 (M of em/diffraction/wedge_diffraction.hpp) or, for a scalar soft or hard
-/// field, Complex (D of em/diffraction/utd.hpp).
+/// One edge of a cascade. `Transfer` is ComplexMatrix2 (M of em/diffraction/wedge_diffraction.hpp) or, for a scalar
+/// soft or hard field, Complex (D of em/diffraction/utd.hpp).
 template <typename Transfer>
 struct CascadeEdge {
   WithSlopes<Transfer> diffraction;

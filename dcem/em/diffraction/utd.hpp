@@ -137,9 +137,9 @@ inline UtdTerms utd_terms(const WedgeAngles& angles, double wave_number_rad_per_
 }
 
 /// D1…D4 with their slopes. As usual in slope diffraction the derivatives are those of the cotangents, with F_s and F_c
-/// of em/diffraction/transition_function.hpp in place of F: outside the transition zones they are the derivatives, at a boundary
-/// they keep its leading term. What is left out against the derivative of D itself is bounded by (2 + n²)/3·|F_s − F|
-/// beside csc²δ.
+/// of em/diffraction/transition_function.hpp in place of F: outside the transition zones they are the derivatives, at a
+/// boundary they keep its leading term. What is left out against the derivative of D itself is bounded by (2 +
+/// n²)/3·|F_s − F| beside csc²δ.
 inline WithSlopes<UtdTerms> utd_terms_with_slopes(const WedgeAngles& angles, double wave_number_rad_per_m,
                                                   const DistanceParameters& distances) {
   const Complex factor = detail::utd_factor(angles, wave_number_rad_per_m);

@@ -44,9 +44,9 @@ struct ItuMaterial {
 /// One layer of a wall: a medium with its thickness, which must be there.
 using MaterialLayer = std::variant<Dielectric, ItuMaterial>;
 
-/// Layers one behind the other, between air and air (em/surface/multilayer.hpp). Surfaces are two-sided sheets without a front:
-/// whichever side a wave comes from, it meets the first layer first. The transmission does not depend on that order,
-/// nor does the reflected power where nothing is lost.
+/// Layers one behind the other, between air and air (em/surface/multilayer.hpp). Surfaces are two-sided sheets without
+/// a front: whichever side a wave comes from, it meets the first layer first. The transmission does not depend on that
+/// order, nor does the reflected power where nothing is lost.
 struct Multilayer {
   std::vector<MaterialLayer> layers;  ///< at least one
 
@@ -77,8 +77,8 @@ using MaterialModel =
 struct Material {
   std::string name;
   MaterialModel model;
-  /// Standard deviation of the surface height, ≥ 0; 0: smooth. It reduces what is reflected (em/surface/roughness.hpp, Ament),
-  /// with every model; what passes is not changed.
+  /// Standard deviation of the surface height, ≥ 0; 0: smooth. It reduces what is reflected (em/surface/roughness.hpp,
+  /// Ament), with every model; what passes is not changed.
   double roughness_rms_m = 0.0;
   /// Diffuse scattering; the mirror keeps √(1 − S²). Not together with a roughness: both would take the same power.
   Scattering scattering{};

@@ -1,6 +1,6 @@
 #pragma once
-/// What a square metre of a rough surface brings to a link: em/surface/effective_roughness.hpp with both antennas, the sheets
-/// that the legs cross, air and foliage.
+/// What a square metre of a rough surface brings to a link: em/surface/effective_roughness.hpp with both antennas, the
+/// sheets that the legs cross, air and foliage.
 ///   P_rx/P_tx per m² = (λ/4π)²·(S·|Γ|)²·cos θ_i·f_s·G_rx·|E_i|²/(r_i·r_s)²,
 /// |E_i|² with the transmitting antenna's gain and polarization. The scattered wave is taken as unpolarized: the
 /// receiving antenna's gain applies to it, its polarization does not; a sheet on its way lets the mean of both

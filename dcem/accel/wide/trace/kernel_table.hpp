@@ -13,6 +13,12 @@ inline namespace DCEM_ISA {
 inline constexpr WideKernels kernel_table{compiled_instruction_set, &closest_hit, &occluded, &visit_hits,
                                           &closest_hits};
 
+#if !defined(DCEM_ENGINE)
+inline const WideKernels& wide_kernels() {
+  return kernel_table;
+}
+#endif
+
 }  // namespace DCEM_ISA
 
 }  // namespace detail

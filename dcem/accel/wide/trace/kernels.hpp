@@ -45,21 +45,5 @@ const WideKernels& wide_kernels();
 }  // namespace dcem
 
 #if !defined(DCEM_ENGINE)
-#include "dcem/accel/wide/trace/kernel_table.hpp"
-
-namespace dcem {
-
-namespace detail {
-
-inline namespace DCEM_ISA {
-
-inline const WideKernels& wide_kernels() {
-  return kernel_table;
-}
-
-}  // namespace DCEM_ISA
-
-}  // namespace detail
-
-}  // namespace dcem
+#include "dcem/accel/wide/trace/kernel_table.hpp"  // says which: what the program is compiled for
 #endif
