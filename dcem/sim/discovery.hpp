@@ -4,8 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "dcem/paths/discover/path_cache.hpp"
-#include "dcem/paths/halves/half_joiner.hpp"
+#include "dcem/paths/halves/covered.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/settings.hpp"
 
@@ -37,7 +36,7 @@ inline SearchPlan plan_search(const PropagationSettings& propagation, const Scen
   if (propagation.discovery == Discovery::sampled) return {Discovery::sampled};
   const std::size_t facets = scene.surface_count();
   if (facets <= automatic_exact_facet_limit(propagation)) return {Discovery::exact, true};
-  if (HalfJoiner::covers(diffraction_order(propagation), interaction_order(propagation))) {
+  if (halves_cover(diffraction_order(propagation), interaction_order(propagation))) {
     return {Discovery::exact, false, true};
   }
   if (propagation.discovery == Discovery::automatic) return {Discovery::sampled, false, true};
@@ -57,12 +56,14 @@ inline Discovery resolve_discovery(const PropagationSettings& propagation, const
 /// `resolve_discovery` has said.
 inline int exactly_searched_interactions(const PropagationSettings& propagation, Discovery done) {
   if (done == Discovery::exact) return interaction_order(propagation);
-  return propagation.discovery == Discovery::sampled ? 0 : std::min(2, interaction_order(propagation));
+  return propagation.discovery == Discovery::sampled
+             ? 0
+             : std::min(most_joined_interactions, interaction_order(propagation));
 }
 
 /// Whether all paths of a path's kind are found, not only those that rays come by. `exact_interactions` as above.
 inline bool is_found_exactly(const Path& path, int exact_interactions, Discovery done) {
-  return done == Discovery::exact || (exact_interactions > 0 && HalfJoiner::covers(sequence_of(path)));
+  return done == Discovery::exact || (exact_interactions > 0 && halves_cover(path));
 }
 
 /// Off or seed: what a simulation that discovers in this way really remembers. Throws std::invalid_argument where

@@ -13,6 +13,7 @@
 #include "dcem/paths/discover/exact_search.hpp"
 #include "dcem/paths/discover/path_cache.hpp"
 #include "dcem/paths/discover/ray_launcher.hpp"
+#include "dcem/paths/halves/covered.hpp"
 #include "dcem/paths/halves/half_joiner.hpp"
 #include "dcem/paths/halves/kept_half.hpp"
 #include "dcem/paths/solve/path_solver.hpp"
@@ -29,7 +30,7 @@ struct PathSearchSettings {
   int max_diffractions = 0;
   int max_interactions = 10;  ///< reflections and diffractions together
   EdgeRules edges{};          ///< which edges diffract
-  /// Where the search is not exhaustive: the sequences that `HalfJoiner` covers are all found, from halves, and rays
+  /// Where the search is not exhaustive: the sequences that `halves_cover` names are all found, from halves, and rays
   /// look for the others alone.
   bool halves = false;
 };
@@ -37,7 +38,7 @@ struct PathSearchSettings {
 /// Whether rays have anything to look for.
 inline bool needs_rays(const PathSearchSettings& settings) {
   return !settings.exhaustive &&
-         !(settings.halves && HalfJoiner::covers(settings.max_diffractions, settings.max_interactions));
+         !(settings.halves && halves_cover(settings.max_diffractions, settings.max_interactions));
 }
 
 inline HalfSettings half_settings(const PathSearchSettings& settings) {
@@ -130,7 +131,7 @@ class PathSearch {
         receiver_, [&](const Sequence& sequence, const std::vector<Vec3>& images_m) { try_all(sequence, images_m); });
   }
 
-  /// Solves every sequence that `HalfJoiner` covers and that may carry a path.
+  /// Solves every sequence that `halves_cover` names and that may carry a path.
   void join_halves(const LinkHalves& halves) {
     const Scene& scene = tracer_.scene();
     const bool direct_alone = settings_.max_interactions == 0;
@@ -216,7 +217,7 @@ class PathSearch {
   }
 
   /// Whether halves have proposed a sequence, if it may carry a path at all.
-  bool is_joined(const Sequence& sequence) const { return settings_.halves && HalfJoiner::covers(sequence); }
+  bool is_joined(const Sequence& sequence) const { return settings_.halves && halves_cover(sequence); }
 
   bool is_remembered(std::size_t transmitter, const Sequence& sequence) const {
     return tried_[transmitter].size() > 0 && tried_[transmitter].contains(sequence);

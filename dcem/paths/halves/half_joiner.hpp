@@ -17,31 +17,12 @@
 
 namespace dcem {
 
-/// What a join has looked at.
-struct JoinCounters {
-  std::uint64_t paired = 0;    ///< pairs that the cones let through
-  std::uint64_t gated = 0;     ///< of these, with all points on their surfaces
-  std::uint64_t unmasked = 0;  ///< of these, with both outer points possibly seen
-
-  JoinCounters& operator+=(const JoinCounters& other) {
-    paired += other.paired;
-    gated += other.gated;
-    unmasked += other.unmasked;
-    return *this;
-  }
-};
-
 class HalfJoiner {
  public:
   /// The most of each, and of both together.
   struct Orders {
     int reflections = 2, diffractions = 1, interactions = 2;
   };
-
-  /// Whether all sequences within some orders are among those that are offered.
-  static bool covers(int diffractions, int interactions) { return diffractions <= 1 && interactions <= 2; }
-  /// Whether a sequence is one of those that are offered if a path may take them.
-  static bool covers(const Sequence& sequence) { return sequence.size() <= 2 && edge_count(sequence) <= 1; }
 
   HalfJoiner(const Scene& scene, const FacetOutlines& outlines, const Orders& orders)
       : scene_(scene), outlines_(outlines), orders_(orders) {}
@@ -68,8 +49,6 @@ class HalfJoiner {
       }
     }
   }
-
-  const JoinCounters& counters() const { return counters_; }
 
  private:
   /// One end, and what it may see of the scenery or of what moves.
@@ -103,10 +82,8 @@ class HalfJoiner {
   template <typename First, typename Last, typename Visit>
   void offer(const Side& receiver, First first, const Vec3& first_m, const Side& transmitter, Last last,
              const Vec3& last_m, bool single, Visit& visit) {
-    ++counters_.gated;
     if (receiver.half.hides(scene_, outlines_, first, first_m)) return;
     if (transmitter.half.hides(scene_, outlines_, last, last_m)) return;
-    ++counters_.unmasked;
     sequence_.assign(1, first);
     if (!single) sequence_.emplace_back(last);
     visit(std::as_const(sequence_));
@@ -117,7 +94,6 @@ class HalfJoiner {
     for (std::size_t at = 0; at < receiver.layer.mirrors.size(); ++at) {
       const FacetId facet = receiver.layer.mirrors[at];
       if (!std::ranges::binary_search(transmitter.layer.mirrors, facet)) continue;
-      ++counters_.paired;
       const auto point_m = crossing(facet, receiver.layer.images_m[at], transmitter.half.position_m());
       if (point_m) offer(receiver, facet, *point_m, transmitter, facet, *point_m, true, visit);
     }
@@ -127,7 +103,6 @@ class HalfJoiner {
   void single_edges(const Side& receiver, const Side& transmitter, Visit& visit) {
     for (const WedgeId edge : receiver.layer.edges) {
       if (!std::ranges::binary_search(transmitter.layer.edges, edge)) continue;
-      ++counters_.paired;
       const auto point_m = edge_point(edge, receiver.half.position_m(), transmitter.half.position_m());
       if (point_m) offer(receiver, edge, *point_m, transmitter, edge, *point_m, true, visit);
     }
@@ -141,7 +116,6 @@ class HalfJoiner {
       transmitter.layer.for_each_image_in(receiver.layer.cones[at], [&](std::uint32_t other) {
         const FacetId far = transmitter.layer.mirrors[other];
         if (near == far) return;
-        ++counters_.paired;
         const auto far_m = crossing(far, transmitter.layer.images_m[other], image_m);
         if (!far_m) return;
         const auto near_m = crossing(near, image_m, *far_m);
@@ -160,7 +134,6 @@ class HalfJoiner {
         const WedgeId edge = beside.layer.edges[other];
         const WorldWedge& wedge = scene_.wedge(edge);
         if (wedge.facets[0] == facet || wedge.facets[1] == facet) return;  // that is in the wedge's own terms
-        ++counters_.paired;
         const auto edge_m = edge_point(edge, beside.half.position_m(), image_m);
         if (!edge_m) return;
         const auto mirror_m = crossing(facet, image_m, *edge_m);
@@ -184,7 +157,6 @@ class HalfJoiner {
   const FacetOutlines& outlines_;
   Orders orders_;
   Sequence sequence_;
-  JoinCounters counters_;
 };
 
 }  // namespace dcem

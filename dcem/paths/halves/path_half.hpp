@@ -72,6 +72,14 @@ class PathHalf {
                     nearer_on(scene, outlines, wedge.facets[1], wedge.edge.stray_m));
   }
 
+  /// Whether the end grazes a facet so that some point of it, lifted, is farther in front than boxes allow for.
+  bool is_lifted_far(const Scene& scene, const FacetOutlines& outlines, FacetId id) const {
+    const FacetOutline& outline = outlines.of(id);
+    const double distance_m = std::abs(signed_distance_m(scene.facet(id).plane, position_m()));
+    const Vec3 farthest_m =
+        glm::max(glm::abs(outline.box.min - position_m()), glm::abs(outline.box.max - position_m()));
+    return distance_m * longest_lift_m <= outline.lift_m * glm::length(farthest_m);
+  }
   bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id, const LinkEnd& end);
   void cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings);
   void cover_triangles(const Scene& scene, const WorldFacet& facet);
@@ -100,11 +108,7 @@ inline void PathHalf::find_scenery(const Scene& scene, const FacetOutlines& outl
   const auto hidden = [&](const Aabb<double>& box) { return map_.hides(box, longest_lift_m); };
   outlines.visit_from(position_m(), hidden, look_at);
   for (const std::uint32_t index : outlines.scenery()) {
-    const FacetOutline& outline = outlines.of(FacetId(index));
-    const double distance_m = std::abs(signed_distance_m(scene.facets()[index].plane, position_m()));
-    const Vec3 farthest_m =
-        glm::max(glm::abs(outline.box.min - position_m()), glm::abs(outline.box.max - position_m()));
-    if (distance_m * longest_lift_m <= outline.lift_m * glm::length(farthest_m)) look_at(FacetId(index));
+    if (is_lifted_far(scene, outlines, FacetId(index))) look_at(FacetId(index));
   }
   finish(scene, outlines, end, settings, layer);
 }
@@ -114,9 +118,12 @@ inline void PathHalf::find_bodies(const Scene& scene, const FacetOutlines& outli
   HalfLayer& layer = layers_[1];
   layer.clear();
   for (const FacetOutlines::BodyFacets& body : outlines.bodies()) {
-    if (body.box.empty() || map_.hides(body.box, 1.0)) continue;  // what grazes one of its sides is no farther in front
+    if (body.box.empty()) continue;
+    const bool is_hidden = map_.hides(body.box, longest_lift_m);
     for (std::uint32_t index = body.first; index < body.first + body.count; ++index) {
-      if (may_see(scene, outlines, FacetId(index), end)) layer.mirrors.push_back(FacetId(index));
+      const FacetId id(index);
+      if (is_hidden && !is_lifted_far(scene, outlines, id)) continue;
+      if (may_see(scene, outlines, id, end)) layer.mirrors.push_back(id);
     }
   }
   finish(scene, outlines, end, settings, layer);

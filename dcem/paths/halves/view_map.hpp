@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "dcem/core/error.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/plane.hpp"
 #include "dcem/paths/halves/face_outline.hpp"
@@ -27,7 +28,9 @@ class ViewMap {
       : pixels_(pixels),
         tiles_(pixels / tile_pixels),
         nearness_(6 * static_cast<std::size_t>(pixels * pixels)),
-        tile_nearness_(6 * static_cast<std::size_t>(tiles_ * tiles_)) {}
+        tile_nearness_(6 * static_cast<std::size_t>(tiles_ * tiles_)) {
+    DCEM_ASSERT(pixels > 0 && pixels % tile_pixels == 0 && pixels <= detail::FaceRows::most_pixels);
+  }
 
   /// Empties the map, which from now on is that of another point.
   void look_from(const Vec3& point_m) {
@@ -36,7 +39,6 @@ class ViewMap {
     std::ranges::fill(tile_nearness_, 0.0F);
   }
   const Vec3& from_m() const { return from_m_; }
-  int pixels() const { return pixels_; }
 
   /// Notes a convex polygon, corners in order around it, that nothing passes.
   void cover(std::span<const Vec3> corners_m, const Plane& plane);
@@ -49,8 +51,6 @@ class ViewMap {
   bool hides(const Vec3& point_m, double nearer) const;
   /// Whether all of a box is hidden for sure, and would be `margin_m` nearer.
   bool hides(const Aabb<double>& box, double margin_m) const;
-
-  std::size_t bytes() const { return (nearness_.size() + tile_nearness_.size()) * sizeof(float); }
 
  private:
   static constexpr int tile_pixels = 8;

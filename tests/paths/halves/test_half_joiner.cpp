@@ -93,6 +93,14 @@ bool same_paths(const std::vector<Path>& one, const std::vector<Path>& other) {
   return true;
 }
 
+/// Checks both searches against each other; returns how many paths there are.
+std::size_t check_joined(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
+                         int pixels = 256) {
+  const std::vector<Path> expected = all_sequences(traced, from, to, asked);
+  CHECK(same_paths(joined(traced, from, to, asked, pixels), expected));
+  return expected.size();
+}
+
 LinkEnd somewhere(TracedScene<>& traced, Draw& draw) {
   return traced.end(draw.inside(Vec3(-20, -20, 0.3), Vec3(20, 20, 14)));
 }
@@ -107,11 +115,9 @@ TEST_CASE("joined halves find every path of two interactions, and the same bits"
     for (int link = 0; link < 4; ++link) {
       const LinkEnd from = somewhere(traced, draw), to = somewhere(traced, draw);
       const Asked asked{static_cast<int>(draw.below(3))};
-      const std::vector<Path> expected = all_sequences(traced, from, to, asked);
       CAPTURE(seed);
       CAPTURE(link);
-      CHECK(same_paths(joined(traced, from, to, asked, draw.below(2) == 0 ? 256 : 64), expected));
-      found += expected.size();
+      found += check_joined(traced, from, to, asked, draw.below(2) == 0 ? 256 : 64);
     }
   }
   MESSAGE(found << " paths");
@@ -124,7 +130,7 @@ TEST_CASE("every bound on reflections, diffractions and interactions is kept") {
     Draw draw(7);
     TracedScene<> traced(small_town(draw));
     const LinkEnd from = somewhere(traced, draw), to = somewhere(traced, draw);
-    CHECK(same_paths(joined(traced, from, to, asked), all_sequences(traced, from, to, asked)));
+    check_joined(traced, from, to, asked);
   }
 }
 
@@ -143,9 +149,7 @@ TEST_CASE("an end that touches a wall, the ground or a car sees past it") {
     };
     const LinkEnd from = traced.end(on_surface()), to = traced.end(on_surface());
     CAPTURE(seed);
-    const std::vector<Path> expected = all_sequences(traced, from, to, {1});
-    CHECK(same_paths(joined(traced, from, to, {1}), expected));
-    found += expected.size();
+    found += check_joined(traced, from, to, {1});
   }
   CHECK(found > 50);
 }
@@ -159,10 +163,7 @@ TEST_CASE("the body that a device rides on is not there for it") {
     const Vec3 place_m = traced.scene.body_state(car).placement.pose.position_m + Vec3(0, 0, draw.between(0.2, 1.6));
     const LinkEnd from = somewhere(traced, draw), to = traced.end(place_m, car);
     CAPTURE(seed);
-    const std::vector<Path> expected = all_sequences(traced, from, to, {});
-    CHECK(same_paths(joined(traced, from, to, {}), expected));
-    CHECK(same_paths(joined(traced, to, from, {}), all_sequences(traced, to, from, {})));
-    found += expected.size();
+    found += check_joined(traced, from, to, {}) + check_joined(traced, to, from, {});
   }
   CHECK(found > 100);
 }
@@ -183,9 +184,7 @@ TEST_CASE("patches on top of each other, tilted by dirt, hide nothing from rays 
     const auto low = [&] { return traced.end(draw.inside(Vec3(-25, -25, 0.001), Vec3(25, 25, 0.4))); };
     const LinkEnd from = low(), to = low();
     CAPTURE(seed);
-    const std::vector<Path> expected = all_sequences(traced, from, to, {});
-    CHECK(same_paths(joined(traced, from, to, {}), expected));
-    found += expected.size();
+    found += check_joined(traced, from, to, {});
   }
   CHECK(found > 60);
 }
