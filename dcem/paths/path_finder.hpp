@@ -15,13 +15,14 @@ namespace dcem {
 
 /// The paths from every transmitter to one receiver. An absent transmitter has none. With a `cache`, the sequences that
 /// it remembers are tried first, and afterwards it holds those of the paths found. `reached` says which edges each
-/// transmitter reaches, and is needed where diffractions are wanted; `halves` are needed where the settings say so.
+/// transmitter reaches, and is needed where diffractions are wanted; `proposed`, by transmitter, holds the sequences of
+/// the halves where the settings say so.
 template <typename Index>
 std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSearchSettings& settings,
                                   const LinkEnd& receiver, const SphereKey& key,
                                   std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters,
                                   PathCache* cache = nullptr, std::span<const ReachedEdges> reached = {},
-                                  const LinkHalves* halves = nullptr);
+                                  std::span<const SequenceList> proposed = {});
 
 /// The edges that one end reaches: by exhaustive search every one, in place of what `reach` holds; otherwise those that
 /// `rays` rays come by, in addition to it.
@@ -67,9 +68,10 @@ template <typename Index>
 std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSearchSettings& settings,
                                   const LinkEnd& receiver, const SphereKey& key,
                                   std::span<const std::optional<LinkEnd>> transmitters, SearchCounters& counters,
-                                  PathCache* cache, std::span<const ReachedEdges> reached, const LinkHalves* halves) {
+                                  PathCache* cache, std::span<const ReachedEdges> reached,
+                                  std::span<const SequenceList> proposed) {
   DCEM_ASSERT(settings.max_diffractions == 0 || reached.size() == transmitters.size());
-  DCEM_ASSERT(!settings.halves || halves != nullptr);
+  DCEM_ASSERT(!settings.halves || proposed.size() == transmitters.size());
   detail::PathSearch<Index> search(tracer, settings, receiver, transmitters, counters);
   const bool steady = cache != nullptr && detail::remembers_all(*cache, transmitters);
   EdgeReach seen_now;
@@ -77,7 +79,7 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSe
   const bool joins_edges = settings.max_diffractions > 0 && (settings.exhaustive || needs_rays(settings));
   EdgeReach* const noted = joins_edges ? &seen : nullptr;
   if (cache != nullptr) search.revalidate(*cache);
-  if (settings.halves) search.join_halves(*halves);
+  if (settings.halves) search.solve_proposed(proposed);
   if (settings.exhaustive) {
     search.search_all(noted);
   } else if (needs_rays(settings)) {

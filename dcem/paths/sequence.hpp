@@ -41,6 +41,28 @@ inline std::size_t edge_count(std::span<const SequenceElement> sequence) {
       std::count_if(sequence.begin(), sequence.end(), [](SequenceElement element) { return element.is_edge(); }));
 }
 
+/// Many sequences, one after another.
+class SequenceList {
+ public:
+  void clear() {
+    elements_.clear();
+    ends_.clear();
+  }
+  void add(std::span<const SequenceElement> sequence) {
+    elements_.insert(elements_.end(), sequence.begin(), sequence.end());
+    ends_.push_back(elements_.size());
+  }
+  std::size_t size() const { return ends_.size(); }
+  std::span<const SequenceElement> operator[](std::size_t index) const {
+    const std::size_t first = index == 0 ? 0 : ends_[index - 1];
+    return std::span(elements_).subspan(first, ends_[index] - first);
+  }
+
+ private:
+  std::vector<SequenceElement> elements_;
+  std::vector<std::size_t> ends_;
+};
+
 struct SequenceHash {
   std::size_t operator()(const Sequence& sequence) const noexcept {
     std::uint64_t hash = sequence.size();

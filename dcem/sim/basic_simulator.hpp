@@ -102,6 +102,8 @@ class BasicSimulator {
     CacheCounters cache;
   };
 
+  struct MapShare;
+
   void check_surface_model() const;
   TreeUpdateReport update_index(const ChangeSet& changes);
   LinkEnd link_end(const DeviceState& state, TraversalCounters& counters) const {
@@ -129,9 +131,16 @@ class BasicSimulator {
   PathSearchSettings search_settings(std::span<const char> embedded_edges = {}) const;
   std::span<const std::optional<LinkEnd>> ends_beside(const Device& receiver, const TransmitterEnds& transmitters,
                                                       std::vector<std::optional<LinkEnd>>& others) const;
+  /// Where a receiver's sequences of few interactions come from, where the plan has halves: they are joined in a room,
+  /// or they have been already.
+  struct Proposals {
+    PathHalf* room = nullptr;
+    std::span<const SequenceList> joined{};
+  };
+
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
   Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
-                        PathCache* cache, PathHalf* room) const;
+                        PathCache* cache, const Proposals& proposals) const;
   /// What rough surfaces bring to one receiver, by transmitter; empty entries where it is not asked for.
   std::vector<DiffusePower> diffuse_powers(const std::string& receiver, const LinkEnd& end, const RadioEnd& to,
                                            const TransmitterEnds& transmitters,

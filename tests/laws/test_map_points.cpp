@@ -84,3 +84,53 @@ TEST_CASE("a map equals a run point by point, with diffuse power and arrays, wha
     CHECK(diffracted > 20);
   }
 }
+
+TEST_CASE("points of a town's map that look together find what each finds by itself, and what a run finds") {
+  // Exact, with cars and a sheet of glass in the way; and with longer paths, for which rays look.
+  for (const int interactions : {2, 3}) {
+    io::Scenario scenario = io::load_scenario(std::filesystem::path(DCEM_DATA_DIR) / "town_drive.json");
+    PropagationSettings& propagation = scenario.settings.propagation;
+    propagation.discovery = Discovery::automatic;
+    propagation.cache = CacheMode::off;
+    propagation.max_interactions = interactions;
+    propagation.rays = 200;
+    ReceiverGrid grid;
+    grid.id = "map";
+    grid.spacing_m = {2.0, 1.5};
+    grid.count = {9, 7};
+    grid.origin_m =
+        scenario.scene.device_state(scenario.scene.receivers()[0], scenario.scene.frame_at(4.0)).position_m +
+        Vec3(-8.0, -4.5, 0.0);
+    std::vector<std::vector<RadioMap>> maps;
+    std::vector<WorkCounters> work(2);
+    for (const bool share : {true, false}) {
+      SimulationSettings settings = scenario.settings;
+      settings.share_map_work = share;
+      Simulator simulator(scenario.scene, settings);
+      simulator.move_to(simulator.scene().frame_at(4.0));
+      maps.push_back(simulator.radio_maps(grid, {}, &work[share ? 0 : 1]));
+    }
+    std::vector<Device> points;
+    for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+      points.push_back(grid_receiver(grid, cell / grid.columns(), cell % grid.columns()));
+    }
+    Simulator simulator(scenario.scene, scenario.settings);
+    simulator.move_to(simulator.scene().frame_at(4.0));
+    std::size_t open = 0, paths = 0;
+    for (const LinkResult& link : simulator.solve(points)) {
+      for (const std::vector<RadioMap>& map : maps) {
+        const RadioMapPoint& point = map[link.transmitter].points[link.receiver];
+        CAPTURE(link.receiver);
+        if (point.obstructed) continue;
+        CHECK(same_bits(point.statistics, link.statistics));
+        ++open;
+        paths += link.paths.size();
+      }
+    }
+    MESSAGE(open << " links, " << paths << " paths, " << work[0].sequences_solved << " sequences solved instead of "
+                 << work[1].sequences_solved);
+    CHECK(open > 100);
+    CHECK(paths > 1'000);
+    if (interactions == 2) CHECK(work[0].sequences_solved < work[1].sequences_solved);
+  }
+}

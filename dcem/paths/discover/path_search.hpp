@@ -1,5 +1,6 @@
 #pragma once
-/// One receiver's search in one frame: what was remembered, what a discovery proposes, what edges join.
+/// One receiver's search in one frame: what was remembered, what a discovery or the caller proposes, what
+/// edges join.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +15,6 @@
 #include "dcem/paths/discover/path_cache.hpp"
 #include "dcem/paths/discover/ray_launcher.hpp"
 #include "dcem/paths/halves/covered.hpp"
-#include "dcem/paths/halves/half_joiner.hpp"
-#include "dcem/paths/halves/kept_half.hpp"
 #include "dcem/paths/solve/path_solver.hpp"
 
 namespace dcem {
@@ -30,8 +29,8 @@ struct PathSearchSettings {
   int max_diffractions = 0;
   int max_interactions = 10;  ///< reflections and diffractions together
   EdgeRules edges{};          ///< which edges diffract
-  /// Where the search is not exhaustive: the sequences that `halves_cover` names are all found, from halves, and rays
-  /// look for the others alone.
+  /// Where the search is not exhaustive: the sequences that `halves_cover` names are all proposed by the caller, and
+  /// rays look for the others alone.
   bool halves = false;
 };
 
@@ -40,17 +39,6 @@ inline bool needs_rays(const PathSearchSettings& settings) {
   return !settings.exhaustive &&
          !(settings.halves && halves_cover(settings.max_diffractions, settings.max_interactions));
 }
-
-inline HalfSettings half_settings(const PathSearchSettings& settings) {
-  return {settings.max_diffractions > 0, settings.max_transmissions == 0, settings.edges};
-}
-
-/// The halves that a search from one receiver joins.
-struct LinkHalves {
-  const FacetOutlines& outlines;
-  std::span<const KeptHalf> transmitters;  ///< by their numbers; those of absent ones are not looked at
-  PathHalf& receiver;                      ///< room for the receiver's own
-};
 
 inline ChainLimits chain_limits(const PathSearchSettings& settings) {
   return {static_cast<std::size_t>(settings.max_reflections), static_cast<std::size_t>(settings.max_diffractions),
@@ -131,26 +119,16 @@ class PathSearch {
         receiver_, [&](const Sequence& sequence, const std::vector<Vec3>& images_m) { try_all(sequence, images_m); });
   }
 
-  /// Solves every sequence that `halves_cover` names and that may carry a path.
-  void join_halves(const LinkHalves& halves) {
-    const Scene& scene = tracer_.scene();
-    const bool direct_alone = settings_.max_interactions == 0;
-    if (!direct_alone) {
-      halves.receiver.find_scenery(scene, halves.outlines, receiver_, half_settings(settings_));
-      halves.receiver.find_bodies(scene, halves.outlines, receiver_, half_settings(settings_));
-    }
-    HalfJoiner joiner(scene, halves.outlines,
-                      {settings_.max_reflections, settings_.max_diffractions, settings_.max_interactions});
+  /// Solves the sequences that somebody else proposes, by transmitter.
+  void solve_proposed(std::span<const SequenceList> proposed) {
+    Sequence sequence;
     for (std::size_t index = 0; index < transmitters_.size(); ++index) {
       if (!transmitters_[index]) continue;
-      const auto solve = [&](const Sequence& sequence) {
+      for (std::size_t number = 0; number < proposed[index].size(); ++number) {
+        const std::span<const SequenceElement> elements = proposed[index][number];
+        sequence.assign(elements.begin(), elements.end());
         ++counters_.sequences_proposed;
         if (!is_remembered(index, sequence)) keep(index, solver_.solve(*transmitters_[index], receiver_, sequence));
-      };
-      if (direct_alone) {
-        solve({});
-      } else {
-        joiner.for_each_sequence(halves.receiver, halves.transmitters[index].half(), solve);
       }
     }
   }

@@ -43,7 +43,6 @@ class ConeList {
     const double side = signed_distance_m(mirror, apex_m) > 0.0 ? -1.0 : 1.0;
     // The farther away the apex, the coarser its coordinates in single precision.
     const double slack_m = 5e-3 + 1e-6 * glm::length(apex_m - origin_m);
-    add_plane(origin_m, side * mirror.normal, mirror.point_m, slack_m);
     Vec3 centre_m(0.0);
     for (const Vec3& corner : window_m) centre_m += corner / static_cast<double>(window_m.size());
     for (std::size_t index = 0; index < window_m.size(); ++index) {
@@ -54,6 +53,7 @@ class ConeList {
         continue;  // says nothing: left out, the cone is wider
       add_plane(origin_m, (glm::dot(across, centre_m - apex_m) < 0.0 ? -across : across) / length, apex_m, slack_m);
     }
+    add_plane(origin_m, side * mirror.normal, mirror.point_m, slack_m);  // last: it keeps more than the others do
     first_.push_back(planes_.size());
   }
 

@@ -16,7 +16,7 @@ class KeptHalf {
     const bool stands = end_ && end_->position_m == end.position_m && end_->ignored_body == end.ignored_body &&
                         end_->mounted_on == end.mounted_on;
     if (!stands) half_.find_scenery(scene, outlines, end, settings);
-    half_.find_bodies(scene, outlines, end, settings);
+    half_.find_bodies(scene, outlines, settings);
     end_ = end;
   }
   const PathHalf& half() const { return half_; }

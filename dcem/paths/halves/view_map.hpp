@@ -1,5 +1,6 @@
 #pragma once
-/// What is hidden from a point for sure: a cube map of surfaces that fill whole pixels.
+/// What is hidden from a point, or from several points close to each other, for sure: a cube map of surfaces that fill
+/// whole pixels.
 ///
 /// Each pixel holds the depth of a surface that is known to fill the pixel by itself. Something is hidden where all
 /// pixels that it touches are filled by surfaces that are nearer. The map errs on one side alone: what it calls hidden
@@ -18,11 +19,15 @@
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/plane.hpp"
 #include "dcem/paths/halves/face_outline.hpp"
+#include "dcem/paths/halves/inset.hpp"
 
 namespace dcem {
 
 class ViewMap {
  public:
+  /// What is nearer by this factor is never hidden.
+  static constexpr double always_seen = 1e30;
+
   /// So many pixels along each side of the six faces: a multiple of 8, at most 1024.
   explicit ViewMap(int pixels)
       : pixels_(pixels),
@@ -32,9 +37,11 @@ class ViewMap {
     DCEM_ASSERT(pixels > 0 && pixels % tile_pixels == 0 && pixels <= detail::FaceRows::most_pixels);
   }
 
-  /// Empties the map, which from now on is that of another point.
-  void look_from(const Vec3& point_m) {
+  /// Empties the map, which from now on is that of another point. With `offsets_m` it is that of all points
+  /// `point_m + offsets_m[i]`, too, seen from `point_m`: outlines hide only what they hide from all of them.
+  void look_from(const Vec3& point_m, std::span<const Vec3> offsets_m = {}) {
     from_m_ = point_m;
+    offsets_m_.assign(offsets_m.begin(), offsets_m.end());
     std::ranges::fill(nearness_, 0.0F);
     std::ranges::fill(tile_nearness_, 0.0F);
   }
@@ -43,12 +50,12 @@ class ViewMap {
   /// Notes a convex polygon, corners in order around it, that nothing passes.
   void cover(std::span<const Vec3> corners_m, const Plane& plane);
 
-  /// Whether a convex polygon, lifted out of its plane by `lift_m` towards the point, may be seen.
-  bool shows(std::span<const Vec3> corners_m, const Plane& plane, double lift_m);
+  /// Whether a convex polygon, its distance divided by `nearer` ≥ 1, may be seen.
+  bool shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer);
   /// Whether a straight line, its distance divided by `nearer` ≥ 1, may be seen.
   bool shows(const Vec3& from_m, const Vec3& to_m, double nearer);
-  /// Whether a point, its distance divided by `nearer` ≥ 1, is hidden for sure.
-  bool hides(const Vec3& point_m, double nearer) const;
+  /// Whether a point that is known to within `beside_m`, its distance divided by `nearer` ≥ 1, is hidden for sure.
+  bool hides(const Vec3& point_m, double nearer, double beside_m = 0.0) const;
   /// Whether all of a box is hidden for sure, and would be `margin_m` nearer.
   bool hides(const Aabb<double>& box, double margin_m) const;
 
@@ -83,6 +90,7 @@ class ViewMap {
     return outline.size() > 0;
   }
   bool shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, double nearer);
+  void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m);
   void cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness);
   void renew_tiles(int face, int first_row, int last_row, int first_column, int last_column);
   bool hides_on(int face, const Vec3& low_m, const Vec3& high_m, double margin_m) const;
@@ -99,9 +107,11 @@ class ViewMap {
 
   int pixels_, tiles_;
   Vec3 from_m_{0.0};
+  std::vector<Vec3> offsets_m_;       ///< of further points
   std::vector<float> nearness_;       ///< 1/depth of what fills the pixel; 0: nothing does
   std::vector<float> tile_nearness_;  ///< the smallest of 8 × 8 pixels
   detail::FaceRows rows_;
+  std::vector<Vec3> normals_;  ///< room for sides that have been moved
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -109,6 +119,15 @@ class ViewMap {
 inline void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane) {
   const double distance_m = -signed_distance_m(plane, from_m_);
   if (corners_m.size() > detail::FaceOutline::most_corners || distance_m == 0.0) return;
+  if (offsets_m_.empty()) return cover_as_it_is(corners_m, plane, distance_m);
+  normals_.clear();
+  detail::InsetOutline smaller;
+  if (!sides_moved_in(corners_m, plane, from_m_, offsets_m_, normals_)) return;
+  if (!inset_outline(corners_m, from_m_, normals_, smaller)) return;
+  if (smaller.count <= detail::FaceOutline::most_corners) cover_as_it_is(smaller.corners(), plane, distance_m);
+}
+
+inline void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m) {
   for (int face = 0; face < 6; ++face) {
     detail::FaceOutline outline;
     // Over the rim, so that pixels at the rim are filled, too.
@@ -160,10 +179,10 @@ inline void ViewMap::renew_tiles(int face, int first_row, int last_row, int firs
   }
 }
 
-inline bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& plane, double lift_m) {
+inline bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer) {
   const double distance_m = -signed_distance_m(plane, from_m_);
-  if (corners_m.size() > detail::FaceOutline::most_corners || std::abs(distance_m) <= 2.0 * lift_m) return true;
-  const double nearer = std::abs(distance_m) / (std::abs(distance_m) - lift_m);
+  const bool says_nothing = std::abs(distance_m) < 1e-6 || nearer >= always_seen;
+  if (says_nothing || corners_m.size() > detail::FaceOutline::most_corners) return true;
   for (int face = 0; face < 6; ++face) {
     detail::FaceOutline outline;
     if (outline_on(face, corners_m, 1.0 + 1e-6, outline) &&
@@ -224,17 +243,28 @@ inline bool ViewMap::shows_on(int face, const detail::FaceOutline& outline, cons
   return false;
 }
 
-inline bool ViewMap::hides(const Vec3& point_m, double nearer) const {
+inline bool ViewMap::hides(const Vec3& point_m, double nearer, double beside_m) const {
   const Vec3 offset_m = point_m - from_m_, size = glm::abs(offset_m);
   const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   const double depth = size[axis];
   if (depth < 1e-3) return false;
-  const auto pixel = [&](double offset) {
-    return std::clamp(static_cast<int>((offset / depth + 1.0) * 0.5 * pixels_), 0, pixels_ - 1);
+  // Moved by beside_m, the point moves by less than this on the face; close to a rim of it the map says nothing.
+  const double blur = 2.5 * beside_m / depth;
+  if (blur > 0.5) return false;
+  const double across = offset_m[(axis + 1) % 3] / depth, along = offset_m[(axis + 2) % 3] / depth;
+  if (beside_m > 0.0 && std::max(std::abs(across), std::abs(along)) + blur >= 1.0) return false;
+  const auto pixel = [&](double place) {
+    return std::clamp(static_cast<int>((place + 1.0) * 0.5 * pixels_), 0, pixels_ - 1);
   };
   const int face = 2 * axis + (offset_m[axis] < 0.0 ? 1 : 0);
-  const int column = pixel(offset_m[(axis + 1) % 3]), number = pixel(offset_m[(axis + 2) % 3]);
-  return static_cast<float>(nearer * (1.0 + rounding) / depth) <= row(face, number)[column];
+  const auto nearness = static_cast<float>(nearer * (1.0 + rounding) / (depth - beside_m));
+  const int last_row = pixel(along + blur), last_column = pixel(across + blur);
+  for (int number = pixel(along - blur); number <= last_row; ++number) {
+    for (int column = pixel(across - blur); column <= last_column; ++column) {
+      if (nearness > row(face, number)[column]) return false;
+    }
+  }
+  return true;
 }
 
 inline bool ViewMap::hides(const Aabb<double>& box, double margin_m) const {

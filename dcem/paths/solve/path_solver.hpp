@@ -84,7 +84,14 @@ class PathSolver {
                                            : touches_mirror(element.mirror(), index, sequence, ignored);
       if (!holds) return std::nullopt;
     }
-    return follow(transmitter, receiver, sequence, ignored);
+    // Most candidates die on a leg, and of several legs on one in the middle; what touches an edge takes longer to ask.
+    if (is_blocked_between(sequence, ignored)) return std::nullopt;
+    std::optional<Path> path = follow(transmitter, receiver, sequence, ignored);
+    for (std::size_t index = 0; index < sequence.size() && path; ++index) {
+      const SequenceElement element = sequence[sequence.size() - 1 - index];
+      if (element.is_edge() && touches_third(element.edge(), index, ignored)) return std::nullopt;
+    }
+    return path;
   }
 
   /// Whether an end is mounted on the first surface that it would see: such a mirror does not reflect for it, and along
@@ -124,7 +131,7 @@ class PathSolver {
            std::abs(signed_distance_m(plane, edge.end_m)) <= tolerance_m;
   }
 
-  /// Whether the wedge diffracts at the path's point `index`: both neighbours in its exterior, no third facet there.
+  /// Whether the wedge diffracts at the path's point `index`: both neighbours in its exterior.
   bool touches_edge(WedgeId id, std::size_t index, const LinkEnd& transmitter, const LinkEnd& receiver,
                     const IgnoredBodies& ignored) {
     const WorldWedge& wedge = scene().wedge(id);
@@ -135,12 +142,33 @@ class PathSolver {
     const Vec3& after_m = index + 1 == points_m.size() ? receiver.position_m : points_m[index + 1];
     if (!clear_of_faces(wedge.edge, before_m - here_m) || !clear_of_faces(wedge.edge, after_m - here_m)) return false;
     in_shadow_[index] = hides(wedge, before_m, here_m, after_m);
-    if (rules_.shadow_only && !in_shadow_[index]) return false;
+    return !rules_.shadow_only || in_shadow_[index];
+  }
+
+  /// Whether a third facet is at the path's point `index`, on an edge: then nothing diffracts there.
+  bool touches_third(WedgeId id, std::size_t index, const IgnoredBodies& ignored) {
+    const WorldWedge& wedge = scene().wedge(id);
     const double tolerance_m = scene().settings().weld_tolerance_m + wedge.edge.stray_m;
-    for (const FacetId near : tracer_.facets_near(here_m, tolerance_m, ignored, counters_.traversal)) {
-      if (near != wedge.facets[0] && near != wedge.facets[1]) return false;
+    const std::vector<FacetId> near =
+        tracer_.facets_near(points_.points_m()[index], tolerance_m, ignored, counters_.traversal);
+    return std::any_of(near.begin(), near.end(),
+                       [&](FacetId facet) { return facet != wedge.facets[0] && facet != wedge.facets[1]; });
+  }
+
+  /// Whether something opaque stands between two points of interaction, where nothing transmits.
+  bool is_blocked_between(const Sequence& sequence, const IgnoredBodies& ignored) {
+    if (max_transmissions_ > 0) return false;
+    const std::vector<Vec3>& points_m = points_.points_m();
+    for (std::size_t leg = 1; leg < sequence.size(); ++leg) {
+      const Stop start = stop_at(sequence[sequence.size() - leg]), end = stop_at(sequence[sequence.size() - 1 - leg]);
+      if (!(glm::distance(points_m[leg - 1], points_m[leg]) > in_plane_guard_m)) return true;
+      ++counters_.legs;
+      if (!tracer_.follow_leg(points_m[leg - 1], points_m[leg], start.end(), end.end(), ignored, 0, crossings_,
+                              counters_.traversal)) {
+        return true;
+      }
     }
-    return true;
+    return false;
   }
 
   /// Whether the wedge stands between two points that diffract at `here_m`. Within rounding of the shadow boundary the

@@ -5,7 +5,7 @@
 #include "dcem/core/units.hpp"
 #include "dcem/field/diffuse/diffuse_contribution.hpp"
 #include "dcem/field/radio_end.hpp"
-#include "dcem/paths/discover/path_search.hpp"
+#include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
 

@@ -23,8 +23,8 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   std::vector<PathHalf> rooms = rooms_for_halves();
   pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
     PathCache* cache = caches.empty() ? nullptr : &caches[index];
-    PathHalf* room = rooms.empty() ? nullptr : &rooms[worker];
-    by_receiver[index] = solve_receiver(receivers[index], index, transmitters, cache, room);
+    by_receiver[index] =
+        solve_receiver(receivers[index], index, transmitters, cache, {rooms.empty() ? nullptr : &rooms[worker]});
   });
   Solved sum;
   sum.work = transmitters.work;
@@ -54,7 +54,7 @@ std::span<const std::optional<LinkEnd>> BasicSimulator<Surface, Index>::ends_bes
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_receiver(
     const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, PathCache* cache,
-    PathHalf* room) const {
+    const Proposals& proposals) const {
   const Tracer tracer(scene_, index_);
   const DeviceState state = scene_.device_state(receiver, frame_);
   Solved solved;
@@ -67,10 +67,14 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const PathSearchSettings search = search_settings(transmitters.embedded);
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
-  std::optional<LinkHalves> halves;
-  if (room != nullptr) halves.emplace(LinkHalves{*outlines_, transmitters.halves, *room});
-  std::vector<LinkPaths> found = find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache,
-                                            transmitters.reached, halves ? &*halves : nullptr);
+  std::span<const SequenceList> joined = proposals.joined;
+  std::vector<SequenceList> own;
+  if (joined.empty() && proposals.room != nullptr) {
+    own = join_halves(scene_, search, {*outlines_, transmitters.halves, *proposals.room}, end, ends);
+    joined = own;
+  }
+  std::vector<LinkPaths> found =
+      find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached, joined);
   const Evaluator field = evaluator();
   const RadioEnd to = detail::radio_end(receiver, state);
   std::vector<DiffusePower> diffuse = diffuse_powers(receiver.id, end, to, transmitters, ends, solved.work);

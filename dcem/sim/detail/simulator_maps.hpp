@@ -2,8 +2,10 @@
 /// How a `BasicSimulator` makes maps; included by basic_simulator.hpp.
 #include <algorithm>
 
+#include "dcem/paths/halves/crowd_joiner.hpp"
 #include "dcem/paths/query/embedded_edges.hpp"
 #include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/detail/map_groups.hpp"
 
 namespace dcem {
 
@@ -16,6 +18,47 @@ RadioMapPoint BasicSimulator<Surface, Index>::map_point(const LinkResult& link, 
   if (strongest != link.paths.end()) point.strongest_kinds = kinds(strongest->path);
   return point;
 }
+
+/// What all points of some maps share where the plan has halves, and what each thread needs.
+template <SurfaceModel Surface, SpatialIndex Index>
+struct BasicSimulator<Surface, Index>::MapShare {
+  /// Sequences by point, then by transmitter.
+  using Joined = std::vector<std::vector<SequenceList>>;
+
+  MapShare(const BasicSimulator& simulator, const TransmitterEnds& transmitters)
+      : lanes(simulator.scene_, *simulator.outlines_),
+        search(simulator.search_settings(transmitters.embedded)),
+        masts(transmitters.link.size()),
+        crowds(std::max(1U, simulator.pool_->size())) {
+    const bool both = search.max_interactions >= 2 && search.max_reflections >= 1 && search.max_diffractions >= 1;
+    simulator.pool_->for_each(masts.size(), [&](std::size_t index, unsigned) {
+      if (!transmitters.link[index]) return;
+      masts[index].emplace(simulator.scene_, *simulator.outlines_, lanes, transmitters.halves[index].half(),
+                           search.edges, both);
+    });
+  }
+
+  /// The sequences that paths to each of some points may take.
+  Joined join(const BasicSimulator& simulator, std::span<const Vec3> points_m, unsigned worker) {
+    Joined joined(points_m.size(), std::vector<SequenceList>(masts.size()));
+    crowds[worker].look_from(simulator.scene_, *simulator.outlines_, lanes, points_m, half_settings(search));
+    const Tracer tracer(simulator.scene_, simulator.index_);
+    CrowdJoiner<Index> joiner(tracer, *simulator.outlines_, lanes, joined_orders(search));
+    for (std::size_t index = 0; index < masts.size(); ++index) {
+      if (!masts[index]) continue;
+      for (std::vector<SequenceList>& of_point : joined) of_point[index].add({});
+      joiner.for_each_sequence(crowds[worker], *masts[index], [&](const Sequence& sequence, std::size_t point) {
+        joined[point][index].add(sequence);
+      });
+    }
+    return joined;
+  }
+
+  LaneScene lanes;
+  PathSearchSettings search;
+  std::vector<std::optional<MastLists>> masts;
+  std::vector<Crowd> crowds;
+};
 
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverGrid& grid,
@@ -38,21 +81,43 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverG
     maps.push_back({grid, scene_.transmitters()[index].id, std::vector<RadioMapPoint>(grid.size())});
   }
   const ObstructionTest<Index> obstruction(tracer, index_, transmitters_m);
-  std::vector<WorkCounters> spent(grid.rows());
-  std::vector<PathHalf> rooms = rooms_for_halves();
-  pool_->for_each(grid.rows(), [&](std::size_t row, unsigned worker) {
-    PathHalf* const room = rooms.empty() ? nullptr : &rooms[worker];
+  std::vector<char> open(grid.size(), 0);
+  pool_->for_each(grid.rows(), [&](std::size_t row, unsigned) {
     for (std::size_t column = 0; column < grid.columns(); ++column) {
       const std::size_t cell = row * grid.columns() + column;
       const Vec3 position_m = grid_point_m(grid, row, column);
-      const bool obstructed = obstruction.obstructed(position_m);
-      for (RadioMap& map : maps) map.points[cell] = {position_m, obstructed, {}, {}};
-      if (obstructed) continue;
-      const Solved solved = solve_receiver(grid_receiver(single, row, column), cell, transmitters, nullptr, room);
-      for (const LinkResult& link : solved.links) maps[link.transmitter].points[cell] = map_point(link, position_m);
-      spent[row] += solved.work;
+      open[cell] = obstruction.obstructed(position_m) ? 0 : 1;
+      for (RadioMap& map : maps) map.points[cell] = {position_m, open[cell] == 0, {}, {}};
     }
-    if (progress) progress(grid.columns());
+  });
+  const auto position_m = [&](std::size_t cell) {
+    return grid_point_m(grid, cell / grid.columns(), cell % grid.columns());
+  };
+  const bool shares_views = plan_.halves && settings_.share_map_work && !transmitters.halves.empty();
+  const std::vector<std::vector<std::size_t>> groups =
+      detail::map_groups(grid, open, [&](std::size_t from, std::size_t to) {
+        return shares_views && !index_.occluded(segment_between(position_m(from), position_m(to)), {}, nullptr);
+      });
+  if (progress) progress(static_cast<std::size_t>(std::ranges::count(open, 0)));
+  std::optional<MapShare> share;
+  if (shares_views) share.emplace(*this, transmitters);
+  std::vector<WorkCounters> spent(groups.size());
+  std::vector<PathHalf> rooms = rooms_for_halves();
+  pool_->for_each(groups.size(), [&](std::size_t number, unsigned worker) {
+    const std::vector<std::size_t>& group = groups[number];
+    std::vector<Vec3> points_m;
+    for (const std::size_t cell : group) points_m.push_back(position_m(cell));
+    typename MapShare::Joined joined;
+    if (share && group.size() > 1) joined = share->join(*this, points_m, worker);
+    for (std::size_t at = 0; at < group.size(); ++at) {
+      const std::size_t cell = group[at];
+      const Solved solved = solve_receiver(
+          grid_receiver(single, cell / grid.columns(), cell % grid.columns()), cell, transmitters, nullptr,
+          {rooms.empty() ? nullptr : &rooms[worker], joined.empty() ? std::span<const SequenceList>{} : joined[at]});
+      for (const LinkResult& link : solved.links) maps[link.transmitter].points[cell] = map_point(link, points_m[at]);
+      spent[number] += solved.work;
+    }
+    if (progress) progress(group.size());
   });
   if (work == nullptr) return maps;
   *work += transmitters.work;

@@ -7,58 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/paths/path_finder.hpp"
-#include "tests/paths/small_scenes.hpp"
+#include "tests/paths/halves/small_town.hpp"
 
 using namespace dcem;
 using namespace dcem::test;
 
 namespace {
-
-/// A ground, houses, sheets, and two cars that are bodies of their own.
-Scene small_town(Draw& draw) {
-  TriangleMesh mesh;
-  if (draw.below(4) != 0) add_sheet(mesh, Vec3(0.0), Vec3(30, 0, 0), Vec3(0, 30, 0), "opaque");
-  const std::size_t houses = 1 + draw.below(4), sheets = draw.below(4);
-  for (std::size_t house = 0; house < houses; ++house) {
-    const Vec3 low_m(draw.between(-20, 15), draw.between(-20, 15), draw.below(2) == 0 ? 0.0 : 0.01);
-    add_box_faces(mesh, low_m, low_m + draw.inside(Vec3(2, 2, 2), Vec3(10, 10, 12)), "metal");
-  }
-  for (std::size_t sheet = 0; sheet < sheets; ++sheet) {
-    const double turn = draw.between(-pi, pi);
-    const Vec3 along(std::cos(turn), std::sin(turn), 0);
-    add_sheet(mesh, draw.inside(Vec3(-20, -20, 2), Vec3(20, 20, 4)), draw.between(1, 6) * along, Vec3(0, 0, 2),
-              draw.below(2) == 0 ? "glass" : "wall");
-  }
-  Scene scene = scene_of(mesh);
-  for (const char* name : {"one", "two"}) {
-    TriangleMesh car;
-    add_box_faces(car, Vec3(-2, -0.9, 0), Vec3(2, 0.9, 1.5), "metal");
-    const double turn_rad = draw.between(-pi, pi);
-    scene.add_object(name, car, LinearMotion{{draw.inside(Vec3(-20, -20, 0.02), Vec3(20, 20, 0.05)), turn_rad, 0, 0}});
-  }
-  return scene;
-}
-
-/// How two ends are searched.
-struct Asked {
-  int transmissions = 0;
-  int reflections = 2, diffractions = 1, interactions = 2;
-};
-
-std::vector<Path> all_sequences(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked) {
-  PathSearchSettings settings;
-  settings.max_reflections = asked.reflections;
-  settings.max_diffractions = asked.diffractions;
-  settings.max_interactions = asked.interactions;
-  settings.max_transmissions = asked.transmissions;
-  SearchCounters counters;
-  EdgeReach reach;
-  find_reach(traced.tracer, settings, from, {"tx", 0}, 0, reach, counters);
-  const std::vector<std::optional<LinkEnd>> ends{from};
-  const std::vector<ReachedEdges> reached{reach.edges()};
-  return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached).front().paths;
-}
 
 std::vector<Path> joined(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
                          int pixels = 256) {
@@ -74,23 +30,12 @@ std::vector<Path> joined(TracedScene<>& traced, const LinkEnd& from, const LinkE
   std::vector<KeptHalf> transmitters(1, KeptHalf(pixels));
   transmitters[0].update(traced.scene, outlines, from, half_settings(settings));
   PathHalf room(pixels);
-  const LinkHalves halves{outlines, transmitters, room};
   SearchCounters counters;
   const std::vector<std::optional<LinkEnd>> ends{from};
+  const std::vector<SequenceList> proposed =
+      join_halves(traced.scene, settings, {outlines, transmitters, room}, to, ends);
   const std::vector<ReachedEdges> reached(1);
-  return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached, &halves).front().paths;
-}
-
-/// The same sequences, and the same bits of every point.
-bool same_paths(const std::vector<Path>& one, const std::vector<Path>& other) {
-  if (one.size() != other.size()) return false;
-  for (std::size_t path = 0; path < one.size(); ++path) {
-    if (!same_sequence(one[path], other[path]) || one[path].length_m != other[path].length_m) return false;
-    for (std::size_t point = 0; point < one[path].interactions.size(); ++point) {
-      if (one[path].interactions[point].point_m != other[path].interactions[point].point_m) return false;
-    }
-  }
-  return true;
+  return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached, proposed).front().paths;
 }
 
 /// Checks both searches against each other; returns how many paths there are.
@@ -99,10 +44,6 @@ std::size_t check_joined(TracedScene<>& traced, const LinkEnd& from, const LinkE
   const std::vector<Path> expected = all_sequences(traced, from, to, asked);
   CHECK(same_paths(joined(traced, from, to, asked, pixels), expected));
   return expected.size();
-}
-
-LinkEnd somewhere(TracedScene<>& traced, Draw& draw) {
-  return traced.end(draw.inside(Vec3(-20, -20, 0.3), Vec3(20, 20, 14)));
 }
 
 }  // namespace
@@ -207,7 +148,7 @@ TEST_CASE("a half that is kept while bodies move is the half made anew") {
     PathHalf fresh;
     const FacetOutlines now(traced.scene);
     fresh.find_scenery(traced.scene, now, end, {});
-    fresh.find_bodies(traced.scene, now, end, {});
+    fresh.find_bodies(traced.scene, now, {});
     for (std::size_t layer = 0; layer < 2; ++layer) {
       CHECK(kept.half().layers()[layer].mirrors == fresh.layers()[layer].mirrors);
       CHECK(kept.half().layers()[layer].edges == fresh.layers()[layer].edges);

@@ -131,3 +131,36 @@ TEST_CASE("a gap between two walls narrower than a pixel is seen through") {
   CHECK(map.shows(Vec3(5, -1, 0), Vec3(5, 1, 0), 1.0));
   CHECK_FALSE(map.shows(Vec3(5, 1, 0), Vec3(5, 2, 0), 1.0));
 }
+
+TEST_CASE("no ray from any point of a crowd meets a facet that the crowd calls hidden") {
+  Draw draw(11);
+  std::size_t met = 0, hidden = 0, lost = 0;
+  for (int round = 0; round < 12; ++round) {
+    TracedScene<> traced(scene_of(heap_of_boxes(draw, 25)));
+    const FacetOutlines outlines(traced.scene);
+    for (int place = 0; place < 4; ++place) {
+      const Vec3 middle_m = draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20));
+      const Vec3 half_m = draw.between(0.05, 4.0) * Vec3(1, 1, place % 2 == 0 ? 0.0 : 0.5);
+      std::vector<Vec3> points_m;
+      for (std::size_t point = 0; point < 2 + draw.below(15); ++point) {
+        points_m.push_back(middle_m + draw.inside(-half_m, half_m));
+      }
+      Sight sight(place < 2 ? 64 : 256);
+      SeenLayer seen;
+      sight.look_from(points_m);
+      sight.find_scenery(traced.scene, outlines, {}, seen);
+      hidden += outlines.size() - seen.mirrors.size();
+      for (int ray = 0; ray < 30'000; ++ray) {
+        const Ray<double> way{points_m[draw.below(points_m.size())], draw.direction()};
+        const auto hit = traced.tracer.closest_hit(way, {}, {}, traced.counters);
+        if (!hit) continue;
+        ++met;
+        lost += std::ranges::binary_search(seen.mirrors, hit->facet) ? 0 : 1;
+      }
+    }
+  }
+  MESSAGE(met << " hits, " << hidden << " facets hidden");
+  CHECK(lost == 0);
+  CHECK(met > 500'000);
+  CHECK(hidden > 400);
+}

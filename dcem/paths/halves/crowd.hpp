@@ -1,0 +1,108 @@
+#pragma once
+/// A few receivers side by side, that look at the scene together.
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "dcem/paths/halves/lanes.hpp"
+#include "dcem/paths/halves/sight.hpp"
+
+namespace dcem {
+
+/// Holds scratch memory: one per thread.
+class Crowd {
+ public:
+  static constexpr std::size_t most_points = 2 * simd_lanes;
+
+  explicit Crowd(int map_pixels = 256) : sight_(map_pixels) {}
+
+  /// Looks from 1 to `most_points` points, which touch nothing and ride on nothing.
+  void look_from(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes,
+                 std::span<const Vec3> points_m, const HalfSettings& settings) {
+    points_m_.assign(points_m.begin(), points_m.end());
+    origin_m_ = lanes.origin_m();
+    sight_.look_from(points_m);
+    sight_.find_scenery(scene, outlines, settings, layers_[0]);
+    sight_.find_bodies(scene, outlines, settings, layers_[1]);
+    radius_m_ = 0.0;
+    for (const Vec3& point_m : points_m) {
+      radius_m_ = std::max(radius_m_, glm::distance(point_m, sight_.position_m()));
+    }
+  }
+
+  const Sight& sight() const { return sight_; }
+  std::span<const Vec3> points_m() const { return points_m_; }
+  double radius_m() const { return radius_m_; }
+  /// What of the scenery, and what of all that moves, any of the points may see.
+  std::span<const SeenLayer, 2> layers() const { return layers_; }
+
+  std::size_t packs() const { return (points_m_.size() + simd_lanes - 1) / simd_lanes; }
+  /// The points of a pack, and which of its lanes hold one.
+  LanePoints pack(std::size_t number) const { return {part(points_m_, number), origin_m_}; }
+  std::uint32_t lanes_of(std::size_t number) const { return (1U << part(points_m_, number).size()) - 1U; }
+
+  /// The images of a pack's points in a plane.
+  LanePoints images(std::size_t number, const Plane& plane) const {
+    std::array<Vec3, simd_lanes> images_m;
+    const std::span<const Vec3> points_m = part(points_m_, number);
+    for (std::size_t at = 0; at < points_m.size(); ++at) images_m[at] = mirrored(plane, points_m[at]);
+    return {{images_m.data(), points_m.size()}, origin_m_};
+  }
+
+  /// What the images of all points on one `side` (1 or −1) of a mirror may see through it; false where no point is
+  /// there. The cone of each image is inside.
+  ///
+  /// With α the distance of a point inside a side of the mirror, β that from its plane, its image sees X, h in front of
+  /// the plane, inside that side where m·X − b + (α/β) h ≥ 0, m·x ≥ b being the side in the plane: the largest α/β of
+  /// all points serves all.
+  bool cone(const FacetOutlines& outlines, FacetId facet, const Plane& plane, double side,
+            std::vector<HalfSpace>& result) const {
+    result.clear();
+    std::vector<std::array<double, 2>>& beyond = scratch_;
+    beyond.clear();
+    for (std::size_t at = 0; at < points_m_.size(); ++at) {
+      const double height_m = side * signed_distance_m(plane, points_m_[at]);
+      if (height_m > in_plane_guard_m) beyond.push_back({static_cast<double>(at), height_m});
+    }
+    if (beyond.empty()) return false;
+    const Vec3 up = side * plane.normal;
+    for (const HullSide& edge : outlines.sides(facet)) {
+      double slope = -std::numeric_limits<double>::infinity();
+      for (const auto& [at, height_m] : beyond) {
+        const double inside_m = glm::dot(edge.normal, points_m_[static_cast<std::size_t>(at)]) - edge.offset_m;
+        slope = std::max(slope, inside_m / height_m);
+      }
+      if (slope > 1e4 || edge.normal == Vec3(0.0)) continue;  // hardly a bound
+      add(edge.normal + slope * up, edge.offset_m + slope * glm::dot(up, plane.point_m), result);
+    }
+    add(up, glm::dot(up, plane.point_m), result);  // last: it keeps more than the others do
+    return true;
+  }
+
+ private:
+  static std::span<const Vec3> part(std::span<const Vec3> points_m, std::size_t number) {
+    return points_m.subspan(number * simd_lanes,
+                            std::min<std::size_t>(simd_lanes, points_m.size() - number * simd_lanes));
+  }
+  void add(const Vec3& inwards, double offset_m, std::vector<HalfSpace>& result) const {
+    const double length = glm::length(inwards);
+    const Vec3 normal = inwards / length;
+    // Points to be tested are in single precision, too, some of them far away.
+    const double here_m = offset_m / length - glm::dot(normal, origin_m_);
+    result.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
+                      static_cast<float>(here_m - 1e-2 - 1e-6 * std::abs(here_m))});
+  }
+
+  Sight sight_;
+  std::array<SeenLayer, 2> layers_;
+  std::vector<Vec3> points_m_;
+  Vec3 origin_m_{0.0};
+  double radius_m_ = 0.0;
+  mutable std::vector<std::array<double, 2>> scratch_;
+};
+
+}  // namespace dcem

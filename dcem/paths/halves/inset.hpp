@@ -1,0 +1,89 @@
+#pragma once
+/// What a convex outline hides from several points at once.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "dcem/geometry/plane.hpp"
+
+namespace dcem {
+
+namespace detail {
+
+/// A convex polygon of up to so many corners.
+struct InsetOutline {
+  static constexpr std::size_t capacity = 64;
+  std::array<Vec3, capacity> corners_m;
+  std::size_t count = 0;
+
+  std::span<const Vec3> corners() const { return {corners_m.data(), count}; }
+
+  /// Keeps what lies on the inner side of a plane; false where nothing is left, or too much.
+  bool keep(const Vec3& inward, double offset_m) {
+    std::array<Vec3, capacity> kept;
+    std::size_t left = 0;
+    for (std::size_t index = 0; index < count; ++index) {
+      const Vec3 &from = corners_m[index], &to = corners_m[index + 1 == count ? 0 : index + 1];
+      const double here = glm::dot(inward, from) - offset_m, there = glm::dot(inward, to) - offset_m;
+      if (left + 2 > capacity) return false;
+      if (here >= 0.0) kept[left++] = from;
+      if ((here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0)) {
+        kept[left++] = from + here / (here - there) * (to - from);
+      }
+    }
+    corners_m = kept;
+    count = left;
+    return count >= 3;
+  }
+};
+
+}  // namespace detail
+
+/// The sides of a convex polygon as half spaces through a point P = from_m, each moved inwards so far that what is
+/// inside all of them and behind the polygon is hidden by it from all points P + offsets_m[i], too. False where a point
+/// is not clearly on the same side of the plane as P.
+///
+/// With d the distance of P from the plane, n its normal towards P, and m the normal of a side in the plane, inwards,
+/// the plane through P and the side has the normal N = m + (β/d) n, β being the distance of P's foot outside the side.
+/// P + δ sees a point X that lies e behind the plane inside the side if N·(X − P) ≥ e (−N·δ)/(d + n·δ). As e is less
+/// than −n·(X − P), it is enough that (N + κ n)·(X − P) ≥ 0 with κ = max(0, −N·δ/(d + n·δ)).
+inline bool sides_moved_in(std::span<const Vec3> corners_m, const Plane& plane, const Vec3& from_m,
+                           std::span<const Vec3> offsets_m, std::vector<Vec3>& normals) {
+  constexpr double hair_m = 1e-6;
+  const double side = signed_distance_m(plane, from_m), distance_m = std::abs(side);
+  const Vec3 towards = side > 0.0 ? plane.normal : -plane.normal;
+  double reach_m = 0.0;
+  for (const Vec3& offset_m : offsets_m) reach_m = std::max(reach_m, std::abs(glm::dot(towards, offset_m)));
+  if (!(distance_m > 1.001 * reach_m + hair_m)) return false;
+  Vec3 centre_m(0.0);
+  for (const Vec3& corner : corners_m) centre_m += corner / static_cast<double>(corners_m.size());
+  for (std::size_t index = 0; index < corners_m.size(); ++index) {
+    const Vec3 &from = corners_m[index], &to = corners_m[index + 1 == corners_m.size() ? 0 : index + 1];
+    Vec3 inward = glm::cross(plane.normal, to - from);
+    const double length = glm::length(inward);
+    if (!(length > 1e-9)) continue;  // its neighbours move the corner by as much
+    inward *= (glm::dot(inward, centre_m - from) < 0.0 ? -1.0 : 1.0) / length;
+    const Vec3 through = inward + glm::dot(inward, from - from_m) / distance_m * towards;
+    double moved = 0.0;
+    for (const Vec3& offset_m : offsets_m) {
+      moved = std::max(moved, -glm::dot(through, offset_m) / (distance_m + glm::dot(towards, offset_m)));
+    }
+    normals.push_back(through + (moved + hair_m / distance_m) * towards);
+  }
+  return true;
+}
+
+/// The part of a convex polygon inside half spaces through a point; false where nothing is left.
+inline bool inset_outline(std::span<const Vec3> corners_m, const Vec3& from_m, std::span<const Vec3> normals,
+                          detail::InsetOutline& result) {
+  if (corners_m.size() + 2 > detail::InsetOutline::capacity) return false;
+  std::copy(corners_m.begin(), corners_m.end(), result.corners_m.begin());
+  result.count = corners_m.size();
+  return std::all_of(normals.begin(), normals.end(),
+                     [&](const Vec3& normal) { return result.keep(normal, glm::dot(normal, from_m)); });
+}
+
+}  // namespace dcem

@@ -1,0 +1,203 @@
+#pragma once
+/// Gates for several points at once: where ways cross a facet, and where they meet an edge.
+///
+/// All in single precision around an origin in the middle of the scene. Each result carries how far it may be off; what
+/// a gate refuses cannot be, and what it lets pass the solver decides.
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dcem/core/simd.hpp"
+#include "dcem/paths/halves/cone.hpp"
+#include "dcem/paths/halves/edge_clusters.hpp"
+#include "dcem/paths/halves/facet_outlines.hpp"
+
+namespace dcem {
+
+/// Eight points.
+struct LanePoints {
+  Float8 x, y, z;
+
+  explicit LanePoints(const Vec3& all)
+      : x(static_cast<float>(all.x)), y(static_cast<float>(all.y)), z(static_cast<float>(all.z)) {}
+  LanePoints(const Float8& x_of, const Float8& y_of, const Float8& z_of) : x(x_of), y(y_of), z(z_of) {}
+  /// As many points as there are, counted from an origin; the last one fills the lanes that are left.
+  LanePoints(std::span<const Vec3> points_m, const Vec3& origin_m) : x(0.0F), y(0.0F), z(0.0F) {
+    std::array<std::array<float, simd_lanes>, 3> numbers;
+    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+      const Vec3 point_m = points_m[std::min(lane, points_m.size() - 1)] - origin_m;
+      for (int axis = 0; axis < 3; ++axis) {
+        numbers[static_cast<std::size_t>(axis)][lane] = static_cast<float>(point_m[axis]);
+      }
+    }
+    x = Float8(numbers[0]);
+    y = Float8(numbers[1]);
+    z = Float8(numbers[2]);
+  }
+
+  friend LanePoints operator-(const LanePoints& one, const LanePoints& other) {
+    return {one.x - other.x, one.y - other.y, one.z - other.z};
+  }
+};
+
+inline Float8 dot(const LanePoints& points, float x, float y, float z) {
+  return points.x * x + points.y * y + points.z * z;
+}
+
+/// Points that a gate has found, how far they may be off, and the lanes that it lets pass.
+struct LaneGate {
+  LanePoints points;
+  Float8 beside_m;
+  std::uint32_t lanes;
+};
+
+/// An edge in single precision, with the normals of both faces.
+struct LaneEdge {
+  std::array<float, 3> start, direction, first_normal, last_normal;
+  bool both_faces = false;  ///< in the interior is what is behind both faces; otherwise the gate does not ask
+
+  Float8 place(const LanePoints& from_start) const { return dot(from_start, direction[0], direction[1], direction[2]); }
+};
+
+/// All facets and edges of a scene in single precision.
+class LaneScene {
+ public:
+  LaneScene(const Scene& scene, const FacetOutlines& outlines) : origin_m_(outlines.middle_m()) {
+    const auto note = [&](const Vec3& normal, double offset_m) {
+      return HalfSpace{static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
+                       static_cast<float>(offset_m - glm::dot(normal, origin_m_))};
+    };
+    for (std::uint32_t index = 0; index < scene.facets().size(); ++index) {
+      const Plane& plane = scene.facets()[index].plane;
+      planes_.push_back(note(plane.normal, glm::dot(plane.normal, plane.point_m)));
+      first_.push_back(static_cast<std::uint32_t>(sides_.size()));
+      for (const HullSide& side : outlines.sides(FacetId(index))) sides_.push_back(note(side.normal, side.offset_m));
+      for (const Vec3& corner_m : scene.hull_m(scene.facets()[index])) {
+        reach_m_ = std::max(reach_m_, glm::length(corner_m - origin_m_));
+      }
+    }
+    first_.push_back(static_cast<std::uint32_t>(sides_.size()));
+    for (const WorldWedge& wedge : scene.wedges()) edges_.push_back(lane_edge(wedge.edge));
+  }
+
+  const Vec3& origin_m() const { return origin_m_; }
+  /// How far the scene reaches from the origin.
+  double reach_m() const { return reach_m_; }
+  const HalfSpace& plane(FacetId facet) const { return planes_[facet.value]; }
+  std::span<const HalfSpace> sides(FacetId facet) const {
+    return std::span(sides_).subspan(first_[facet.value], first_[facet.value + 1] - first_[facet.value]);
+  }
+  const LaneEdge& edge(WedgeId edge) const { return edges_[edge.value]; }
+
+  /// How far a distance from a plane, or along an edge, may be off where no number is larger than `reach_m`: of four
+  /// numbers and their sums, each rounded to 6e-8.
+  static float error_m(double reach_m) { return static_cast<float>(4e-7 * reach_m); }
+
+  /// Where straight ways cross a facet, on it or beside it by less than the result may be off. `error_m` holds for both
+  /// ends.
+  LaneGate cross(FacetId facet, const LanePoints& from, const LanePoints& to, const Float8& error_m,
+                 std::uint32_t lanes) const;
+  /// The straight ways that cross a convex part of a plane for sure, not closer to its sides and to their ends than
+  /// `room_m`.
+  static LaneGate inside(const HalfSpace& plane, std::span<const HalfSpace> sides, const LanePoints& from,
+                         const LanePoints& to, const Float8& room_m, std::uint32_t lanes);
+  /// Where the shortest ways over an edge to the end that sees `part` of it meet that part. Ways from the interior are
+  /// refused.
+  LaneGate meet(const EdgePart& part, const LanePoints& from, float error_m, std::uint32_t lanes) const;
+
+ private:
+  static constexpr float beside_m = 1e-3F;  ///< points this far beside a facet or an edge are left to the solver
+
+  LaneEdge lane_edge(const Wedge& wedge) const {
+    const Vec3 start = wedge.start_m - origin_m_, direction = edge_direction(wedge);
+    const double angle_rad = wedge.exterior_angle_rad;
+    const Vec3 last = std::sin(angle_rad) * wedge.tangent - std::cos(angle_rad) * wedge.normal;
+    const auto floats = [](const Vec3& of) {
+      return std::array{static_cast<float>(of.x), static_cast<float>(of.y), static_cast<float>(of.z)};
+    };
+    return {floats(start), floats(direction), floats(wedge.normal), floats(last), angle_rad > pi};
+  }
+
+  Vec3 origin_m_;
+  double reach_m_ = 1.0;
+  std::vector<HalfSpace> planes_, sides_;
+  std::vector<std::uint32_t> first_;
+  std::vector<LaneEdge> edges_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+// Lanes are asked for what they are not, so that NaN, of ways along a plane or an edge, passes.
+
+inline LaneGate LaneScene::cross(FacetId facet, const LanePoints& from, const LanePoints& to, const Float8& error_m,
+                                 std::uint32_t lanes) const {
+  const HalfSpace& plane = planes_[facet.value];
+  const Float8 first = dot(from, plane.x, plane.y, plane.z) - plane.offset;
+  const Float8 last = dot(to, plane.x, plane.y, plane.z) - plane.offset;
+  const Mask8 above = (error_m < first) & (error_m < last), below = (first < -error_m) & (last < -error_m);
+  lanes &= ~(above | below).bits();
+  LaneGate gate{from, Float8(0.0F), lanes};
+  if (lanes == 0) return gate;
+  const LanePoints way = to - from;
+  const Float8 inverse = Float8(1.0F) / (first - last), share = first * inverse;
+  const Float8 length = simd::absolute(way.x) + simd::absolute(way.y) + simd::absolute(way.z);
+  gate.points = {from.x + share * way.x, from.y + share * way.y, from.z + share * way.z};
+  gate.beside_m = error_m * (Float8(2.0F) + length * simd::absolute(inverse));
+  const Float8 room = gate.beside_m + beside_m;
+  for (const HalfSpace& side : sides(facet)) {
+    gate.lanes &= ~(dot(gate.points, side.x, side.y, side.z) + room < Float8(side.offset)).bits();
+    if (gate.lanes == 0) break;
+  }
+  return gate;
+}
+
+inline LaneGate LaneScene::inside(const HalfSpace& plane, std::span<const HalfSpace> sides, const LanePoints& from,
+                                  const LanePoints& to, const Float8& room_m, std::uint32_t lanes) {
+  const Float8 first = dot(from, plane.x, plane.y, plane.z) - plane.offset;
+  const Float8 last = dot(to, plane.x, plane.y, plane.z) - plane.offset;
+  const Mask8 down = (room_m < first) & (last < -room_m), up = (first < -room_m) & (room_m < last);
+  lanes &= (down | up).bits();
+  LaneGate gate{from, room_m, lanes};
+  if (lanes == 0) return gate;
+  const LanePoints way = to - from;
+  const Float8 inverse = Float8(1.0F) / (first - last), share = first * inverse;
+  const Float8 length = simd::absolute(way.x) + simd::absolute(way.y) + simd::absolute(way.z);
+  gate.points = {from.x + share * way.x, from.y + share * way.y, from.z + share * way.z};
+  gate.beside_m = room_m * (Float8(2.0F) + length * simd::absolute(inverse));
+  for (const HalfSpace& side : sides) {
+    gate.lanes &= (Float8(side.offset) + gate.beside_m < dot(gate.points, side.x, side.y, side.z)).bits();
+    if (gate.lanes == 0) break;
+  }
+  return gate;
+}
+
+inline LaneGate LaneScene::meet(const EdgePart& part, const LanePoints& from, float error_m,
+                                std::uint32_t lanes) const {
+  const LaneEdge& edge = edges_[part.edge];
+  const LanePoints away{from.x - edge.start[0], from.y - edge.start[1], from.z - edge.start[2]};
+  if (edge.both_faces) {
+    const Float8 slack(-(error_m + beside_m));
+    const Mask8 behind = (dot(away, edge.first_normal[0], edge.first_normal[1], edge.first_normal[2]) < slack) &
+                         (dot(away, edge.last_normal[0], edge.last_normal[1], edge.last_normal[2]) < slack);
+    lanes &= ~behind.bits();
+  }
+  LaneGate gate{from, Float8(0.0F), lanes};
+  if (lanes == 0) return gate;
+  const Float8 place = edge.place(away);
+  const LanePoints across{away.x - place * edge.direction[0], away.y - place * edge.direction[1],
+                          away.z - place * edge.direction[2]};
+  const Float8 distance = simd::square_root(across.x * across.x + across.y * across.y + across.z * across.z);
+  const Float8 inverse = Float8(1.0F) / (distance + part.distance), between = place - part.place;
+  const Float8 point = Float8(part.place) + between * (Float8(part.distance) * inverse);
+  gate.beside_m = Float8(4.0F * error_m) * (Float8(1.0F) + simd::absolute(between) * inverse);
+  const Float8 room = gate.beside_m + beside_m;
+  gate.lanes &= ~((point + room < Float8(part.from)) | (Float8(part.to) + room < point)).bits();
+  gate.points = {point * edge.direction[0] + edge.start[0], point * edge.direction[1] + edge.start[1],
+                 point * edge.direction[2] + edge.start[2]};
+  return gate;
+}
+
+}  // namespace dcem

@@ -1,0 +1,76 @@
+/// Receivers that look together find what each of them finds by trying every sequence.
+#include "dcem/paths/halves/crowd_joiner.hpp"
+
+#include <doctest/doctest.h>
+
+#include <optional>
+#include <vector>
+
+#include "tests/paths/halves/small_town.hpp"
+
+using namespace dcem;
+using namespace dcem::test;
+
+namespace {
+
+HalfSettings half_settings_of(const Asked& asked) {
+  return {asked.diffractions > 0, asked.transmissions == 0, {}};
+}
+
+/// The paths from one end to each point of a crowd.
+std::vector<std::vector<Path>> found_together(TracedScene<>& traced, const LinkEnd& from,
+                                              const std::vector<Vec3>& points_m, const Asked& asked, int pixels) {
+  const FacetOutlines outlines(traced.scene);
+  const LaneScene lanes(traced.scene, outlines);
+  PathHalf half(pixels);
+  half.find_scenery(traced.scene, outlines, from, half_settings_of(asked));
+  half.find_bodies(traced.scene, outlines, half_settings_of(asked));
+  const MastLists mast(traced.scene, outlines, lanes, half, {}, true);
+  Crowd crowd(pixels);
+  crowd.look_from(traced.scene, outlines, lanes, points_m, half_settings_of(asked));
+  CrowdJoiner<WideIndex> joiner(traced.tracer, outlines, lanes,
+                                {asked.reflections, asked.diffractions, asked.interactions});
+  PathSolver<WideIndex> solver(traced.tracer, asked.transmissions);
+  std::vector<std::vector<Path>> paths(points_m.size());
+  const auto solve = [&](const Sequence& sequence, std::size_t point) {
+    if (auto path = solver.solve(from, traced.end(points_m[point]), sequence)) paths[point].push_back(std::move(*path));
+  };
+  for (std::size_t point = 0; point < points_m.size(); ++point) solve({}, point);
+  joiner.for_each_sequence(crowd, mast, solve);
+  for (std::vector<Path>& link : paths) dcem::detail::sort_and_drop_repeated(link);
+  return paths;
+}
+
+std::vector<Vec3> points_beside(Draw& draw, const Vec3& middle_m, const Vec3& size_m, std::size_t count) {
+  std::vector<Vec3> points_m;
+  for (std::size_t point = 0; point < count; ++point) {
+    points_m.push_back(middle_m + draw.inside(-0.5 * size_m, 0.5 * size_m));
+  }
+  return points_m;
+}
+
+}  // namespace
+
+TEST_CASE("a crowd finds every path of each of its points, and the same bits") {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    Draw draw(seed);
+    TracedScene<> traced(small_town(draw));
+    const LinkEnd from = somewhere(traced, draw);
+    const Asked asked{static_cast<int>(draw.below(3))};
+    const double size_m = draw.between(0.1, 8.0);
+    const std::vector<Vec3> points_m =
+        points_beside(draw, draw.inside(Vec3(-20, -20, 0.3), Vec3(20, 20, 14)),
+                      Vec3(size_m, size_m, draw.below(2) == 0 ? 0.0 : 0.5 * size_m), 1 + draw.below(16));
+    CAPTURE(seed);
+    const auto together = found_together(traced, from, points_m, asked, draw.below(2) == 0 ? 256 : 64);
+    for (std::size_t point = 0; point < points_m.size(); ++point) {
+      CAPTURE(point);
+      const std::vector<Path> expected = all_sequences(traced, from, traced.end(points_m[point]), asked);
+      CHECK(same_paths(together[point], expected));
+      found += expected.size();
+    }
+  }
+  MESSAGE(found << " paths");
+  CHECK(found > 3'000);
+}
