@@ -114,11 +114,12 @@ class BasicSimulator {
                    std::span<PathCache> caches) const;
   /// With `reach`, which has an entry per transmitter, edges that were within reach in frames before count, too.
   /// `embedded` as in `EdgeRules`.
-  /// With `halves`, which has an entry per transmitter too, what is kept of them is used.
+  /// With `halves`, which has an entry per transmitter too, what is kept of them is used; otherwise they are made,
+  /// `fine` where very many receivers join them.
   TransmitterEnds transmitter_ends(std::span<EdgeReach> reach, std::span<KeptHalf> halves,
-                                   std::vector<char> embedded = {}) const;
+                                   std::vector<char> embedded = {}, bool fine = false) const;
   void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
-  void find_transmitter_halves(TransmitterEnds& ends, std::span<KeptHalf> halves) const;
+  void find_transmitter_halves(TransmitterEnds& ends, std::span<KeptHalf> halves, bool fine) const;
   /// Room for the halves of receivers, one per thread; empty where the plan has none.
   std::vector<PathHalf> rooms_for_halves() const {
     return std::vector<PathHalf>(plan_.halves ? std::max(1U, pool_->size()) : 0U);
@@ -192,7 +193,7 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   if (!plan_.halves) return;
   outlines_.emplace(scene_);
   const std::size_t transmitters = scene_.transmitters().size();
-  halves_.assign(transmitters, KeptHalf(detail::map_pixels_for(transmitters)));
+  halves_.assign(transmitters, KeptHalf(detail::view_pixels_for(transmitters)));
 }
 
 /// What a model of the caller's own cannot do would otherwise be left out in silence.

@@ -157,7 +157,7 @@ class CrowdJoiner {
   template <typename Visit>
   void mirror_pairs(const Ends& ends, FacetId last, const Vec3& image_m, Visit& visit) {
     const auto radius_m = static_cast<float>(ends.crowd.radius_m() + 1e-2);
-    ends.mast.for_each_image_in(cone_, image_m, radius_m, [&](std::uint32_t mirror) {
+    ends.mast.for_each_image_in(cone_, image_m + lanes_.origin_m(), radius_m, [&](std::uint32_t mirror) {
       const MastLists::Mirror& first = ends.mast.mirrors()[mirror];
       if (first.facet == last) return;
       const LanePoints apex(first.image_m);

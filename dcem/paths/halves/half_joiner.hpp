@@ -58,7 +58,7 @@ class HalfJoiner {
   };
 
   /// Points this far beside a facet are left to the solver. Far above rounding.
-  static constexpr double beside_m = 2e-3;
+  static constexpr float beside_m = 2e-3F;
 
   /// Where a straight way crosses the plane of a facet, strictly between its ends, on or beside the facet.
   std::optional<Vec3> crossing(FacetId facet, const Vec3& from_m, const Vec3& to_m) const {
@@ -113,7 +113,7 @@ class HalfJoiner {
     for (std::size_t at = 0; at < receiver.layer.mirrors.size(); ++at) {
       const FacetId near = receiver.layer.mirrors[at];
       const Vec3& image_m = receiver.layer.images_m[at];
-      transmitter.layer.for_each_image_in(receiver.layer.cones[at], [&](std::uint32_t other) {
+      transmitter.layer.for_each_image_in(receiver.layer.cones[at], image_m, beside_m, [&](std::uint32_t other) {
         const FacetId far = transmitter.layer.mirrors[other];
         if (near == far) return;
         const auto far_m = crossing(far, transmitter.layer.images_m[other], image_m);

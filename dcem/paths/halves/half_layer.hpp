@@ -26,9 +26,10 @@ struct HalfLayer : SeenLayer {
     lay_out_edges(scene, end_m);
   }
 
-  /// Calls `visit(mirror)` for the mirrors whose image of the end may lie in a cone.
+  /// Calls `visit(mirror)` for the mirrors whose image of the end may lie in a cone, and may see through the mirror a
+  /// point or what is within `radius_m` of it.
   template <typename Visit>
-  void for_each_image_in(std::span<const HalfSpace> cone, Visit&& visit) const;
+  void for_each_image_in(std::span<const HalfSpace> cone, const Vec3& point_m, float radius_m, Visit&& visit) const;
   /// Calls `visit(edge)` for the edges of which the point that diffracts between the end and `apex_m` may lie in a
   /// cone.
   template <typename Visit>
@@ -36,29 +37,19 @@ struct HalfLayer : SeenLayer {
 
  private:
   using Lanes = std::array<float, simd_lanes>;
+  /// Eight images, and what each of them sees through its mirror: as many half spaces as a mirror of four sides has.
+  struct ImageLanes {
+    static constexpr std::size_t plane_count = 5;
+    std::array<Lanes, 3> place{};
+    std::array<std::array<Lanes, 4>, plane_count> planes{};
+  };
 
   void lay_out_images(const Scene& scene, const Vec3& end_m);
   void lay_out_edges(const Scene& scene, const Vec3& end_m);
-  static std::uint32_t inside(std::span<const HalfSpace> cone, const Float8& x, const Float8& y, const Float8& z,
-                              std::uint32_t lanes) {
-    for (const HalfSpace& plane : cone) {
-      if (lanes == 0) return 0;
-      lanes &= (Float8(plane.offset) <= x * plane.x + y * plane.y + z * plane.z).bits();
-    }
-    return lanes;
-  }
-  template <typename Visit>
-  static void visit_lanes(const ConeClusters& clusters, std::size_t first, std::uint32_t lanes, Visit& visit) {
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const std::uint32_t item = clusters.items()[first + static_cast<std::size_t>(std::countr_zero(lanes))];
-      if (item != ConeClusters::nothing) visit(item);
-    }
-  }
-
   Vec3 origin_m_{0.0};  ///< of the numbers in single precision
   ConeClusters image_clusters_;
   EdgeClusters edge_clusters_;
-  std::vector<std::array<Lanes, 3>> image_lanes_;
+  std::vector<ImageLanes> image_lanes_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -76,12 +67,22 @@ inline void HalfLayer::lay_out_images(const Scene& scene, const Vec3& end_m) {
   });
   const std::span<const std::uint32_t> items = image_clusters_.items();
   image_lanes_.assign(items.size() / simd_lanes, {});
-  for (std::size_t place = 0; place < items.size(); ++place) {
-    if (items[place] == ConeClusters::nothing) continue;
-    const Vec3 image = images_m[items[place]] - origin_m_;
+  constexpr float everywhere = -1e30F;
+  for (std::size_t at = 0; at < items.size(); ++at) {
+    ImageLanes& eight = image_lanes_[at / simd_lanes];
+    const std::size_t lane = at % simd_lanes;
+    for (auto& plane : eight.planes) plane[3][lane] = everywhere;
+    if (items[at] == ConeClusters::nothing) continue;
+    const Vec3 image = images_m[items[at]] - origin_m_;
     for (int axis = 0; axis < 3; ++axis) {
-      image_lanes_[place / simd_lanes][static_cast<std::size_t>(axis)][place % simd_lanes] =
-          static_cast<float>(image[axis]);
+      eight.place[static_cast<std::size_t>(axis)][lane] = static_cast<float>(image[axis]);
+    }
+    const std::span<const HalfSpace> cone = cones[items[at]];
+    for (std::size_t side = 0; side < std::min(ImageLanes::plane_count, cone.size()); ++side) {
+      eight.planes[side][0][lane] = cone[side].x;
+      eight.planes[side][1][lane] = cone[side].y;
+      eight.planes[side][2][lane] = cone[side].z;
+      eight.planes[side][3][lane] = cone[side].offset;
     }
   }
 }
@@ -96,11 +97,28 @@ inline void HalfLayer::lay_out_edges(const Scene& scene, const Vec3& end_m) {
 }
 
 template <typename Visit>
-void HalfLayer::for_each_image_in(std::span<const HalfSpace> cone, Visit&& visit) const {
+void HalfLayer::for_each_image_in(std::span<const HalfSpace> cone, const Vec3& point_m, float radius_m,
+                                  Visit&& visit) const {
+  const Vec3 point = point_m - origin_m_;
+  const auto px = static_cast<float>(point.x), py = static_cast<float>(point.y), pz = static_cast<float>(point.z);
+  const float room_m = radius_m + 1e-6F * static_cast<float>(glm::length(point));
   image_clusters_.for_each_in(cone, [&](std::size_t first) {
-    const std::array<Lanes, 3>& lanes = image_lanes_[first / simd_lanes];
-    const Float8 x(lanes[0]), y(lanes[1]), z(lanes[2]);
-    visit_lanes(image_clusters_, first, inside(cone, x, y, z, 0xffU), visit);
+    const ImageLanes& eight = image_lanes_[first / simd_lanes];
+    const Float8 x(eight.place[0]), y(eight.place[1]), z(eight.place[2]);
+    std::uint32_t left = 0xffU;
+    for (const HalfSpace& plane : cone) {
+      left &= ~(x * plane.x + y * plane.y + z * plane.z < Float8(plane.offset)).bits();
+      if (left == 0) return;
+    }
+    for (const auto& plane : eight.planes) {
+      const Float8 inside = Float8(plane[0]) * px + Float8(plane[1]) * py + Float8(plane[2]) * pz + room_m;
+      left &= ~(inside < Float8(plane[3])).bits();
+      if (left == 0) return;
+    }
+    for (; left != 0; left &= left - 1) {
+      const std::uint32_t item = image_clusters_.items()[first + static_cast<std::size_t>(std::countr_zero(left))];
+      if (item != ConeClusters::nothing) visit(item);
+    }
   });
 }
 

@@ -46,10 +46,15 @@ class MastLists {
     return std::span(parts_).subspan(first_part_[edge.value], first_part_[edge.value + 1] - first_part_[edge.value]);
   }
 
-  /// Calls `visit(mirror)` for mirrors whose image may lie in a cone and that may see, through the mirror, `point` or
-  /// what is within `radius_m` of it.
+  /// Calls `visit(mirror)` for mirrors whose image may lie in a cone and that may see a point through the
+  /// mirror, or what is within `radius_m` of it.
   template <typename Visit>
-  void for_each_image_in(std::span<const HalfSpace> cone, const Vec3& point, float radius_m, Visit&& visit) const;
+  void for_each_image_in(std::span<const HalfSpace> cone, const Vec3& point_m, float radius_m, Visit&& visit) const {
+    for (std::size_t layer = 0; layer < first_mirror_.size(); ++layer) {
+      half_.layers()[layer].for_each_image_in(cone, point_m, radius_m,
+                                              [&](std::uint32_t mirror) { visit(first_mirror_[layer] + mirror); });
+    }
+  }
   /// Calls `visit(part)` for parts on which the point that diffracts between the transmitter and an apex may lie in a
   /// cone, for the apex at `apex` or within `radius_m` of it.
   template <typename Visit>
@@ -63,19 +68,12 @@ class MastLists {
 
  private:
   using Lanes = std::array<float, simd_lanes>;
-  /// Eight images, and what each of them sees through its mirror: as many half spaces as a mirror of four sides has.
-  struct ImageLanes {
-    static constexpr std::size_t plane_count = 5;
-    Lanes x{}, y{}, z{};
-    std::array<std::array<Lanes, 4>, plane_count> planes{};
-  };
   /// Eight parts of one edge, each lit by the image in a mirror.
   struct LitLanes {
     Lanes from{}, to{}, place{}, distance{};
     std::array<std::uint32_t, simd_lanes> mirror{};
   };
 
-  void lay_out_mirrors();
   void lay_out_parts(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes);
   void list_lit_parts(const Scene& scene, const LaneScene& lanes, const EdgeRules& rules);
   EdgePart lit_part(const Scene& scene, const LaneScene& lanes, WedgeId edge, std::uint32_t mirror) const;
@@ -84,8 +82,7 @@ class MastLists {
   Vec3 position_m_;
   std::vector<Mirror> mirrors_;
   std::vector<std::uint32_t> mirror_of_;
-  ConeClusters image_clusters_;
-  std::vector<ImageLanes> image_lanes_;
+  std::vector<std::uint32_t> first_mirror_;  ///< of each layer
   std::vector<EdgePart> parts_;
   std::vector<std::size_t> first_part_, first_lit_;
   EdgeClusters part_clusters_;
@@ -98,41 +95,15 @@ inline MastLists::MastLists(const Scene& scene, const FacetOutlines& outlines, c
                             const PathHalf& half, const EdgeRules& rules, bool both)
     : half_(half), position_m_(half.position_m() - lanes.origin_m()), mirror_of_(scene.facets().size(), nothing) {
   for (const HalfLayer& layer : half.layers()) {
+    first_mirror_.push_back(static_cast<std::uint32_t>(mirrors_.size()));
     for (std::size_t at = 0; at < layer.mirrors.size(); ++at) {
       mirror_of_[layer.mirrors[at].value] = static_cast<std::uint32_t>(mirrors_.size());
       mirrors_.push_back({layer.mirrors[at], layer.images_m[at] - lanes.origin_m(), layer.cones[at]});
     }
   }
-  lay_out_mirrors();
   lay_out_parts(scene, outlines, lanes);
   first_lit_.assign(scene.wedges().size() + 1, 0);
   if (both) list_lit_parts(scene, lanes, rules);
-}
-
-inline void MastLists::lay_out_mirrors() {
-  image_clusters_.build(mirrors_.size(), [&](std::uint32_t mirror) {
-    return Aabb<double>{mirrors_[mirror].image_m, mirrors_[mirror].image_m};
-  });
-  const std::span<const std::uint32_t> items = image_clusters_.items();
-  image_lanes_.assign(items.size() / simd_lanes, {});
-  const float everywhere = -1e30F;
-  for (std::size_t at = 0; at < items.size(); ++at) {
-    ImageLanes& eight = image_lanes_[at / simd_lanes];
-    const std::size_t lane = at % simd_lanes;
-    for (auto& plane : eight.planes) plane[3][lane] = everywhere;
-    if (items[at] == ConeClusters::nothing) continue;
-    const Mirror& mirror = mirrors_[items[at]];
-    eight.x[lane] = static_cast<float>(mirror.image_m.x);
-    eight.y[lane] = static_cast<float>(mirror.image_m.y);
-    eight.z[lane] = static_cast<float>(mirror.image_m.z);
-    for (std::size_t side = 0; side < std::min(ImageLanes::plane_count, mirror.cone.size()); ++side) {
-      const HalfSpace& plane = mirror.cone[side];
-      eight.planes[side][0][lane] = plane.x;
-      eight.planes[side][1][lane] = plane.y;
-      eight.planes[side][2][lane] = plane.z;
-      eight.planes[side][3][lane] = plane.offset;
-    }
-  }
 }
 
 /// Pieces of an edge, half a metre long, are looked up one by one; neighbours that show make one part.
@@ -247,30 +218,6 @@ inline void MastLists::list_lit_parts(const Scene& scene, const LaneScene& lanes
   for (std::size_t edge = 1; edge < first_lit_.size(); ++edge) {
     first_lit_[edge] = first_lit_[edge - 1] + (first_lit_[edge] + simd_lanes - 1) / simd_lanes;
   }
-}
-
-template <typename Visit>
-void MastLists::for_each_image_in(std::span<const HalfSpace> cone, const Vec3& point, float radius_m,
-                                  Visit&& visit) const {
-  const auto px = static_cast<float>(point.x), py = static_cast<float>(point.y), pz = static_cast<float>(point.z);
-  image_clusters_.for_each_in(cone, [&](std::size_t first) {
-    const ImageLanes& eight = image_lanes_[first / simd_lanes];
-    const Float8 x(eight.x), y(eight.y), z(eight.z);
-    std::uint32_t left = 0xffU;
-    for (const HalfSpace& plane : cone) {
-      left &= ~(x * plane.x + y * plane.y + z * plane.z < Float8(plane.offset)).bits();
-      if (left == 0) return;
-    }
-    for (const auto& plane : eight.planes) {
-      const Float8 inside = Float8(plane[0]) * px + Float8(plane[1]) * py + Float8(plane[2]) * pz + radius_m;
-      left &= ~(inside < Float8(plane[3])).bits();
-      if (left == 0) return;
-    }
-    for (; left != 0; left &= left - 1) {
-      const std::uint32_t item = image_clusters_.items()[first + static_cast<std::size_t>(std::countr_zero(left))];
-      if (item != ConeClusters::nothing) visit(item);
-    }
-  });
 }
 
 template <typename Visit>

@@ -21,8 +21,12 @@ inline void add_search_work(const SearchCounters& counters, WorkCounters& work) 
 }
 
 /// Pixels of the view maps of so many transmitters: 1.5 MB each, less where they are many.
-inline int map_pixels_for(std::size_t transmitters) {
+inline int view_pixels_for(std::size_t transmitters) {
   return transmitters <= 64 ? PathHalf::default_pixels : transmitters <= 1024 ? PathHalf::default_pixels / 2 : 64;
+}
+/// The same where very many receivers pay for what a coarse map shows: 25 MB each at most.
+inline int fine_view_pixels_for(std::size_t transmitters) {
+  return transmitters <= 4 ? 1024 : transmitters <= 16 ? 512 : view_pixels_for(transmitters);
 }
 
 /// A device in a frame as fields see it.

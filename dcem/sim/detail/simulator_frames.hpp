@@ -79,7 +79,7 @@ void BasicSimulator<Surface, Index>::forget_replaced(const ChangeSet& changes, C
 
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::transmitter_ends(
-    std::span<EdgeReach> reach, std::span<KeptHalf> halves, std::vector<char> embedded) const {
+    std::span<EdgeReach> reach, std::span<KeptHalf> halves, std::vector<char> embedded, bool fine) const {
   TransmitterEnds ends;
   ends.embedded = std::move(embedded);
   for (const Device& device : scene_.transmitters()) {
@@ -91,14 +91,17 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
   ends.reached.resize(ends.link.size());
   const PathSearchSettings search = search_settings(ends.embedded);
   if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
-  if (plan_.halves && search.max_interactions > 0) find_transmitter_halves(ends, halves);
+  if (plan_.halves && search.max_interactions > 0) find_transmitter_halves(ends, halves, fine);
   return ends;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& ends, std::span<KeptHalf> halves) const {
+void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& ends, std::span<KeptHalf> halves,
+                                                             bool fine) const {
   if (halves.empty()) {
-    ends.own_halves.assign(ends.link.size(), KeptHalf(detail::map_pixels_for(ends.link.size())));
+    const std::size_t count = ends.link.size();
+    ends.own_halves.assign(count,
+                           KeptHalf(fine ? detail::fine_view_pixels_for(count) : detail::view_pixels_for(count)));
     halves = ends.own_halves;
   }
   const HalfSettings settings = half_settings(search_settings(ends.embedded));

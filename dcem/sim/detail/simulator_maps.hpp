@@ -68,7 +68,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverG
   const bool looks_for_embedded = settings_.share_map_work && diffraction_order(settings_.propagation) > 0 &&
                                   grid.size() >= scene_.wedges().size() / 10;
   TransmitterEnds transmitters =
-      transmitter_ends({}, {}, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{});
+      transmitter_ends({}, {}, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
   // Maps hold no channel between elements, and their powers are those of one: none is computed.
   for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
   ReceiverGrid single = grid;
