@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -85,7 +86,9 @@ class CrowdJoiner {
     for (; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
       if (hides(own.map(), lanes_.origin_m(), last_numbers, lane, own_nearer)) continue;
-      if (hides(other.map(), lanes_.origin_m(), first_numbers, lane, other_nearer)) continue;
+      // Of edges only the parts that show are looked at to begin with.
+      constexpr bool is_mirror = std::is_same_v<First, FacetId>;
+      if (is_mirror && hides(other.map(), lanes_.origin_m(), first_numbers, lane, other_nearer)) continue;
       seen |= lanes & -lanes;
     }
     if (!single && seen != 0) {

@@ -2,6 +2,8 @@
 /// What the exact search asks of the facets of a scene: where they lie, what they hide, and in which order they come
 /// from a point.
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/scene/scene.hpp"
 
@@ -56,6 +59,7 @@ class FacetOutlines {
     if (!items_.empty()) {
       grow(0, static_cast<std::uint32_t>(items_.size()));
       middle_m_ = glm::round(nodes_.front().box.center());
+      lay_out_planes(scene);
     }
     for (std::uint32_t body = 1; body < scene.bodies().size(); ++body) {
       const std::uint32_t first = end_of_body(scene, body - 1);
@@ -80,8 +84,6 @@ class FacetOutlines {
   std::size_t size() const { return outlines_.size(); }
   /// All bodies but the scenery.
   std::span<const BodyFacets> bodies() const { return bodies_; }
-  /// Facets of the scenery that are there, in no order that matters.
-  std::span<const std::uint32_t> scenery() const { return items_; }
   std::span<const HullSide> sides(FacetId facet) const {
     return std::span(sides_).subspan(outlines_[facet.value].first_side, outlines_[facet.value].side_count);
   }
@@ -93,6 +95,27 @@ class FacetOutlines {
     };
     const std::span<const HullSide> all = sides(facet);
     return std::all_of(all.begin(), all.end(), inside);
+  }
+
+  /// Calls `visit(facet)` for facets of the scenery of which some point, moved out of the plane by `times` its lift,
+  /// may be moved by `most_m` along its line of sight, seen from a point or from what is within `radius_m` of it.
+  template <typename Visit>
+  void for_each_grazed(const Vec3& point_m, double radius_m, double times, double most_m, Visit&& visit) const {
+    const Vec3 from = point_m - middle_m_;
+    const auto x = static_cast<float>(from.x), y = static_cast<float>(from.y), z = static_cast<float>(from.z);
+    const auto away_m = static_cast<float>(glm::length(from) + radius_m);
+    const auto room_m = static_cast<float>(radius_m + 1e-2 + 1e-6 * glm::length(from));
+    const auto share = static_cast<float>(1.001 * times / most_m);
+    for (std::size_t first = 0; first < items_.size(); first += simd_lanes) {
+      const PlaneLanes& eight = planes_[first / simd_lanes];
+      const Float8 off = Float8(eight.x) * x + Float8(eight.y) * y + Float8(eight.z) * z - Float8(eight.offset);
+      const Float8 moved = Float8(eight.lift) * (Float8(eight.reach) + away_m) * share;
+      std::uint32_t left = (simd::absolute(off) <= moved + room_m).bits();
+      for (; left != 0; left &= left - 1) {
+        const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(left));
+        if (at < items_.size()) visit(FacetId(items_[at]));
+      }
+    }
   }
 
   /// Calls `visit(facet)` for all facets of the scenery but those in boxes of which `hidden(box)` is true when their
@@ -126,6 +149,11 @@ class FacetOutlines {
     Aabb<double> box;
     std::uint32_t first = 0, count = 0;  ///< of `items_`; none at a node with children
     std::uint32_t right = 0;             ///< the second child; the first one follows the node. 0: a leaf
+  };
+
+  /// Eight planes in single precision, counted from the middle, with the lift and how far the facet reaches from there.
+  struct PlaneLanes {
+    std::array<float, simd_lanes> x{}, y{}, z{}, offset{}, lift{}, reach{};
   };
 
   /// Nearest first; of equals the one with the smaller number, so that the order is that of the scene alone.
@@ -194,6 +222,23 @@ class FacetOutlines {
     outline.lift_m = 2.0 * scene.settings().weld_tolerance_m + 1.01 * outline.stray_m;
   }
 
+  void lay_out_planes(const Scene& scene) {
+    planes_.resize((items_.size() + simd_lanes - 1) / simd_lanes);
+    for (std::size_t at = 0; at < items_.size(); ++at) {
+      PlaneLanes& eight = planes_[at / simd_lanes];
+      const std::size_t lane = at % simd_lanes;
+      const Plane& plane = scene.facets()[items_[at]].plane;
+      const FacetOutline& outline = outlines_[items_[at]];
+      eight.x[lane] = static_cast<float>(plane.normal.x);
+      eight.y[lane] = static_cast<float>(plane.normal.y);
+      eight.z[lane] = static_cast<float>(plane.normal.z);
+      eight.offset[lane] = static_cast<float>(glm::dot(plane.normal, plane.point_m - middle_m_));
+      eight.lift[lane] = static_cast<float>(outline.lift_m);
+      const Vec3 farthest = glm::max(glm::abs(outline.box.min - middle_m_), glm::abs(outline.box.max - middle_m_));
+      eight.reach[lane] = static_cast<float>(glm::length(farthest));
+    }
+  }
+
   void fit(BodyFacets& facets) const {
     facets.box = {};
     for (std::uint32_t index = facets.first; index < facets.first + facets.count; ++index) {
@@ -228,6 +273,7 @@ class FacetOutlines {
   std::vector<HullSide> sides_;
   std::vector<std::uint32_t> items_;  ///< facets of the scenery, in the order of the leaves
   std::vector<Node> nodes_;           ///< the root first
+  std::vector<PlaneLanes> planes_;    ///< in the order of `items_`
   std::vector<BodyFacets> bodies_;
   Vec3 middle_m_{0.0};
 };

@@ -75,6 +75,8 @@ class Sight {
   /// are 0.002 of a pixel.
   static constexpr double flat_m = 2e-6;
 
+  /// By how much more than for one point a lift counts: see `nearer_on`.
+  double lift_share() const { return points_m_.size() == 1 ? 1.0 : 2.0; }
   /// How close to a plane any of the points may be.
   double least_distance_m(const Plane& plane) const {
     const double middle_m = std::abs(signed_distance_m(plane, position_m()));
@@ -90,7 +92,7 @@ class Sight {
     const Vec3 farthest_m =
         glm::max(glm::abs(outline.box.min - position_m()), glm::abs(outline.box.max - position_m()));
     const double middle_m = std::abs(signed_distance_m(scene.facet(id).plane, position_m()));
-    const double most_m = (points_m_.size() == 1 ? 1.0 : 2.0) * outline.lift_m * glm::length(farthest_m);
+    const double most_m = lift_share() * outline.lift_m * glm::length(farthest_m);
     if ((middle_m - radius_m_) * longest_lift_m > most_m) return false;
     return least_distance_m(scene.facet(id).plane) * longest_lift_m <= most_m;
   }
@@ -148,9 +150,9 @@ inline void Sight::find_scenery(const Scene& scene, const FacetOutlines& outline
   };
   const auto hidden = [&](const Aabb<double>& box) { return map_.hides(box, longest_lift_m); };
   outlines.visit_from(position_m(), hidden, look_at);
-  for (const std::uint32_t index : outlines.scenery()) {
-    if (is_lifted_far(scene, outlines, FacetId(index))) look_at(FacetId(index));
-  }
+  outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
+    if (is_lifted_far(scene, outlines, id)) look_at(id);
+  });
   finish(scene, outlines, settings, layer);
 }
 
