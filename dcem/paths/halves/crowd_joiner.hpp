@@ -157,12 +157,22 @@ class CrowdJoiner {
     return ends.crowd.lanes_of(pack) & ~away.bits();
   }
 
+  /// Whether some points may lie within a radius of a point in a cone.
+  static bool may_hold(std::span<const HalfSpace> cone, const Vec3& point, float radius_m) {
+    const auto x = static_cast<float>(point.x), y = static_cast<float>(point.y), z = static_cast<float>(point.z);
+    return std::ranges::none_of(cone, [&](const HalfSpace& plane) {
+      return plane.x * x + plane.y * y + plane.z * z + radius_m < plane.offset;
+    });
+  }
+
   template <typename Visit>
   void mirror_pairs(const Ends& ends, FacetId last, const Vec3& image_m, Visit& visit) {
     const auto radius_m = static_cast<float>(ends.crowd.radius_m() + 1e-2);
-    ends.mast.for_each_image_in(cone_, image_m + lanes_.origin_m(), radius_m, [&](std::uint32_t mirror) {
+    for (const std::uint32_t mirror : ends.mast.mirrors_before(last)) {
       const MastLists::Mirror& first = ends.mast.mirrors()[mirror];
-      if (first.facet == last) return;
+      if (!may_hold(cone_, first.image_m, 1e-6F * static_cast<float>(glm::length(first.image_m))) ||
+          !may_hold(first.cone, image_m, radius_m))
+        continue;
       const LanePoints apex(first.image_m);
       const Float8 error_m(error_with(ends, glm::length(first.image_m) + glm::length(image_m)));
       for (std::size_t pack = 0; pack < packs_.size(); ++pack) {
@@ -172,7 +182,7 @@ class CrowdJoiner {
             lanes_.cross(last, at_first.points, images_[pack], error_m + at_first.beside_m, at_first.lanes);
         if (at_last.lanes != 0) offer(ends, pack, last, at_last, first.facet, at_first, false, at_last.lanes, visit);
       }
-    });
+    }
   }
 
   template <typename Visit>

@@ -40,6 +40,11 @@ inline Float8 edge_point_reach_m(const Float8& own_distance, const Float8& sum, 
   return Float8(moved_m) * own_distance / least * simd::square_root(Float8(1.0F) + slope * slope);
 }
 
+/// How far the point may be off because the end that sees the edge is far away.
+inline Float8 edge_point_error_m(const Float8& own_place, const Float8& own_distance) {
+  return Float8(1e-6F) * (simd::absolute(own_place) + own_distance);
+}
+
 class EdgeClusters {
  public:
   /// `wedge_of(part)` for a part of `parts`; cones count from `origin_m`.
@@ -91,14 +96,15 @@ class EdgeClusters {
       const Float8 sum = own_distance + simd::square_root(x * x + y * y + z * z), between = place - own_place;
       Float8 point = own_place + between * (own_distance / sum);
       // Asked for so that NaN, of an end and an apex on the edge's line, is inside.
-      Float8 reach(slack_m);
+      const Float8 far = edge_point_error_m(own_place, own_distance);
+      Float8 reach = far + slack_m;
       if (moved_m > 0.0F) reach = reach + edge_point_reach_m(own_distance, sum, between, moved_m);
       std::uint32_t left = ~((point + reach < from) | (to + reach < point)).bits() & 0xffU;
       if (left == 0) return;
-      Float8 room(0.0F);
+      Float8 room = far;
       if (moved_m > 0.0F) {
         point = simd::minimum(simd::maximum(point, from), to);
-        room = reach;
+        room = far + reach;
       }
       const Float8 px = sx + point * ex, py = sy + point * ey, pz = sz + point * ez;
       for (const HalfSpace& plane : cone) {

@@ -38,6 +38,8 @@ class FaceOutline {
   }
 
   void clip_by(int side, double reach) {
+    const auto cut_off = [&](const FacePoint& corner) { return inside(corner, side, reach) < 0.0; };
+    if (std::none_of(corners_.begin(), corners_.begin() + static_cast<std::ptrdiff_t>(count_), cut_off)) return;
     std::array<FacePoint, capacity> kept;
     std::size_t count = 0;
     for (std::size_t index = 0; index < count_; ++index) {
@@ -50,7 +52,7 @@ class FaceOutline {
                          from.depth + share * (to.depth - from.depth)};
       }
     }
-    corners_ = kept;
+    std::copy(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count), corners_.begin());
     count_ = count;
   }
 

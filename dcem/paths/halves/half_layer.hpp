@@ -105,9 +105,10 @@ void HalfLayer::for_each_image_in(std::span<const HalfSpace> cone, const Vec3& p
   image_clusters_.for_each_in(cone, [&](std::size_t first) {
     const ImageLanes& eight = image_lanes_[first / simd_lanes];
     const Float8 x(eight.place[0]), y(eight.place[1]), z(eight.place[2]);
+    const Float8 error_m = Float8(1e-6F) * (simd::absolute(x) + simd::absolute(y) + simd::absolute(z));
     std::uint32_t left = 0xffU;
     for (const HalfSpace& plane : cone) {
-      left &= ~(x * plane.x + y * plane.y + z * plane.z < Float8(plane.offset)).bits();
+      left &= ~(x * plane.x + y * plane.y + z * plane.z + error_m < Float8(plane.offset)).bits();
       if (left == 0) return;
     }
     for (const auto& plane : eight.planes) {

@@ -21,8 +21,18 @@ struct InsetOutline {
 
   std::span<const Vec3> corners() const { return {corners_m.data(), count}; }
 
+  /// False where there are too many corners.
+  bool assign(std::span<const Vec3> corners) {
+    if (corners.size() + 2 > capacity) return false;
+    std::copy(corners.begin(), corners.end(), corners_m.begin());
+    count = corners.size();
+    return true;
+  }
   /// Keeps what lies on the inner side of a plane; false where nothing is left, or too much.
   bool keep(const Vec3& inward, double offset_m) {
+    const auto end = corners_m.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto cut_off = [&](const Vec3& corner) { return glm::dot(inward, corner) < offset_m; };
+    if (std::none_of(corners_m.begin(), end, cut_off)) return count >= 3;
     std::array<Vec3, capacity> kept;
     std::size_t left = 0;
     for (std::size_t index = 0; index < count; ++index) {
@@ -34,7 +44,7 @@ struct InsetOutline {
         kept[left++] = from + here / (here - there) * (to - from);
       }
     }
-    corners_m = kept;
+    std::copy(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(left), corners_m.begin());
     count = left;
     return count >= 3;
   }
@@ -52,7 +62,7 @@ struct InsetOutline {
 /// than −n·(X − P), it is enough that (N + κ n)·(X − P) ≥ 0 with κ = max(0, −N·δ/(d + n·δ)).
 inline bool sides_moved_in(std::span<const Vec3> corners_m, const Plane& plane, const Vec3& from_m,
                            std::span<const Vec3> offsets_m, std::vector<Vec3>& normals) {
-  constexpr double hair_m = 1e-6;
+  constexpr double hair_m = 1e-5;  // corners may be off the plane by some micrometres
   const double side = signed_distance_m(plane, from_m), distance_m = std::abs(side);
   const Vec3 towards = side > 0.0 ? plane.normal : -plane.normal;
   double reach_m = 0.0;
@@ -79,11 +89,9 @@ inline bool sides_moved_in(std::span<const Vec3> corners_m, const Plane& plane, 
 /// The part of a convex polygon inside half spaces through a point; false where nothing is left.
 inline bool inset_outline(std::span<const Vec3> corners_m, const Vec3& from_m, std::span<const Vec3> normals,
                           detail::InsetOutline& result) {
-  if (corners_m.size() + 2 > detail::InsetOutline::capacity) return false;
-  std::copy(corners_m.begin(), corners_m.end(), result.corners_m.begin());
-  result.count = corners_m.size();
-  return std::all_of(normals.begin(), normals.end(),
-                     [&](const Vec3& normal) { return result.keep(normal, glm::dot(normal, from_m)); });
+  return result.assign(corners_m) && std::all_of(normals.begin(), normals.end(), [&](const Vec3& normal) {
+           return result.keep(normal, glm::dot(normal, from_m));
+         });
 }
 
 }  // namespace dcem

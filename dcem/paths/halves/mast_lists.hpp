@@ -28,10 +28,13 @@ class MastLists {
   };
 
   static constexpr std::uint32_t nothing = 0xffffffffU;
+  /// Of the view through a mirror.
+  static constexpr int beam_pixels = 128;
 
-  /// `half` must stay as it is. `both`: look for ways over a mirror and an edge.
+  /// `half` must stay as it is. `both`: look for ways over a mirror and what
+  /// comes after it.
   MastLists(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes, const PathHalf& half,
-            const EdgeRules& rules, bool both);
+            const HalfSettings& settings, bool both);
 
   const PathHalf& half() const { return half_; }
   const Vec3& position_m() const { return position_m_; }
@@ -46,14 +49,10 @@ class MastLists {
     return std::span(parts_).subspan(first_part_[edge.value], first_part_[edge.value + 1] - first_part_[edge.value]);
   }
 
-  /// Calls `visit(mirror)` for mirrors whose image may lie in a cone and that may see a point through the
-  /// mirror, or what is within `radius_m` of it.
-  template <typename Visit>
-  void for_each_image_in(std::span<const HalfSpace> cone, const Vec3& point_m, float radius_m, Visit&& visit) const {
-    for (std::size_t layer = 0; layer < first_mirror_.size(); ++layer) {
-      half_.layers()[layer].for_each_image_in(cone, point_m, radius_m,
-                                              [&](std::uint32_t mirror) { visit(first_mirror_[layer] + mirror); });
-    }
+  /// The places of the mirrors over which the transmitter may light a facet.
+  std::span<const std::uint32_t> mirrors_before(FacetId facet) const {
+    return std::span(before_).subspan(first_before_[facet.value],
+                                      first_before_[facet.value + 1] - first_before_[facet.value]);
   }
   /// Calls `visit(part)` for parts on which the point that diffracts between the transmitter and an apex may lie in a
   /// cone, for the apex at `apex` or within `radius_m` of it.
@@ -75,14 +74,19 @@ class MastLists {
   };
 
   void lay_out_parts(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes);
-  void list_lit_parts(const Scene& scene, const LaneScene& lanes, const EdgeRules& rules);
+  template <typename Shows, typename Visit>
+  static void for_each_shown(const Wedge& edge, double from_m, double to_m, Shows&& shows, Visit&& visit);
+  void look_through_mirrors(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes,
+                            const HalfSettings& settings);
+  void list_lit_parts(const Scene& scene, std::vector<EdgePart>& found, std::span<const std::uint32_t> edges);
   EdgePart lit_part(const Scene& scene, const LaneScene& lanes, WedgeId edge, std::uint32_t mirror) const;
 
   const PathHalf& half_;
   Vec3 position_m_;
   std::vector<Mirror> mirrors_;
   std::vector<std::uint32_t> mirror_of_;
-  std::vector<std::uint32_t> first_mirror_;  ///< of each layer
+  std::vector<std::uint32_t> before_;
+  std::vector<std::size_t> first_before_;
   std::vector<EdgePart> parts_;
   std::vector<std::size_t> first_part_, first_lit_;
   EdgeClusters part_clusters_;
@@ -92,50 +96,55 @@ class MastLists {
 // ---------------------------------------------------------------------------------------------------------------------
 
 inline MastLists::MastLists(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes,
-                            const PathHalf& half, const EdgeRules& rules, bool both)
+                            const PathHalf& half, const HalfSettings& settings, bool both)
     : half_(half), position_m_(half.position_m() - lanes.origin_m()), mirror_of_(scene.facets().size(), nothing) {
   for (const HalfLayer& layer : half.layers()) {
-    first_mirror_.push_back(static_cast<std::uint32_t>(mirrors_.size()));
     for (std::size_t at = 0; at < layer.mirrors.size(); ++at) {
       mirror_of_[layer.mirrors[at].value] = static_cast<std::uint32_t>(mirrors_.size());
       mirrors_.push_back({layer.mirrors[at], layer.images_m[at] - lanes.origin_m(), layer.cones[at]});
     }
   }
   lay_out_parts(scene, outlines, lanes);
+  first_before_.assign(scene.facets().size() + 1, 0);
   first_lit_.assign(scene.wedges().size() + 1, 0);
-  if (both) list_lit_parts(scene, lanes, rules);
+  if (both) look_through_mirrors(scene, outlines, lanes, settings);
 }
 
-/// Pieces of an edge, half a metre long, are looked up one by one; neighbours that show make one part.
-inline void MastLists::lay_out_parts(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes) {
+/// Pieces of a stretch of an edge, half a metre long, are looked up one by one: calls `visit(from, to)` for what shows,
+/// neighbours in one.
+template <typename Shows, typename Visit>
+void MastLists::for_each_shown(const Wedge& edge, double from_m, double to_m, Shows&& shows, Visit&& visit) {
   constexpr double piece_m = 0.5, most_pieces = 64.0;
+  const Vec3 direction = edge_direction(edge);
+  const int pieces = static_cast<int>(std::clamp(std::ceil((to_m - from_m) / piece_m), 1.0, most_pieces));
+  const auto place_m = [&](int piece) { return from_m + (to_m - from_m) * piece / pieces; };
+  for (int first = 0, piece = 0; piece <= pieces; ++piece) {
+    const bool shown = piece < pieces &&
+                       shows(edge.start_m + place_m(piece) * direction, edge.start_m + place_m(piece + 1) * direction);
+    if (shown) continue;
+    if (first < piece) visit(static_cast<float>(place_m(first)), static_cast<float>(place_m(piece)));
+    first = piece + 1;
+  }
+}
+
+inline void MastLists::lay_out_parts(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes) {
   std::vector<WedgeId> edges;
   for (const HalfLayer& layer : half_.layers()) edges.insert(edges.end(), layer.edges.begin(), layer.edges.end());
   std::ranges::sort(edges);
-  ViewMap map = half_.sight().map();  // looking needs scratch memory
+  Sight sight = half_.sight();  // looking needs scratch memory
   first_part_.assign(scene.wedges().size() + 1, 0);
   for (const WedgeId id : edges) {
     const Wedge& edge = scene.wedge(id).edge;
-    const EdgePart whole = whole_edge(id.value, edge, half_.position_m());
-    const double nearer = half_.sight().nearer_on(scene, outlines, id);
-    const int pieces = static_cast<int>(std::clamp(std::ceil(edge_length_m(edge) / piece_m), 1.0, most_pieces));
-    bool open = false;
-    for (int piece = 0; piece < pieces; ++piece) {
-      const double from = static_cast<double>(piece) / pieces, to = static_cast<double>(piece + 1) / pieces;
-      const Vec3 way_m = edge.end_m - edge.start_m;
-      if (!map.shows(edge.start_m + from * way_m, edge.start_m + to * way_m, nearer)) {
-        open = false;
-        continue;
-      }
-      const auto length = static_cast<float>(edge_length_m(edge));
-      if (!open) {
-        parts_.push_back(whole);
-        parts_.back().from = static_cast<float>(from) * length;
-        ++first_part_[id.value + 1];
-      }
-      parts_.back().to = static_cast<float>(to) * length;
-      open = true;
-    }
+    EdgePart part = whole_edge(id.value, edge, half_.position_m());
+    const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
+      return sight.shows(scene, outlines, id, from_m, to_m);
+    };
+    for_each_shown(edge, 0.0, edge_length_m(edge), shows, [&](float from, float to) {
+      part.from = from;
+      part.to = to;
+      parts_.push_back(part);
+      ++first_part_[id.value + 1];
+    });
   }
   for (std::size_t edge = 1; edge < first_part_.size(); ++edge) first_part_[edge] += first_part_[edge - 1];
   part_clusters_.build(parts_, lanes.origin_m(),
@@ -163,61 +172,82 @@ inline EdgePart MastLists::lit_part(const Scene& scene, const LaneScene& lanes, 
   return part;
 }
 
-inline void MastLists::list_lit_parts(const Scene& scene, const LaneScene& lanes, const EdgeRules& rules) {
-  std::vector<WedgeId> all;
-  for (std::uint32_t index = 0; index < scene.wedges().size(); ++index) {
-    if (diffracts(scene.wedges()[index], rules) && !is_embedded(WedgeId(index), rules)) all.push_back(WedgeId(index));
-  }
-  ConeClusters clusters;
-  clusters.build(all.size(), [&](std::uint32_t edge) {
-    Aabb<double> box;
-    box.extend(scene.wedge(all[edge]).edge.start_m - lanes.origin_m());
-    box.extend(scene.wedge(all[edge]).edge.end_m - lanes.origin_m());
-    return box;
-  });
+/// What the transmitter lights over one mirror: facets, and parts of edges.
+inline void MastLists::look_through_mirrors(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes,
+                                            const HalfSettings& settings) {
   const auto may_light = [](const Wedge& wedge, const Vec3& from_m) {  // not clearly from between the faces
     const double azimuth = azimuth_rad(wedge, from_m - wedge.start_m);
     return azimuth <= wedge.exterior_angle_rad + 1e-6 || azimuth >= 2.0 * pi - 1e-6;
   };
-  struct Lit {
-    std::uint32_t edge;
-    EdgePart part;
-  };
-  std::vector<Lit> found;
+  Sight sight(beam_pixels);
+  std::vector<FacetId> facets;
+  std::vector<WedgeId> edges;
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  std::vector<EdgePart> lit;
+  std::vector<std::uint32_t> lit_edges;
   for (std::uint32_t mirror = 0; mirror < mirrors_.size(); ++mirror) {
     const FacetId facet = mirrors_[mirror].facet;
     const Vec3 image_m = mirrors_[mirror].image_m + lanes.origin_m();
-    clusters.for_each_in(mirrors_[mirror].cone, [&](std::size_t first) {
-      for (const std::uint32_t item : clusters.items().subspan(first, simd_lanes)) {
-        if (item == ConeClusters::nothing) continue;
-        const WorldWedge& wedge = scene.wedge(all[item]);
-        if (wedge.facets[0] == facet || wedge.facets[1] == facet) continue;  // that is in the wedge's own terms
-        const EdgePart part = lit_part(scene, lanes, all[item], mirror);
-        if (part.from <= part.to && may_light(wedge.edge, image_m)) found.push_back({all[item].value, part});
-      }
-    });
+    sight.look_through(scene, outlines, facet, image_m, ignored_body());
+    sight.find_facets(scene, outlines, settings, facets);
+    edges.clear();
+    for (const FacetId seen : facets) {
+      pairs.push_back({seen.value, mirror});
+      if (!settings.edges) continue;
+      for (const WedgeId id : scene.wedges_of_facet(seen)) edges.push_back(id);
+    }
+    std::ranges::sort(edges);
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    for (const WedgeId id : edges) {
+      const WorldWedge& wedge = scene.wedge(id);
+      if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules)) continue;
+      if (wedge.facets[0] == facet || wedge.facets[1] == facet) continue;  // that is in the wedge's own terms
+      EdgePart part = lit_part(scene, lanes, id, mirror);
+      if (part.from > part.to || !may_light(wedge.edge, image_m)) continue;
+      const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
+        return sight.shows(scene, outlines, id, from_m, to_m);
+      };
+      for_each_shown(wedge.edge, part.from, part.to, shows, [&](float from, float to) {
+        part.from = from;
+        part.to = to;
+        lit.push_back(part);
+        lit_edges.push_back(id.value);
+      });
+    }
   }
-  std::stable_sort(found.begin(), found.end(), [](const Lit& a, const Lit& b) { return a.edge < b.edge; });
-  for (std::size_t at = 0; at < found.size(); ++at) {
-    const std::size_t first = at > 0 && found[at - 1].edge == found[at].edge ? first_lit_[found[at].edge + 1] : 0;
-    const std::size_t lane = first % simd_lanes;  // counted in entries while the edge goes on
+  first_before_.assign(scene.facets().size() + 1, 0);
+  std::ranges::stable_sort(pairs, {}, [](const auto& pair) { return pair[0]; });
+  for (const auto& [seen, mirror] : pairs) {
+    ++first_before_[seen + 1];
+    before_.push_back(mirror);
+  }
+  for (std::size_t seen = 1; seen < first_before_.size(); ++seen) first_before_[seen] += first_before_[seen - 1];
+  list_lit_parts(scene, lit, lit_edges);
+}
+
+/// Lays out parts in eights, edge by edge; `edges` says for each part whose it is.
+inline void MastLists::list_lit_parts(const Scene& scene, std::vector<EdgePart>& found,
+                                      std::span<const std::uint32_t> edges) {
+  std::vector<std::uint32_t> order(found.size());
+  for (std::uint32_t at = 0; at < order.size(); ++at) order[at] = at;
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t at) { return edges[at]; });
+  std::vector<std::size_t> count(scene.wedges().size(), 0);
+  for (const std::uint32_t at : order) {
+    const std::size_t lane = count[edges[at]]++ % simd_lanes;
     if (lane == 0) {
       lit_.emplace_back();
       lit_.back().to.fill(-1e30F);
       lit_.back().mirror.fill(nothing);
     }
     LitLanes& eight = lit_.back();
-    const EdgePart& part = found[at].part;
-    eight.from[lane] = part.from;
-    eight.to[lane] = part.to;
-    eight.place[lane] = part.place;
-    eight.distance[lane] = part.distance;
-    eight.mirror[lane] = part.edge;
-    first_lit_[found[at].edge + 1] = first + 1;
+    eight.from[lane] = found[at].from;
+    eight.to[lane] = found[at].to;
+    eight.place[lane] = found[at].place;
+    eight.distance[lane] = found[at].distance;
+    eight.mirror[lane] = found[at].edge;
   }
-  for (std::size_t edge = 1; edge < first_lit_.size(); ++edge) {
-    first_lit_[edge] = first_lit_[edge - 1] + (first_lit_[edge] + simd_lanes - 1) / simd_lanes;
-  }
+  first_lit_.assign(1, 0);
+  for (const std::size_t parts : count) first_lit_.push_back(first_lit_.back() + (parts + simd_lanes - 1) / simd_lanes);
 }
 
 template <typename Visit>
@@ -234,7 +264,8 @@ void MastLists::for_each_lit_part(WedgeId edge, const LaneEdge& line, const Vec3
     const Float8 own_place(eight.place), own_distance(eight.distance);
     const Float8 sum = own_distance + distance, between = place - own_place;
     const Float8 met = own_place + between * (own_distance / sum);
-    const Float8 reach = edge_point_reach_m(own_distance, sum, between, radius_m) + slack_m;
+    const Float8 reach = edge_point_reach_m(own_distance, sum, between, radius_m) +
+                         edge_point_error_m(own_place, own_distance) + slack_m;
     std::uint32_t left = ~((met + reach < Float8(eight.from)) | (Float8(eight.to) + reach < met)).bits() & 0xffU;
     for (; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(left));

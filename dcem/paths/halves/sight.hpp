@@ -38,11 +38,23 @@ class Sight {
   void look_from(const LinkEnd& end);
   /// Looks from several points at once, which ride on nothing and touch nothing.
   void look_from(std::span<const Vec3> points_m);
+  /// Looks from an end's image through the mirror that it is in: at what is beyond the mirror, as seen from the image.
+  /// The image must not lie in the mirror's plane.
+  void look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, const Vec3& image_m,
+                    const std::optional<BodyId>& ignored_body);
 
   /// Works out what may be seen of the scenery.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
   /// The same of all other bodies, where they are now. The scenery must be known.
   void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
+
+  /// All facets that may be seen, of scenery and bodies, ascending.
+  void find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                   std::vector<FacetId>& seen);
+  /// Whether a piece of an edge, or a bit of it, may be seen.
+  bool shows(const Scene& scene, const FacetOutlines& outlines, WedgeId edge, const Vec3& from_m, const Vec3& to_m) {
+    return map_.shows(from_m, to_m, nearer_on(scene, outlines, edge));
+  }
 
   /// Where the map is made: the point, or the middle of the points.
   const Vec3& position_m() const { return map_.from_m(); }
@@ -63,8 +75,11 @@ class Sight {
   }
   double nearer_on(const Scene& scene, const FacetOutlines& outlines, WedgeId edge) const {
     const WorldWedge& wedge = scene.wedge(edge);
-    return std::max(nearer_on(scene, outlines, wedge.facets[0], wedge.edge.stray_m),
-                    nearer_on(scene, outlines, wedge.facets[1], wedge.edge.stray_m));
+    // The edge may lie on one side of a face's plane, and triangles of the face on the other.
+    const auto on = [&](FacetId face) {
+      return nearer_on(scene, outlines, face, wedge.edge.stray_m + outlines.of(face).stray_m);
+    };
+    return std::max(on(wedge.facets[0]), on(wedge.facets[1]));
   }
 
  private:
@@ -74,6 +89,8 @@ class Sight {
   /// Triangles that leave their facet's plane by more hide as they are, not as the facet's hull. 2 µm from 13 cm away
   /// are 0.002 of a pixel.
   static constexpr double flat_m = 2e-6;
+  /// How much wider than its mirror's window a beam is: points beside a facet are left to the solver.
+  static constexpr double beside_beam_m = 5e-3;
 
   /// By how much more than for one point a lift counts: see `nearer_on`.
   double lift_share() const { return points_m_.size() == 1 ? 1.0 : 2.0; }
@@ -96,15 +113,41 @@ class Sight {
     if ((middle_m - radius_m_) * longest_lift_m > most_m) return false;
     return least_distance_m(scene.facet(id).plane) * longest_lift_m <= most_m;
   }
+  void look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                       std::vector<FacetId>& seen);
+  void look_at_bodies(const Scene& scene, const FacetOutlines& outlines, std::vector<FacetId>& seen);
   bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id);
   void cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings);
   void cover_triangles(const Scene& scene, const WorldFacet& facet);
+  void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane);
+  /// Whether all points are in a facet's plane: nothing is reflected there, though its edges may diffract.
+  bool is_along(const Plane& plane) const {
+    return std::all_of(points_m_.begin(), points_m_.end(), [&](const Vec3& point_m) {
+      return std::abs(signed_distance_m(plane, point_m)) <= in_plane_guard_m;
+    });
+  }
+  /// Whether a box is clearly outside the beam.
+  bool is_beside(const Aabb<double>& box) const {
+    const Vec3 centre = box.center(), half = 0.5 * box.extent();
+    return std::any_of(beam_.begin(), beam_.end(), [&](const BeamSide& side) {
+      return glm::dot(side.normal, centre) + glm::dot(glm::abs(side.normal), half) < side.offset_m;
+    });
+  }
   bool is_inside(const Wedge& wedge) const;
   void finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
 
+  /// normal·x ≥ offset inside.
+  struct BeamSide {
+    Vec3 normal;
+    double offset_m;
+  };
+
   ViewMap map_;
   std::vector<Vec3> points_m_;
-  double radius_m_ = 0.0;  ///< how far points are from the middle
+  std::optional<FacetId> mirror_;  ///< that is looked through
+  std::vector<BeamSide> beam_;     ///< beyond the mirror comes first; empty where nothing is looked through
+  double hides_beyond_m_ = 0.0;    ///< how far beyond its first side something hides
+  double radius_m_ = 0.0;          ///< how far points are from the middle
   std::optional<BodyId> ignored_body_;
   std::vector<FacetId> mounted_on_;
   std::vector<char> seen_;
@@ -118,6 +161,30 @@ inline void Sight::look_from(const LinkEnd& end) {
   radius_m_ = 0.0;
   ignored_body_ = end.ignored_body;
   mounted_on_ = end.mounted_on;
+  mirror_.reset();
+  beam_.clear();
+}
+
+inline void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, const Vec3& image_m,
+                                const std::optional<BodyId>& ignored_body) {
+  look_from(LinkEnd{image_m, ignored_body, {}});
+  const Plane& plane = scene.facet(mirror).plane;
+  mirror_ = mirror;
+  const Vec3 beyond = signed_distance_m(plane, image_m) > 0.0 ? -plane.normal : plane.normal;
+  beam_.push_back({beyond, glm::dot(beyond, plane.point_m) - beside_beam_m});
+  // A leg ignores what lies along its mirror: it hides only farther away than that.
+  hides_beyond_m_ = beside_beam_m + 2.0 * outlines.of(mirror).lift_m;
+  const std::span<const Vec3> window_m = scene.hull_m(scene.facet(mirror));
+  Vec3 centre_m(0.0);
+  for (const Vec3& corner : window_m) centre_m += corner / static_cast<double>(window_m.size());
+  for (std::size_t index = 0; index < window_m.size(); ++index) {
+    const Vec3 from = window_m[index] - image_m, to = window_m[(index + 1) % window_m.size()] - image_m;
+    const Vec3 across = glm::cross(from, to);
+    const double length = glm::length(across);
+    if (!(length > 1e-6 * glm::length(from) * glm::length(to))) continue;  // says nothing: the beam is wider
+    const Vec3 normal = (glm::dot(across, centre_m - image_m) < 0.0 ? -across : across) / length;
+    beam_.push_back({normal, glm::dot(normal, image_m) - beside_beam_m});
+  }
 }
 
 inline void Sight::look_from(std::span<const Vec3> points_m) {
@@ -135,51 +202,80 @@ inline void Sight::look_from(std::span<const Vec3> points_m) {
   points_m_.assign(points_m.begin(), points_m.end());
   ignored_body_.reset();
   mounted_on_.clear();
+  mirror_.reset();
+  beam_.clear();
+}
+
+inline void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                                   std::vector<FacetId>& seen) {
+  seen_.assign(outlines.size(), 0);
+  const auto look_at = [&](FacetId id) {
+    if (seen_[id.value] != 0 || !may_see(scene, outlines, id)) return;
+    seen_[id.value] = 1;
+    seen.push_back(id);
+    cover(scene, outlines, id, settings);
+  };
+  const auto hidden = [&](const Aabb<double>& box) { return is_beside(box) || map_.hides(box, longest_lift_m); };
+  outlines.visit_from(position_m(), hidden, look_at);
+  outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
+    if (is_lifted_far(scene, outlines, id)) look_at(id);
+  });
+}
+
+inline void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& outlines, std::vector<FacetId>& seen) {
+  for (const FacetOutlines::BodyFacets& body : outlines.bodies()) {
+    if (body.box.empty()) continue;
+    const bool is_hidden = is_beside(body.box) || map_.hides(body.box, longest_lift_m);
+    for (std::uint32_t index = body.first; index < body.first + body.count; ++index) {
+      const FacetId id(index);
+      if (is_hidden && !is_lifted_far(scene, outlines, id)) continue;
+      if (may_see(scene, outlines, id)) seen.push_back(id);
+    }
+  }
 }
 
 inline void Sight::find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                 SeenLayer& layer) {
   layer.mirrors.clear();
-  layer.edges.clear();
-  seen_.assign(outlines.size(), 0);
-  const auto look_at = [&](FacetId id) {
-    if (seen_[id.value] != 0 || !may_see(scene, outlines, id)) return;
-    seen_[id.value] = 1;
-    layer.mirrors.push_back(id);
-    cover(scene, outlines, id, settings);
-  };
-  const auto hidden = [&](const Aabb<double>& box) { return map_.hides(box, longest_lift_m); };
-  outlines.visit_from(position_m(), hidden, look_at);
-  outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
-    if (is_lifted_far(scene, outlines, id)) look_at(id);
-  });
+  look_at_scenery(scene, outlines, settings, layer.mirrors);
   finish(scene, outlines, settings, layer);
 }
 
 inline void Sight::find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                SeenLayer& layer) {
   layer.mirrors.clear();
-  layer.edges.clear();
-  for (const FacetOutlines::BodyFacets& body : outlines.bodies()) {
-    if (body.box.empty()) continue;
-    const bool is_hidden = map_.hides(body.box, longest_lift_m);
-    for (std::uint32_t index = body.first; index < body.first + body.count; ++index) {
-      const FacetId id(index);
-      if (is_hidden && !is_lifted_far(scene, outlines, id)) continue;
-      if (may_see(scene, outlines, id)) layer.mirrors.push_back(id);
-    }
-  }
+  look_at_bodies(scene, outlines, layer.mirrors);
   finish(scene, outlines, settings, layer);
+}
+
+inline void Sight::find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                               std::vector<FacetId>& seen) {
+  seen.clear();
+  look_at_scenery(scene, outlines, settings, seen);
+  look_at_bodies(scene, outlines, seen);
+  std::ranges::sort(seen);
 }
 
 inline bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) {
   const WorldFacet& facet = scene.facet(id);
   if (!facet.present || facet.body == ignored_body_) return false;
-  const auto in_plane = [&](const Vec3& point_m) {
-    return std::abs(signed_distance_m(facet.plane, point_m)) <= in_plane_guard_m;  // no reflection there
-  };
-  if (in_plane(points_m_.front()) && std::all_of(points_m_.begin(), points_m_.end(), in_plane)) return false;
-  return map_.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, id));
+  const double nearer = nearer_on(scene, outlines, id);
+  if (beam_.empty()) return map_.shows(scene.hull_m(facet), facet.plane, nearer);
+  if (id == *mirror_ || is_beside(outlines.of(id).box)) return false;
+  detail::InsetOutline inside;
+  if (!inside.assign(scene.hull_m(facet))) return true;
+  for (const BeamSide& side : beam_) {
+    if (!inside.keep(side.normal, side.offset_m)) return inside.count + 2 > detail::InsetOutline::capacity;
+  }
+  return map_.shows(inside.corners(), facet.plane, nearer);
+}
+
+/// Notes the part of an outline that is beyond the mirror, where one is looked through.
+inline void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane) {
+  if (beam_.empty()) return map_.cover(corners_m, plane);
+  detail::InsetOutline beyond;
+  if (!beyond.assign(corners_m) || !beyond.keep(beam_[0].normal, beam_[0].offset_m + hides_beyond_m_)) return;
+  map_.cover(beyond.corners(), plane);
 }
 
 inline void Sight::cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings) {
@@ -191,9 +287,9 @@ inline void Sight::cover(const Scene& scene, const FacetOutlines& outlines, Face
   const double side = signed_distance_m(facet.plane, position_m());
   Plane plane = facet.plane;
   plane.point_m -= (side > 0.0 ? 1.0 : -1.0) * outline.stray_m * plane.normal;  // where it is farthest
-  if (outline.fills_hull) return map_.cover(scene.hull_m(facet), plane);
+  if (outline.fills_hull) return cover_beyond(scene.hull_m(facet), plane);
   for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    map_.cover(scene.corners_m(facet.first_triangle + triangle), plane);
+    cover_beyond(scene.corners_m(facet.first_triangle + triangle), plane);
   }
 }
 
@@ -204,7 +300,7 @@ inline void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet) 
     const double size = glm::length(normal);
     if (!(size > 1e-6)) continue;  // a sliver's normal says little, and it hides little
     const Plane plane{corners_m[0], normal / size};
-    if (least_distance_m(plane) > 0.01) map_.cover(corners_m, plane);
+    if (least_distance_m(plane) > 0.01) cover_beyond(corners_m, plane);
   }
 }
 
@@ -227,6 +323,7 @@ inline void Sight::finish(const Scene& scene, const FacetOutlines& outlines, con
     return !map_.shows(wedge.edge.start_m, wedge.edge.end_m, nearer_on(scene, outlines, id));
   };
   std::ranges::sort(layer.mirrors);
+  layer.edges.clear();
   if (settings.edges) {
     for (const FacetId face : layer.mirrors) {
       for (const WedgeId id : scene.wedges_of_facet(face)) layer.edges.push_back(id);
@@ -235,7 +332,9 @@ inline void Sight::finish(const Scene& scene, const FacetOutlines& outlines, con
     layer.edges.erase(std::unique(layer.edges.begin(), layer.edges.end()), layer.edges.end());
     std::erase_if(layer.edges, out_of_reach);
   }
-  std::erase_if(layer.mirrors, [&](FacetId id) { return std::ranges::binary_search(mounted_on_, id); });
+  std::erase_if(layer.mirrors, [&](FacetId id) {
+    return std::ranges::binary_search(mounted_on_, id) || is_along(scene.facet(id).plane);
+  });
 }
 
 }  // namespace dcem

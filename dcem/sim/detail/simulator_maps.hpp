@@ -30,11 +30,11 @@ struct BasicSimulator<Surface, Index>::MapShare {
         search(simulator.search_settings(transmitters.embedded)),
         masts(transmitters.link.size()),
         crowds(std::max(1U, simulator.pool_->size())) {
-    const bool both = search.max_interactions >= 2 && search.max_reflections >= 1 && search.max_diffractions >= 1;
+    const bool both = search.max_interactions >= 2 && search.max_reflections >= 1;
     simulator.pool_->for_each(masts.size(), [&](std::size_t index, unsigned) {
       if (!transmitters.link[index]) return;
       masts[index].emplace(simulator.scene_, *simulator.outlines_, lanes, transmitters.halves[index].half(),
-                           search.edges, both);
+                           half_settings(search), both);
     });
   }
 

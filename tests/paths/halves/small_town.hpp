@@ -40,6 +40,7 @@ inline Scene small_town(Draw& draw) {
 struct Asked {
   int transmissions = 0;
   int reflections = 2, diffractions = 1, interactions = 2;
+  bool free_edges = false;
 };
 
 inline std::vector<Path> all_sequences(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to,
@@ -49,6 +50,7 @@ inline std::vector<Path> all_sequences(TracedScene<>& traced, const LinkEnd& fro
   settings.max_diffractions = asked.diffractions;
   settings.max_interactions = asked.interactions;
   settings.max_transmissions = asked.transmissions;
+  settings.edges.free_edges = asked.free_edges;
   SearchCounters counters;
   EdgeReach reach;
   find_reach(traced.tracer, settings, from, {"tx", 0}, 0, reach, counters);
@@ -71,6 +73,31 @@ inline bool same_paths(const std::vector<Path>& one, const std::vector<Path>& ot
 
 inline LinkEnd somewhere(TracedScene<>& traced, Draw& draw) {
   return traced.end(draw.inside(Vec3(-20, -20, 0.3), Vec3(20, 20, 14)));
+}
+
+/// Sheets and houses on a grid of whole metres: ends on the same grid lie in planes of facets and on lines of edges.
+inline Scene town_on_grid(Draw& draw) {
+  TriangleMesh mesh;
+  const auto whole = [&](int low, int high) {
+    return static_cast<double>(low + static_cast<int>(draw.below(static_cast<std::uint64_t>(high - low + 1))));
+  };
+  for (int sheet = 0; sheet < 4; ++sheet) {
+    const Vec3 centre(whole(-6, 6), whole(-6, 6), whole(2, 4)), up(0, 0, 2);
+    add_sheet(mesh, centre, draw.below(2) == 0 ? Vec3(whole(1, 4), 0, 0) : Vec3(0, whole(1, 4), 0), up,
+              draw.below(2) == 0 ? "metal" : "glass");
+  }
+  for (int house = 0; house < 2; ++house) {
+    const Vec3 low_m(whole(-8, 5), whole(-8, 5), 0);
+    add_box_faces(mesh, low_m, low_m + Vec3(whole(1, 4), whole(1, 4), whole(2, 6)), "metal");
+  }
+  return scene_of(mesh);
+}
+
+inline Vec3 point_on_grid(Draw& draw) {
+  const auto whole = [&](int low, int high) {
+    return static_cast<double>(low + static_cast<int>(draw.below(static_cast<std::uint64_t>(high - low + 1))));
+  };
+  return {whole(-8, 8), whole(-8, 8), whole(1, 6)};
 }
 
 }  // namespace dcem::test

@@ -14,7 +14,9 @@ using namespace dcem::test;
 namespace {
 
 HalfSettings half_settings_of(const Asked& asked) {
-  return {asked.diffractions > 0, asked.transmissions == 0, {}};
+  HalfSettings settings{asked.diffractions > 0, asked.transmissions == 0, {}};
+  settings.rules.free_edges = asked.free_edges;
+  return settings;
 }
 
 /// The paths from one end to each point of a crowd.
@@ -25,12 +27,12 @@ std::vector<std::vector<Path>> found_together(TracedScene<>& traced, const LinkE
   PathHalf half(pixels);
   half.find_scenery(traced.scene, outlines, from, half_settings_of(asked));
   half.find_bodies(traced.scene, outlines, half_settings_of(asked));
-  const MastLists mast(traced.scene, outlines, lanes, half, {}, true);
+  const MastLists mast(traced.scene, outlines, lanes, half, half_settings_of(asked), true);
   Crowd crowd(pixels);
   crowd.look_from(traced.scene, outlines, lanes, points_m, half_settings_of(asked));
   CrowdJoiner<WideIndex> joiner(traced.tracer, outlines, lanes,
                                 {asked.reflections, asked.diffractions, asked.interactions});
-  PathSolver<WideIndex> solver(traced.tracer, asked.transmissions);
+  PathSolver<WideIndex> solver(traced.tracer, asked.transmissions, half_settings_of(asked).rules);
   std::vector<std::vector<Path>> paths(points_m.size());
   const auto solve = [&](const Sequence& sequence, std::size_t point) {
     if (auto path = solver.solve(from, traced.end(points_m[point]), sequence)) paths[point].push_back(std::move(*path));
@@ -73,4 +75,50 @@ TEST_CASE("a crowd finds every path of each of its points, and the same bits") {
   }
   MESSAGE(found << " paths");
   CHECK(found > 3'000);
+}
+
+TEST_CASE("points in planes of sheets and on lines of edges find together what each finds by itself") {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 5000; seed < 5080; ++seed) {
+    Draw draw(seed);
+    TracedScene<> traced(town_on_grid(draw));
+    Asked asked{static_cast<int>(draw.below(2))};
+    asked.free_edges = true;
+    const LinkEnd from = traced.end(point_on_grid(draw));
+    std::vector<Vec3> points_m;
+    const Vec3 first_m = point_on_grid(draw);
+    for (int step = 0; step < 6; ++step) {
+      const Vec3 point_m = first_m + Vec3(step % 3, step / 3, 0);
+      if (point_m != from.position_m && traced.end(point_m).mounted_on.empty()) points_m.push_back(point_m);
+    }
+    if (points_m.empty()) continue;
+    CAPTURE(seed);
+    const auto together = found_together(traced, from, points_m, asked, 128);
+    for (std::size_t point = 0; point < points_m.size(); ++point) {
+      const std::vector<Path> expected = all_sequences(traced, from, traced.end(points_m[point]), asked);
+      CHECK(same_paths(together[point], expected));
+      found += expected.size();
+    }
+  }
+  CHECK(found > 1'000);
+}
+
+TEST_CASE("a transmitter far away is joined as one nearby") {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 6000; seed < 6040; ++seed) {
+    Draw draw(seed);
+    TracedScene<> traced(small_town(draw));
+    const double turn = draw.between(-pi, pi), away_m = draw.below(2) == 0 ? 3e5 : 3e6;
+    const LinkEnd from = traced.end(away_m * Vec3(std::cos(turn), std::sin(turn), draw.between(0.2, 1.0)));
+    const std::vector<Vec3> points_m =
+        points_beside(draw, draw.inside(Vec3(-20, -20, 1), Vec3(20, 20, 6)), Vec3(3, 3, 0), 8);
+    CAPTURE(seed);
+    const auto together = found_together(traced, from, points_m, {}, 256);
+    for (std::size_t point = 0; point < points_m.size(); ++point) {
+      const std::vector<Path> expected = all_sequences(traced, from, traced.end(points_m[point]), {});
+      CHECK(same_paths(together[point], expected));
+      found += expected.size();
+    }
+  }
+  CHECK(found > 500);
 }

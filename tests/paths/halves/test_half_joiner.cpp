@@ -26,6 +26,7 @@ std::vector<Path> joined(TracedScene<>& traced, const LinkEnd& from, const LinkE
   settings.max_diffractions = asked.diffractions;
   settings.max_interactions = asked.interactions;
   settings.max_transmissions = asked.transmissions;
+  settings.edges.free_edges = asked.free_edges;
   const FacetOutlines outlines(traced.scene);
   std::vector<KeptHalf> transmitters(1, KeptHalf(pixels));
   transmitters[0].update(traced.scene, outlines, from, half_settings(settings));
@@ -154,4 +155,19 @@ TEST_CASE("a half that is kept while bodies move is the half made anew") {
       CHECK(kept.half().layers()[layer].edges == fresh.layers()[layer].edges);
     }
   }
+}
+
+TEST_CASE("from the plane of a sheet its rim is seen, though the sheet is not") {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 4000; seed < 4120; ++seed) {
+    Draw draw(seed);
+    TracedScene<> traced(town_on_grid(draw));
+    Asked asked{static_cast<int>(draw.below(2))};
+    asked.free_edges = true;
+    CAPTURE(seed);
+    const LinkEnd from = traced.end(point_on_grid(draw)), to = traced.end(point_on_grid(draw));
+    if (from.position_m == to.position_m) continue;
+    found += check_joined(traced, from, to, asked);
+  }
+  CHECK(found > 500);
 }
