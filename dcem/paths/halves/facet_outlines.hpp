@@ -13,6 +13,7 @@
 
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
+#include "dcem/paths/halves/hull_filling.hpp"
 #include "dcem/scene/scene.hpp"
 
 namespace dcem {
@@ -204,19 +205,14 @@ class FacetOutlines {
     const WorldFacet& facet = scene.facets()[index];
     FacetOutline& outline = outlines_[index];
     const std::span<const Vec3> hull_m = scene.hull_m(facet);
-    double hull = 0.0, area = 0.0;
-    for (std::size_t corner = 2; corner < hull_m.size(); ++corner) {
-      hull += glm::length(glm::cross(hull_m[corner - 1] - hull_m[0], hull_m[corner] - hull_m[0]));
-    }
+    std::vector<std::array<Vec3, 3>> triangles_m;
     for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-      const auto corners_m = scene.corners_m(facet.first_triangle + triangle);
-      area += glm::length(glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]));
-      for (const Vec3& corner : corners_m) {
+      triangles_m.push_back(scene.corners_m(facet.first_triangle + triangle));
+      for (const Vec3& corner : triangles_m.back()) {
         outline.stray_m = std::max(outline.stray_m, std::abs(signed_distance_m(facet.plane, corner)));
       }
     }
-    // Areas agree to rounding: a slit of a micrometre would not.
-    outline.fills_hull = std::abs(hull - area) <= 1e-6 * std::min(1.0, hull);
+    outline.fills_hull = fills_hull(triangles_m, hull_m);
     // A leg ignores what lies along its mirror within the weld tolerance, and the mirror's own triangles wherever they
     // are.
     outline.lift_m = 2.0 * scene.settings().weld_tolerance_m + 1.01 * outline.stray_m;
