@@ -23,6 +23,7 @@ struct RunFacts {
   TimeSettings time;
   std::size_t receivers = 0;          ///< points of grids included
   std::vector<std::string> warnings;  ///< one line each
+  int exact_interactions = 0;         ///< up to which all paths are found
 };
 
 /// What is kept of a frame after its results are written.

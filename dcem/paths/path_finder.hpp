@@ -71,7 +71,7 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSe
                                   PathCache* cache, std::span<const ReachedEdges> reached,
                                   std::span<const SequenceList> proposed) {
   DCEM_ASSERT(settings.max_diffractions == 0 || reached.size() == transmitters.size());
-  DCEM_ASSERT(!settings.halves || proposed.size() == transmitters.size());
+  DCEM_ASSERT(settings.joined == 0 || proposed.size() == transmitters.size());
   detail::PathSearch<Index> search(tracer, settings, receiver, transmitters, counters);
   const bool steady = cache != nullptr && detail::remembers_all(*cache, transmitters);
   EdgeReach seen_now;
@@ -79,7 +79,7 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSe
   const bool joins_edges = settings.max_diffractions > 0 && (settings.exhaustive || needs_rays(settings));
   EdgeReach* const noted = joins_edges ? &seen : nullptr;
   if (cache != nullptr) search.revalidate(*cache);
-  if (settings.halves) search.solve_proposed(proposed);
+  if (settings.joined > 0) search.solve_proposed(proposed);
   if (settings.exhaustive) {
     search.search_all(noted);
   } else if (needs_rays(settings)) {

@@ -6,6 +6,7 @@
 
 #include "dcem/paths/halves/covered.hpp"
 #include "dcem/scene/scene.hpp"
+#include "dcem/sim/search_plan.hpp"
 #include "dcem/sim/settings.hpp"
 
 namespace dcem {
@@ -22,28 +23,24 @@ inline std::size_t automatic_exact_facet_limit(const PropagationSettings& propag
   return std::min(by_reflections, by_diffractions);
 }
 
-/// How a scene is searched.
-struct SearchPlan {
-  Discovery discovery;      ///< exact or sampled: whether every path within the declared orders is found
-  bool exhaustive = false;  ///< all sequences are tried: small scenes
-  bool halves = false;      ///< sequences of two mirrors and edges, one edge at most, are all found from halves
-};
-
 /// What a simulation with these settings really does: small scenes are searched exhaustively; in others short sequences
 /// are found from halves, and rays look for longer ones. Throws std::invalid_argument where exact discovery is asked
 /// for by name and cannot be had: what was asked for is never weakened in silence.
-inline SearchPlan plan_search(const PropagationSettings& propagation, const Scene& scene) {
+inline SearchPlan plan_search(const PropagationSettings& propagation, const Scene& scene,
+                              SearchedFor searched_for = SearchedFor::links) {
   if (propagation.discovery == Discovery::sampled) return {Discovery::sampled};
   const std::size_t facets = scene.surface_count();
   if (facets <= automatic_exact_facet_limit(propagation)) return {Discovery::exact, true};
-  if (halves_cover(diffraction_order(propagation), interaction_order(propagation))) {
-    return {Discovery::exact, false, true};
+  const bool automatic = propagation.discovery == Discovery::automatic;
+  const int joined = automatic && searched_for == SearchedFor::maps ? 2 : most_joined_interactions;
+  if (halves_cover(joined, diffraction_order(propagation), interaction_order(propagation))) {
+    return {Discovery::exact, false, joined};
   }
-  if (propagation.discovery == Discovery::automatic) return {Discovery::sampled, false, true};
+  if (automatic) return {Discovery::sampled, false, joined};
   if (facets <= exact_discovery_facet_limit) return {Discovery::exact, true};
   throw std::invalid_argument("discovery exact: not in this version for " + std::to_string(facets) +
-                              " facets, except for at most two interactions, at most one of them a diffraction; "
-                              "expected max_interactions 2 and max_diffractions 1, or at most " +
+                              " facets, except for at most three interactions, at most one of them a diffraction; "
+                              "expected max_interactions 3 and max_diffractions 1, or at most " +
                               std::to_string(exact_discovery_facet_limit) + " facets");
 }
 
@@ -52,18 +49,15 @@ inline Discovery resolve_discovery(const PropagationSettings& propagation, const
   return plan_search(propagation, scene).discovery;
 }
 
-/// Reflections and diffractions together up to which all paths are found, one diffraction among them: `done` is what
-/// `resolve_discovery` has said.
-inline int exactly_searched_interactions(const PropagationSettings& propagation, Discovery done) {
-  if (done == Discovery::exact) return interaction_order(propagation);
-  return propagation.discovery == Discovery::sampled
-             ? 0
-             : std::min(most_joined_interactions, interaction_order(propagation));
+/// Reflections and diffractions together up to which all paths are found, one diffraction among them.
+inline int exactly_searched_interactions(const PropagationSettings& propagation, const SearchPlan& plan) {
+  const int order = interaction_order(propagation);
+  return plan.discovery == Discovery::exact ? order : std::min(plan.joined, order);
 }
 
 /// Whether all paths of a path's kind are found, not only those that rays come by. `exact_interactions` as above.
 inline bool is_found_exactly(const Path& path, int exact_interactions, Discovery done) {
-  return done == Discovery::exact || (exact_interactions > 0 && halves_cover(path));
+  return done == Discovery::exact || halves_cover(exact_interactions, path);
 }
 
 /// Off or seed: what a simulation that discovers in this way really remembers. Throws std::invalid_argument where

@@ -58,7 +58,7 @@ struct PropagationSettings {
   std::optional<int> max_interactions;         ///< reflections and diffractions together; default: no further bound
   DiffractionSettings diffraction{};           ///< which edges diffract, and how
   Discovery discovery = Discovery::automatic;  ///< how paths are found
-  std::uint32_t rays = 2000;                   ///< rays per receiver in sampled discovery, in a frame without history
+  std::uint32_t rays = 20'000;                 ///< rays per receiver in sampled discovery, in a frame without history
   std::optional<std::uint32_t> rays_steady;  ///< the same in a later frame of a cached run; default: a tenth of `rays`
   CacheMode cache = CacheMode::automatic;    ///< what is remembered from frame to frame
   std::uint64_t seed = 1;                    ///< turns the sphere of rays, with receiver id and frame number

@@ -12,6 +12,7 @@
 #include "dcem/paths/sequence.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
+#include "dcem/sim/search_plan.hpp"
 #include "dcem/sim/settings.hpp"
 
 namespace dcem {
@@ -29,7 +30,9 @@ class Simulator {
 
   const Scene& scene() const;
   const SimulationSettings& settings() const;
-  Discovery discovery() const;     ///< exact or sampled: what is really done
+  Discovery discovery() const;     ///< exact or sampled: what is really done for links
+  SearchPlan plan() const;         ///< how links are searched …
+  SearchPlan map_plan() const;     ///< … and the points of maps
   CacheMode cache() const;         ///< off or seed: what is really remembered
   const WideIndex& index() const;  ///< over the scene's triangles (dcem/accel/wide_index.hpp)
 

@@ -30,6 +30,14 @@ DCEM_INLINE const Scene& Simulator::scene() const {
 DCEM_INLINE const SimulationSettings& Simulator::settings() const {
   return body_->simulator.settings();
 }
+DCEM_INLINE SearchPlan Simulator::plan() const {
+  return body_->simulator.plan();
+}
+
+DCEM_INLINE SearchPlan Simulator::map_plan() const {
+  return body_->simulator.map_plan();
+}
+
 DCEM_INLINE Discovery Simulator::discovery() const {
   return body_->simulator.discovery();
 }

@@ -9,6 +9,7 @@
 
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/sim/discovery.hpp"
 
 #ifndef DCEM_VERSION
 #define DCEM_VERSION "unknown"
@@ -90,9 +91,10 @@ void expand_grids(io::Scenario& scenario, const std::string& file) {
   }
 }
 
-io::RunFacts run_facts(const Job& job, const Simulator& simulator, std::size_t receivers) {
-  return {DCEM_VERSION,      job.scenario.name, simulator.settings(), simulator.discovery(), simulator.cache(),
-          job.scenario.time, receivers,         job.scenario.warnings};
+io::RunFacts run_facts(const Job& job, const Simulator& simulator, const SearchPlan& plan, std::size_t receivers) {
+  return {DCEM_VERSION,   job.scenario.name,     simulator.settings(),
+          plan.discovery, simulator.cache(),     job.scenario.time,
+          receivers,      job.scenario.warnings, exactly_searched_interactions(simulator.settings().propagation, plan)};
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options) {

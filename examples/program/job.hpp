@@ -30,7 +30,7 @@ void expand_grids(io::Scenario& scenario, const std::string& file);
 /// Takes the scene out of the job. What the simulator refuses is an InputError that names the scenario file.
 Simulator make_simulator(Job& job, const ScenarioOptions& options);
 
-io::RunFacts run_facts(const Job& job, const Simulator& simulator, std::size_t receivers);
+io::RunFacts run_facts(const Job& job, const Simulator& simulator, const SearchPlan& plan, std::size_t receivers);
 
 /// One line per warning on the error stream, unless the user wants quiet. Called when nothing in the input can be wrong
 /// any more, because an error is to be the only line.

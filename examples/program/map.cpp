@@ -170,7 +170,7 @@ void map_scenario(const ScenarioOptions& options) {
   Simulator simulator = make_simulator(job, options);
   io::OutputFolder folder(job.folder);
   const std::size_t points = point_count(job.scenario);
-  io::RunSummary summary(run_facts(job, simulator, points), simulator.scene());
+  io::RunSummary summary(run_facts(job, simulator, simulator.map_plan(), points), simulator.scene());
   print_warnings(job.scenario.warnings, options);
   const auto viewer = make_viewer(folder, job, simulator, points * simulator.scene().transmitters().size());
   {

@@ -44,7 +44,7 @@ io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Sim
                               diffuse.enabled && diffuse.list_paths,
                               job.frames.count(),
                               job.frames.first,
-                              exactly_searched_interactions(simulator.settings().propagation, simulator.discovery())};
+                              exactly_searched_interactions(simulator.settings().propagation, simulator.plan())};
   try {
     return {folder, simulator.scene(), simulator.scene().receivers(), facts, job.scenario.output};
   } catch (const std::invalid_argument& error) {
@@ -77,7 +77,7 @@ void run_scenario(const ScenarioOptions& options) {
   io::OutputFolder folder(job.folder);
   io::ResultWriter writer = make_writer(folder, job, simulator, options);
   warn_of_plots(job, io::plotted_links(simulator.scene(), receivers));
-  io::RunSummary summary(run_facts(job, simulator, receivers.size()), simulator.scene());
+  io::RunSummary summary(run_facts(job, simulator, simulator.plan(), receivers.size()), simulator.scene());
   print_warnings(job.scenario.warnings, options);
   const auto viewer = make_viewer(folder, job, simulator);
   solve_frames(simulator, job, options, frames, writer, viewer.get(), summary);

@@ -75,7 +75,7 @@ TEST_CASE("what a scenario leaves out has the documented defaults") {
   CHECK(propagation.max_transmissions == 2);
   CHECK_FALSE(propagation.max_interactions.has_value());
   CHECK(propagation.discovery == Discovery::automatic);
-  CHECK(propagation.rays == 2000);
+  CHECK(propagation.rays == 20'000);
   CHECK(propagation.seed == 1);
   CHECK_FALSE(propagation.min_path_gain_db.has_value());
   CHECK(propagation.path_loss == AnyPathLoss{});

@@ -173,6 +173,7 @@ TEST_CASE("where more is allowed than is searched exactly, rays add to it and ta
   io::Scenario scenario = town();
   Simulator exact(scenario.scene, scenario.settings);
   scenario.settings.propagation.max_interactions = 3;
+  scenario.settings.propagation.max_diffractions = 2;
   scenario.settings.propagation.rays = 20'000;
   Simulator more(scenario.scene, scenario.settings);
   CHECK(more.discovery() == Discovery::sampled);

@@ -267,7 +267,7 @@ TEST_CASE("all rays in a frame without history, few later, all again when an end
 
 TEST_CASE("the default of rays_steady is a tenth of rays, and one at least") {
   PropagationSettings propagation;
-  CHECK(steady_rays(propagation) == 200);
+  CHECK(steady_rays(propagation) == 2000);
   propagation.rays = 7;
   CHECK(steady_rays(propagation) == 1);
   propagation.rays_steady = 9;

@@ -38,19 +38,18 @@ Discovery resolved(Discovery asked, int reflections, std::size_t facets, int dif
 }  // namespace
 
 TEST_CASE("left to itself, discovery is exact while the scene is small for its order") {
-  for (const int order : {0, 1, 2}) {
+  for (const int order : {0, 1, 2, 3}) {
     CHECK(resolved(Discovery::automatic, order, 1000) == Discovery::exact);
-    CHECK(resolved(Discovery::automatic, order, 1001) == Discovery::exact);  // two interactions are, in any scene
+    CHECK(resolved(Discovery::automatic, order, 1001) == Discovery::exact);  // three interactions are, in any scene
   }
-  CHECK(resolved(Discovery::automatic, 3, 200) == Discovery::exact);
-  CHECK(resolved(Discovery::automatic, 3, 201) == Discovery::sampled);
   CHECK(resolved(Discovery::automatic, 4, 32) == Discovery::exact);
   CHECK(resolved(Discovery::automatic, 10, 33) == Discovery::sampled);
 }
 
 TEST_CASE("edges make a scene large for exact discovery: each further diffraction sooner") {
+  CHECK(resolved(Discovery::automatic, 2, 1001, 1) == Discovery::exact);  // one, after or before two mirrors
   std::size_t most = 1000, before = 1001;
-  for (const int diffractions : {1, 2, 3}) {
+  for (const int diffractions : {2, 3}) {
     while (most > 0 && resolved(Discovery::automatic, 2, most, diffractions) == Discovery::sampled) --most;
     MESSAGE(diffractions << " diffractions: exact up to " << most << " facets");
     CHECK(most >= 10);  // two boxes without a floor
@@ -64,21 +63,37 @@ TEST_CASE("small scenes are searched exhaustively; in others short paths are fou
   PropagationSettings propagation;
   propagation.max_diffractions = 0;
   const SearchPlan small = plan_search(propagation, scene_with_facets(1000));
-  CHECK((small.exhaustive && !small.halves));
+  CHECK((small.exhaustive && small.joined == 0));
   SearchPlan large = plan_search(propagation, scene_with_facets(1001));
-  CHECK((!large.exhaustive && large.halves && large.discovery == Discovery::exact));
+  CHECK((!large.exhaustive && large.joined == 3 && large.discovery == Discovery::exact));
   propagation.max_diffractions = 1;
+  CHECK(resolve_discovery(propagation, scene_with_facets(1001)) == Discovery::exact);
+  propagation.max_reflections = 3;
   large = plan_search(propagation, scene_with_facets(1001));
-  CHECK((!large.exhaustive && large.halves && large.discovery == Discovery::sampled));
-  CHECK(exactly_searched_interactions(propagation, large.discovery) == 2);
-  propagation.max_interactions = 2;
+  CHECK((!large.exhaustive && large.joined == 3 && large.discovery == Discovery::sampled));
+  CHECK(exactly_searched_interactions(propagation, large) == 3);
+  propagation.max_interactions = 3;
   CHECK(resolve_discovery(propagation, scene_with_facets(1001)) == Discovery::exact);
   propagation.max_diffractions = 2;  // two edges are not yet among what halves join
   CHECK(resolve_discovery(propagation, scene_with_facets(1001)) == Discovery::sampled);
   propagation.discovery = Discovery::sampled;
   large = plan_search(propagation, scene_with_facets(1001));
-  CHECK((!large.exhaustive && !large.halves));
-  CHECK(exactly_searched_interactions(propagation, large.discovery) == 0);
+  CHECK((!large.exhaustive && large.joined == 0));
+  CHECK(exactly_searched_interactions(propagation, large) == 0);
+}
+
+TEST_CASE("a map looks for a third interaction by rays, unless exact is asked for by name") {
+  PropagationSettings propagation;  // two reflections and a diffraction
+  const Scene large = scene_with_facets(1001);
+  CHECK(plan_search(propagation, large).discovery == Discovery::exact);
+  const SearchPlan left_to_itself = plan_search(propagation, large, SearchedFor::maps);
+  CHECK(left_to_itself.discovery == Discovery::sampled);
+  CHECK(exactly_searched_interactions(propagation, left_to_itself) == 2);
+  propagation.discovery = Discovery::exact;
+  CHECK(plan_search(propagation, large, SearchedFor::maps).joined == 3);
+  propagation.discovery = Discovery::automatic;
+  propagation.max_interactions = 2;
+  CHECK(plan_search(propagation, large, SearchedFor::maps).discovery == Discovery::exact);
 }
 
 TEST_CASE("max_interactions counts when the order is judged") {
@@ -94,7 +109,7 @@ TEST_CASE("what is asked for by name is done, or refused with a reason") {
   CHECK(resolved(Discovery::exact, 3, 500) == Discovery::exact);
   CHECK(resolved(Discovery::exact, 1, 1000) == Discovery::exact);
   try {
-    resolved(Discovery::exact, 3, 1001);
+    resolved(Discovery::exact, 4, 1001);
     FAIL("nothing was refused");
   } catch (const std::invalid_argument& error) {
     CHECK(std::string(error.what()).find("1001") != std::string::npos);

@@ -38,7 +38,7 @@ TEST_CASE("the defaults are valid and are those of the documentation") {
   CHECK(settings.propagation.line_of_sight);
   CHECK(settings.propagation.max_reflections == 2);
   CHECK(settings.propagation.max_transmissions == 2);
-  CHECK(settings.propagation.rays == 2000);
+  CHECK(settings.propagation.rays == 20'000);
   CHECK_FALSE(settings.propagation.rays_steady.has_value());
   CHECK(settings.propagation.cache == CacheMode::automatic);
   CHECK(settings.tree.policy == TreePolicy::adaptive);

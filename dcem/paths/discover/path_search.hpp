@@ -29,15 +29,15 @@ struct PathSearchSettings {
   int max_diffractions = 0;
   int max_interactions = 10;  ///< reflections and diffractions together
   EdgeRules edges{};          ///< which edges diffract
-  /// Where the search is not exhaustive: the sequences that `halves_cover` names are all proposed by the caller, and
-  /// rays look for the others alone.
-  bool halves = false;
+  /// Where the search is not exhaustive: the sequences of up to so many elements that `halves_cover` names are all
+  /// proposed by the caller, and rays look for the others alone.
+  int joined = 0;
 };
 
 /// Whether rays have anything to look for.
 inline bool needs_rays(const PathSearchSettings& settings) {
   return !settings.exhaustive &&
-         !(settings.halves && halves_cover(settings.max_diffractions, settings.max_interactions));
+         !halves_cover(settings.joined, settings.max_diffractions, settings.max_interactions);
 }
 
 inline ChainLimits chain_limits(const PathSearchSettings& settings) {
@@ -195,7 +195,7 @@ class PathSearch {
   }
 
   /// Whether halves have proposed a sequence, if it may carry a path at all.
-  bool is_joined(const Sequence& sequence) const { return settings_.halves && halves_cover(sequence); }
+  bool is_joined(const Sequence& sequence) const { return halves_cover(settings_.joined, sequence); }
 
   bool is_remembered(std::size_t transmitter, const Sequence& sequence) const {
     return tried_[transmitter].size() > 0 && tried_[transmitter].contains(sequence);

@@ -25,6 +25,28 @@ struct HalfSpace {
   float x, y, z, offset;
 };
 
+/// Whether some point within a radius of a point may lie in a cone.
+inline bool may_hold(std::span<const HalfSpace> cone, const Vec3& point, float radius_m) {
+  const auto x = static_cast<float>(point.x), y = static_cast<float>(point.y), z = static_cast<float>(point.z);
+  return std::ranges::none_of(
+      cone, [&](const HalfSpace& plane) { return plane.x * x + plane.y * y + plane.z * z + radius_m < plane.offset; });
+}
+
+/// Calls `visit(normal)`, inwards and of length 1, for the planes through an apex and the sides of a convex window. A
+/// side that hardly says where it is is left out: the cone is wider.
+template <typename Visit>
+void for_each_cone_side(const Vec3& apex_m, std::span<const Vec3> window_m, Visit&& visit) {
+  Vec3 centre_m(0.0);
+  for (const Vec3& corner : window_m) centre_m += corner / static_cast<double>(window_m.size());
+  for (std::size_t index = 0; index < window_m.size(); ++index) {
+    const Vec3 from = window_m[index] - apex_m, to = window_m[(index + 1) % window_m.size()] - apex_m;
+    const Vec3 across = glm::cross(from, to);
+    const double length = glm::length(across);
+    if (!(length > 1e-6 * glm::length(from) * glm::length(to))) continue;
+    visit((glm::dot(across, centre_m - apex_m) < 0.0 ? -across : across) / length);
+  }
+}
+
 /// Cones of many images, one after another.
 class ConeList {
  public:
@@ -43,16 +65,7 @@ class ConeList {
     const double side = signed_distance_m(mirror, apex_m) > 0.0 ? -1.0 : 1.0;
     // The farther away the apex, the coarser its coordinates in single precision.
     const double slack_m = 5e-3 + 1e-6 * glm::length(apex_m - origin_m);
-    Vec3 centre_m(0.0);
-    for (const Vec3& corner : window_m) centre_m += corner / static_cast<double>(window_m.size());
-    for (std::size_t index = 0; index < window_m.size(); ++index) {
-      const Vec3 from = window_m[index] - apex_m, to = window_m[(index + 1) % window_m.size()] - apex_m;
-      const Vec3 across = glm::cross(from, to);
-      const double length = glm::length(across);
-      if (!(length > 1e-6 * glm::length(from) * glm::length(to)))
-        continue;  // says nothing: left out, the cone is wider
-      add_plane(origin_m, (glm::dot(across, centre_m - apex_m) < 0.0 ? -across : across) / length, apex_m, slack_m);
-    }
+    for_each_cone_side(apex_m, window_m, [&](const Vec3& normal) { add_plane(origin_m, normal, apex_m, slack_m); });
     add_plane(origin_m, side * mirror.normal, mirror.point_m, slack_m);  // last: it keeps more than the others do
     first_.push_back(planes_.size());
   }
@@ -84,6 +97,7 @@ class ConeClusters {
     const std::size_t clusters = items_.size() / simd_lanes, groups = (clusters + simd_lanes - 1) / simd_lanes;
     clusters_.assign(groups, Boxes{});
     groups_.assign((groups + simd_lanes - 1) / simd_lanes, Boxes{});
+    boxes_.clear();
     for (std::size_t group = 0; group < groups; ++group) {
       Aabb<double> all;
       for (std::size_t cluster = group * simd_lanes; cluster < std::min(clusters, (group + 1) * simd_lanes);
@@ -97,10 +111,17 @@ class ConeClusters {
         all.extend(box);
       }
       groups_[group / simd_lanes].set(group % simd_lanes, all);
+      boxes_.push_back(groups_[group / simd_lanes].at(group % simd_lanes));
     }
   }
 
   static constexpr std::uint32_t nothing = 0xffffffffU;
+  /// A box as centre and half sizes.
+  struct Box {
+    std::array<float, 3> centre{}, half{};
+  };
+  /// Boxes of 64 items each.
+  std::span<const Box> boxes() const { return boxes_; }
   /// The items in the order of the clusters, eight to a cluster, the last places of which may hold `nothing`.
   std::span<const std::uint32_t> items() const { return items_; }
 
@@ -131,6 +152,9 @@ class ConeClusters {
         half[at][lane] = static_cast<float>(0.5 * (box.max[axis] - box.min[axis]) + 1e-3 + 1e-6 * size);
       }
       used |= 1U << lane;
+    }
+    Box at(std::size_t lane) const {
+      return {{centre[0][lane], centre[1][lane], centre[2][lane]}, {half[0][lane], half[1][lane], half[2][lane]}};
     }
     std::uint32_t met_by(std::span<const HalfSpace> cone) const {
       const Float8 x(centre[0]), y(centre[1]), z(centre[2]), dx(half[0]), dy(half[1]), dz(half[2]);
@@ -171,6 +195,7 @@ class ConeClusters {
 
   std::vector<std::uint32_t> items_;
   std::vector<Boxes> clusters_, groups_;
+  std::vector<Box> boxes_;
 };
 
 }  // namespace dcem

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/paths/halves/beam_lists.hpp"
 #include "dcem/paths/halves/crowd.hpp"
 #include "dcem/paths/halves/half_joiner.hpp"
 #include "dcem/paths/halves/leg_hints.hpp"
-#include "dcem/paths/halves/mast_lists.hpp"
 #include "dcem/paths/sequence.hpp"
 
 namespace dcem {
@@ -21,13 +21,18 @@ template <typename Index>
 class CrowdJoiner {
  public:
   CrowdJoiner(const SceneTracer<Index>& tracer, const FacetOutlines& outlines, const LaneScene& lanes,
-              const HalfJoiner::Orders& orders)
-      : tracer_(tracer), scene_(tracer.scene()), outlines_(outlines), lanes_(lanes), orders_(orders) {}
+              const HalfJoiner::Orders& orders, SolverCounters& counters)
+      : tracer_(tracer),
+        scene_(tracer.scene()),
+        outlines_(outlines),
+        lanes_(lanes),
+        orders_(orders),
+        counters_(counters) {}
 
   /// Calls `visit(sequence, point)`, the sequence from the receiver outwards, for every sequence of one or two mirrors
   /// and edges that a path from the transmitter to a point of the crowd may take.
   template <typename Visit>
-  void for_each_sequence(const Crowd& crowd, const MastLists& mast, Visit&& visit) {
+  void for_each_sequence(const Crowd& crowd, const BeamLists& mast, Visit&& visit) {
     const bool mirrors = orders_.reflections >= 1 && orders_.interactions >= 1;
     const bool edges = orders_.diffractions >= 1 && orders_.interactions >= 1;
     packs_.clear();
@@ -35,7 +40,7 @@ class CrowdJoiner {
     const double reach_m = glm::length(mast.position_m()) + crowd.radius_m() +
                            glm::distance(crowd.sight().position_m(), lanes_.origin_m());
     const Ends ends{crowd, mast, reach_m};
-    LegHints<Index> hints(tracer_, outlines_, lanes_, {mast.ignored_body(), std::nullopt});
+    LegHints<Index> hints(tracer_, outlines_, lanes_, {mast.ignored_body(), std::nullopt}, counters_);
     hints_ = &hints;
     for (const SeenLayer& layer : crowd.layers()) {
       if (mirrors) single_mirrors(ends, layer, visit);
@@ -49,7 +54,7 @@ class CrowdJoiner {
  private:
   struct Ends {
     const Crowd& crowd;
-    const MastLists& mast;
+    const BeamLists& mast;
     double reach_m;  ///< no number that says where they are is larger
   };
 
@@ -104,7 +109,7 @@ class CrowdJoiner {
   void single_mirrors(const Ends& ends, const SeenLayer& layer, Visit& visit) {
     for (const FacetId facet : layer.mirrors) {
       const std::uint32_t mirror = ends.mast.mirror_of(facet);
-      if (mirror == MastLists::nothing) continue;
+      if (mirror == BeamLists::nothing) continue;
       const Vec3& image_m = ends.mast.mirrors()[mirror].image_m;
       const LanePoints image(image_m);
       const Float8 error_m(error_with(ends, glm::length(image_m)));
@@ -157,19 +162,11 @@ class CrowdJoiner {
     return ends.crowd.lanes_of(pack) & ~away.bits();
   }
 
-  /// Whether some points may lie within a radius of a point in a cone.
-  static bool may_hold(std::span<const HalfSpace> cone, const Vec3& point, float radius_m) {
-    const auto x = static_cast<float>(point.x), y = static_cast<float>(point.y), z = static_cast<float>(point.z);
-    return std::ranges::none_of(cone, [&](const HalfSpace& plane) {
-      return plane.x * x + plane.y * y + plane.z * z + radius_m < plane.offset;
-    });
-  }
-
   template <typename Visit>
   void mirror_pairs(const Ends& ends, FacetId last, const Vec3& image_m, Visit& visit) {
     const auto radius_m = static_cast<float>(ends.crowd.radius_m() + 1e-2);
     for (const std::uint32_t mirror : ends.mast.mirrors_before(last)) {
-      const MastLists::Mirror& first = ends.mast.mirrors()[mirror];
+      const BeamMirror& first = ends.mast.mirrors()[mirror];
       if (!may_hold(cone_, first.image_m, 1e-6F * static_cast<float>(glm::length(first.image_m))) ||
           !may_hold(first.cone, image_m, radius_m))
         continue;
@@ -210,20 +207,19 @@ class CrowdJoiner {
     const auto radius_m = static_cast<float>(ends.crowd.radius_m() + 1e-2);
     const Vec3 middle_m = ends.crowd.sight().position_m() - lanes_.origin_m();
     for (const WedgeId last : layer.edges) {
-      ends.mast.for_each_lit_part(
-          last, lanes_.edge(last), middle_m, radius_m, [&](const EdgePart& part, std::uint32_t mirror) {
-            const MastLists::Mirror& first = ends.mast.mirrors()[mirror];
-            const LanePoints apex(first.image_m);
-            const float error_m = error_with(ends, glm::length(first.image_m) + lanes_.reach_m());
-            for (std::size_t pack = 0; pack < packs_.size(); ++pack) {
-              const LaneGate at_last = lanes_.meet(part, packs_[pack], error_m, ends.crowd.lanes_of(pack));
-              if (at_last.lanes == 0) continue;
-              const LaneGate at_first =
-                  lanes_.cross(first.facet, apex, at_last.points, Float8(error_m) + at_last.beside_m, at_last.lanes);
-              if (at_first.lanes == 0) continue;
-              offer(ends, pack, last, at_last, first.facet, at_first, false, at_first.lanes, visit);
-            }
-          });
+      ends.mast.for_each_lit_part(last, middle_m, radius_m, [&](const EdgePart& part, std::uint32_t mirror) {
+        const BeamMirror& first = ends.mast.mirrors()[mirror];
+        const LanePoints apex(first.image_m);
+        const float error_m = error_with(ends, glm::length(first.image_m) + lanes_.reach_m());
+        for (std::size_t pack = 0; pack < packs_.size(); ++pack) {
+          const LaneGate at_last = lanes_.meet(part, packs_[pack], error_m, ends.crowd.lanes_of(pack));
+          if (at_last.lanes == 0) continue;
+          const LaneGate at_first =
+              lanes_.cross(first.facet, apex, at_last.points, Float8(error_m) + at_last.beside_m, at_last.lanes);
+          if (at_first.lanes == 0) continue;
+          offer(ends, pack, last, at_last, first.facet, at_first, false, at_first.lanes, visit);
+        }
+      });
     }
   }
 
@@ -235,6 +231,7 @@ class CrowdJoiner {
   const FacetOutlines& outlines_;
   const LaneScene& lanes_;
   HalfJoiner::Orders orders_;
+  SolverCounters& counters_;
   std::vector<LanePoints> packs_, images_;
   std::vector<std::uint32_t> beside_;  ///< the lanes of each pack on the side of the mirror that is looked at
   std::vector<HalfSpace> cone_;

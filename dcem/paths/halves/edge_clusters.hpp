@@ -79,6 +79,9 @@ class EdgeClusters {
     }
   }
 
+  /// Boxes that hold all parts.
+  std::span<const ConeClusters::Box> boxes() const { return clusters_.boxes(); }
+
   /// Calls `visit(part)` for parts on which the point that diffracts between the end and an apex may lie in a cone, for
   /// the apex at `apex` or anywhere within `moved_m` of it.
   template <typename Visit>

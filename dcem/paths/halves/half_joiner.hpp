@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
+#include "dcem/paths/halves/beam_lists.hpp"
+#include "dcem/paths/halves/join_gates.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 #include "dcem/paths/sequence.hpp"
-#include "dcem/paths/solve/wedge_method.hpp"
 
 namespace dcem {
 
@@ -25,11 +25,13 @@ class HalfJoiner {
   };
 
   HalfJoiner(const Scene& scene, const FacetOutlines& outlines, const Orders& orders)
-      : scene_(scene), outlines_(outlines), orders_(orders) {}
+      : gates_(scene, outlines), orders_(orders) {}
 
-  /// Calls `visit(sequence)`, from the receiver outwards, once for each.
+  /// Calls `visit(sequence)`, from the receiver outwards, for each; seldom twice for one. With what the transmitter
+  /// reaches, where that is known, ways over its mirrors need not be looked for.
   template <typename Visit>
-  void for_each_sequence(const PathHalf& receiver, const PathHalf& transmitter, Visit&& visit) {
+  void for_each_sequence(const PathHalf& receiver, const PathHalf& transmitter, Visit&& visit,
+                         const BeamLists* reached = nullptr) {
     sequence_.clear();
     visit(std::as_const(sequence_));
     const bool mirrors = orders_.reflections >= 1 && orders_.interactions >= 1;
@@ -40,12 +42,22 @@ class HalfJoiner {
       if (edges) single_edges(own, other, visit);
     }
     if (orders_.interactions < 2) return;
-    for (const HalfLayer& own : receiver.layers()) {
-      for (const HalfLayer& other : transmitter.layers()) {
-        const Side near{receiver, own}, far{transmitter, other};
-        if (orders_.reflections >= 2) mirror_pairs(near, far, visit);
-        if (mirrors && edges) mirror_and_edge(near, far, false, visit);
-        if (mirrors && edges) mirror_and_edge(far, near, true, visit);
+    for (std::size_t own = 0; own < receiver.layers().size(); ++own) {
+      const Side near{receiver, receiver.layers()[own]};
+      const bool listed = reached != nullptr && (own == 0 || reached->has_bodies());
+      if (listed && orders_.reflections >= 2) listed_mirror_pairs(near, *reached, visit);
+      if (listed && mirrors && edges) {
+        listed_edges(near, *reached, visit);
+        mirrors_to_parts(near, *reached, visit);
+      }
+      for (std::size_t other = 0; other < transmitter.layers().size(); ++other) {
+        const Side far{transmitter, transmitter.layers()[other]};
+        const bool is_done = listed && (other == 0 || reached->has_bodies());
+        if (!is_done && orders_.reflections >= 2) mirror_pairs(near, far, visit);
+        if (!is_done && mirrors && edges) {
+          mirror_and_edge(near, far, false, visit);
+          mirror_and_edge(far, near, true, visit);
+        }
       }
     }
   }
@@ -57,35 +69,19 @@ class HalfJoiner {
     const HalfLayer& layer;
   };
 
-  /// Points this far beside a facet are left to the solver. Far above rounding.
-  static constexpr float beside_m = 2e-3F;
+  /// The point of a path that is next to an end.
+  struct End {
+    const PathHalf& half;
+    SequenceElement element;
+    const Vec3& point_m;
+  };
 
-  /// Where a straight way crosses the plane of a facet, strictly between its ends, on or beside the facet.
-  std::optional<Vec3> crossing(FacetId facet, const Vec3& from_m, const Vec3& to_m) const {
-    const Plane& plane = scene_.facet(facet).plane;
-    const double from = signed_distance_m(plane, from_m), to = signed_distance_m(plane, to_m);
-    if ((from > 0.0) == (to > 0.0) || from == to) return std::nullopt;
-    const Vec3 point_m = from_m + from / (from - to) * (to_m - from_m);
-    if (!outlines_.is_over(facet, point_m, beside_m)) return std::nullopt;
-    return point_m;
-  }
-
-  /// Where a path between two points meets an edge, or a little beside.
-  std::optional<Vec3> edge_point(WedgeId id, const Vec3& from_m, const Vec3& to_m) const {
-    const Wedge& edge = scene_.wedge(id).edge;
-    const EdgeLine line{edge.start_m, edge_direction(edge), edge_length_m(edge)};
-    const double place_m = detail::place_between(from_m, line, to_m);
-    if (!(place_m >= -beside_m && place_m <= line.length_m + beside_m)) return std::nullopt;
-    return line.at(place_m);
-  }
-
-  template <typename First, typename Last, typename Visit>
-  void offer(const Side& receiver, First first, const Vec3& first_m, const Side& transmitter, Last last,
-             const Vec3& last_m, bool single, Visit& visit) {
-    if (receiver.half.hides(scene_, outlines_, first, first_m)) return;
-    if (transmitter.half.hides(scene_, outlines_, last, last_m)) return;
-    sequence_.assign(1, first);
-    if (!single) sequence_.emplace_back(last);
+  template <typename Visit>
+  void offer(const End& receiver, const End& transmitter, bool single, Visit& visit) {
+    if (gates_.hides(receiver.half, receiver.element, receiver.point_m)) return;
+    if (gates_.hides(transmitter.half, transmitter.element, transmitter.point_m)) return;
+    sequence_.assign(1, receiver.element);
+    if (!single) sequence_.push_back(transmitter.element);
     visit(std::as_const(sequence_));
   }
 
@@ -94,8 +90,8 @@ class HalfJoiner {
     for (std::size_t at = 0; at < receiver.layer.mirrors.size(); ++at) {
       const FacetId facet = receiver.layer.mirrors[at];
       if (!std::ranges::binary_search(transmitter.layer.mirrors, facet)) continue;
-      const auto point_m = crossing(facet, receiver.layer.images_m[at], transmitter.half.position_m());
-      if (point_m) offer(receiver, facet, *point_m, transmitter, facet, *point_m, true, visit);
+      const auto point_m = gates_.crossing(facet, receiver.layer.images_m[at], transmitter.half.position_m());
+      if (point_m) offer({receiver.half, facet, *point_m}, {transmitter.half, facet, *point_m}, true, visit);
     }
   }
 
@@ -103,58 +99,104 @@ class HalfJoiner {
   void single_edges(const Side& receiver, const Side& transmitter, Visit& visit) {
     for (const WedgeId edge : receiver.layer.edges) {
       if (!std::ranges::binary_search(transmitter.layer.edges, edge)) continue;
-      const auto point_m = edge_point(edge, receiver.half.position_m(), transmitter.half.position_m());
-      if (point_m) offer(receiver, edge, *point_m, transmitter, edge, *point_m, true, visit);
+      const auto point_m = gates_.edge_point(edge, receiver.half.position_m(), transmitter.half.position_m());
+      if (point_m) offer({receiver.half, edge, *point_m}, {transmitter.half, edge, *point_m}, true, visit);
     }
+  }
+
+  /// One mirror of each end, and the images in them.
+  template <typename Visit>
+  void mirror_pair(const PathHalf& receiver, FacetId near, const Vec3& near_image_m, const PathHalf& transmitter,
+                   FacetId far, const Vec3& far_image_m, Visit& visit) {
+    if (near == far) return;
+    const auto far_m = gates_.crossing(far, far_image_m, near_image_m);
+    if (!far_m) return;
+    const auto near_m = gates_.crossing(near, near_image_m, *far_m);
+    if (near_m) offer({receiver, near, *near_m}, {transmitter, far, *far_m}, false, visit);
   }
 
   template <typename Visit>
   void mirror_pairs(const Side& receiver, const Side& transmitter, Visit& visit) {
     for (std::size_t at = 0; at < receiver.layer.mirrors.size(); ++at) {
-      const FacetId near = receiver.layer.mirrors[at];
       const Vec3& image_m = receiver.layer.images_m[at];
-      transmitter.layer.for_each_image_in(receiver.layer.cones[at], image_m, beside_m, [&](std::uint32_t other) {
-        const FacetId far = transmitter.layer.mirrors[other];
-        if (near == far) return;
-        const auto far_m = crossing(far, transmitter.layer.images_m[other], image_m);
-        if (!far_m) return;
-        const auto near_m = crossing(near, image_m, *far_m);
-        if (near_m) offer(receiver, near, *near_m, transmitter, far, *far_m, false, visit);
-      });
+      const auto join = [&](std::uint32_t other) {
+        mirror_pair(receiver.half, receiver.layer.mirrors[at], image_m, transmitter.half,
+                    transmitter.layer.mirrors[other], transmitter.layer.images_m[other], visit);
+      };
+      constexpr auto beside_m = static_cast<float>(JoinGates::beside_m);
+      transmitter.layer.for_each_image_in(receiver.layer.cones[at], image_m, beside_m, join);
     }
   }
 
-  /// The mirror is that of `over`, the edge that of `beside`; `turned`: `over` is the transmitter.
+  template <typename Visit>
+  void listed_mirror_pairs(const Side& receiver, const BeamLists& reached, Visit& visit) {
+    for (std::size_t at = 0; at < receiver.layer.mirrors.size(); ++at) {
+      const FacetId near = receiver.layer.mirrors[at];
+      for (const std::uint32_t place : reached.mirrors_before(near)) {
+        const BeamMirror& far = reached.mirrors()[place];
+        const float error_m = 1e-6F * static_cast<float>(glm::length(far.image_m));
+        if (!may_hold(receiver.layer.cones[at], far.image_m, error_m)) continue;
+        mirror_pair(receiver.half, near, receiver.layer.images_m[at], reached.half(), far.facet,
+                    far.image_m + reached.origin_m(), visit);
+      }
+    }
+  }
+
+  /// A mirror of `over`, and the image in it; an edge of `beside`. `turned`: `over` is the transmitter.
+  template <typename Visit>
+  void mirror_to_edge(const PathHalf& over, FacetId facet, const Vec3& image_m, const PathHalf& beside, WedgeId edge,
+                      bool turned, Visit& visit) {
+    const WorldWedge& wedge = gates_.scene().wedge(edge);
+    if (wedge.facets[0] == facet || wedge.facets[1] == facet) return;  // that is in the wedge's own terms
+    const auto edge_m = gates_.edge_point(edge, beside.position_m(), image_m);
+    if (!edge_m) return;
+    const auto mirror_m = gates_.crossing(facet, image_m, *edge_m);
+    if (!mirror_m || !may_face(wedge.edge, *mirror_m - *edge_m)) return;
+    const End at_mirror{over, facet, *mirror_m}, at_edge{beside, edge, *edge_m};
+    if (turned) {
+      offer(at_edge, at_mirror, false, visit);
+    } else {
+      offer(at_mirror, at_edge, false, visit);
+    }
+  }
+
   template <typename Visit>
   void mirror_and_edge(const Side& over, const Side& beside, bool turned, Visit& visit) {
     for (std::size_t at = 0; at < over.layer.mirrors.size(); ++at) {
-      const FacetId facet = over.layer.mirrors[at];
       const Vec3& image_m = over.layer.images_m[at];
       beside.layer.for_each_edge_in(over.layer.cones[at], image_m, [&](std::uint32_t other) {
-        const WedgeId edge = beside.layer.edges[other];
-        const WorldWedge& wedge = scene_.wedge(edge);
-        if (wedge.facets[0] == facet || wedge.facets[1] == facet) return;  // that is in the wedge's own terms
-        const auto edge_m = edge_point(edge, beside.half.position_m(), image_m);
-        if (!edge_m) return;
-        const auto mirror_m = crossing(facet, image_m, *edge_m);
-        if (!mirror_m || !faces(wedge.edge, *mirror_m - *edge_m)) return;
-        if (turned) {
-          offer(beside, edge, *edge_m, over, facet, *mirror_m, false, visit);
-        } else {
-          offer(over, facet, *mirror_m, beside, edge, *edge_m, false, visit);
-        }
+        mirror_to_edge(over.half, over.layer.mirrors[at], image_m, beside.half, beside.layer.edges[other], turned,
+                       visit);
       });
     }
   }
 
-  /// Whether a direction away from an edge may lie in its exterior; at grazing the solver decides.
-  static bool faces(const Wedge& wedge, const Vec3& away_m) {
-    const double azimuth = azimuth_rad(wedge, away_m);
-    return azimuth <= wedge.exterior_angle_rad + 1e-6 || azimuth >= 2.0 * pi - 1e-6;
+  /// Edges of which the transmitter sees a part, over the receiver's mirrors.
+  template <typename Visit>
+  void mirrors_to_parts(const Side& receiver, const BeamLists& reached, Visit& visit) {
+    for (std::size_t at = 0; at < receiver.layer.mirrors.size(); ++at) {
+      const Vec3& image_m = receiver.layer.images_m[at];
+      const auto join = [&](std::uint32_t part) {
+        mirror_to_edge(receiver.half, receiver.layer.mirrors[at], image_m, reached.half(),
+                       WedgeId(reached.parts()[part].edge), false, visit);
+      };
+      reached.for_each_part_in(receiver.layer.cones[at], image_m - reached.origin_m(), 0.0F, join);
+    }
   }
 
-  const Scene& scene_;
-  const FacetOutlines& outlines_;
+  /// Edges that the receiver sees, lit over the transmitter's mirrors.
+  template <typename Visit>
+  void listed_edges(const Side& receiver, const BeamLists& reached, Visit& visit) {
+    const Vec3 end = receiver.half.position_m() - reached.origin_m();
+    for (const WedgeId edge : receiver.layer.edges) {
+      reached.for_each_lit_part(edge, end, 0.0F, [&](const EdgePart&, std::uint32_t place) {
+        const BeamMirror& far = reached.mirrors()[place];
+        mirror_to_edge(reached.half(), far.facet, far.image_m + reached.origin_m(), receiver.half, edge, true, visit);
+      });
+    }
+  }
+
+  JoinGates gates_;
   Orders orders_;
   Sequence sequence_;
 };

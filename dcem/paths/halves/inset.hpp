@@ -21,11 +21,14 @@ struct InsetOutline {
 
   std::span<const Vec3> corners() const { return {corners_m.data(), count}; }
 
+  /// Whether there may be too many corners to cut off one more.
+  bool is_full() const { return count + 2 > capacity; }
+
   /// False where there are too many corners.
   bool assign(std::span<const Vec3> corners) {
-    if (corners.size() + 2 > capacity) return false;
-    std::copy(corners.begin(), corners.end(), corners_m.begin());
     count = corners.size();
+    if (is_full()) return false;
+    std::copy(corners.begin(), corners.end(), corners_m.begin());
     return true;
   }
   /// Keeps what lies on the inner side of a plane; false where nothing is left, or too much.
@@ -38,7 +41,10 @@ struct InsetOutline {
     for (std::size_t index = 0; index < count; ++index) {
       const Vec3 &from = corners_m[index], &to = corners_m[index + 1 == count ? 0 : index + 1];
       const double here = glm::dot(inward, from) - offset_m, there = glm::dot(inward, to) - offset_m;
-      if (left + 2 > capacity) return false;
+      if (left + 2 > capacity) {
+        count = capacity;
+        return false;
+      }
       if (here >= 0.0) kept[left++] = from;
       if ((here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0)) {
         kept[left++] = from + here / (here - there) * (to - from);

@@ -66,21 +66,30 @@ struct LaneEdge {
 class LaneScene {
  public:
   LaneScene(const Scene& scene, const FacetOutlines& outlines) : origin_m_(outlines.middle_m()) {
-    const auto note = [&](const Vec3& normal, double offset_m) {
-      return HalfSpace{static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
-                       static_cast<float>(offset_m - glm::dot(normal, origin_m_))};
-    };
+    planes_.resize(scene.facets().size());
     for (std::uint32_t index = 0; index < scene.facets().size(); ++index) {
-      const Plane& plane = scene.facets()[index].plane;
-      planes_.push_back(note(plane.normal, glm::dot(plane.normal, plane.point_m)));
       first_.push_back(static_cast<std::uint32_t>(sides_.size()));
-      for (const HullSide& side : outlines.sides(FacetId(index))) sides_.push_back(note(side.normal, side.offset_m));
-      for (const Vec3& corner_m : scene.hull_m(scene.facets()[index])) {
-        reach_m_ = std::max(reach_m_, glm::length(corner_m - origin_m_));
-      }
+      sides_.resize(sides_.size() + outlines.sides(FacetId(index)).size());
     }
     first_.push_back(static_cast<std::uint32_t>(sides_.size()));
-    for (const WorldWedge& wedge : scene.wedges()) edges_.push_back(lane_edge(wedge.edge));
+    edges_.resize(scene.wedges().size());
+    for (std::uint32_t index = 0; index < scene.facets().size(); ++index) place(scene, outlines, FacetId(index));
+    for (std::uint32_t index = 0; index < edges_.size(); ++index) place(scene, WedgeId(index));
+  }
+
+  /// Follows bodies that have moved, come or gone; the outlines have already.
+  void update(const Scene& scene, const FacetOutlines& outlines, std::span<const BodyId> moved) {
+    for (const BodyId body : moved) {
+      if (body.value == 0) continue;  // the scenery stands
+      const bool last = body.value + 1 == scene.bodies().size();
+      const auto first_wedge = scene.world().first(body).wedge;
+      const auto last_wedge =
+          last ? static_cast<std::uint32_t>(edges_.size()) : scene.world().first(BodyId(body.value + 1)).wedge;
+      const FacetOutlines::BodyFacets& facets = outlines.bodies()[body.value - 1];
+      for (std::uint32_t index = 0; index < facets.count; ++index)
+        place(scene, outlines, FacetId(facets.first + index));
+      for (std::uint32_t index = first_wedge; index < last_wedge; ++index) place(scene, WedgeId(index));
+    }
   }
 
   const Vec3& origin_m() const { return origin_m_; }
@@ -111,6 +120,18 @@ class LaneScene {
  private:
   static constexpr float beside_m = 1e-3F;  ///< points this far beside a facet or an edge are left to the solver
 
+  HalfSpace half_space(const Vec3& normal, double offset_m) const {
+    return {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
+            static_cast<float>(offset_m - glm::dot(normal, origin_m_))};
+  }
+  void place(const Scene& scene, const FacetOutlines& outlines, FacetId id) {
+    const WorldFacet& facet = scene.facet(id);
+    planes_[id.value] = half_space(facet.plane.normal, glm::dot(facet.plane.normal, facet.plane.point_m));
+    std::uint32_t side = first_[id.value];
+    for (const HullSide& of : outlines.sides(id)) sides_[side++] = half_space(of.normal, of.offset_m);
+    for (const Vec3& corner_m : scene.hull_m(facet)) reach_m_ = std::max(reach_m_, glm::length(corner_m - origin_m_));
+  }
+  void place(const Scene& scene, WedgeId id) { edges_[id.value] = lane_edge(scene.wedge(id).edge); }
   LaneEdge lane_edge(const Wedge& wedge) const {
     const Vec3 start = wedge.start_m - origin_m_, direction = edge_direction(wedge);
     const double angle_rad = wedge.exterior_angle_rad;
@@ -132,6 +153,21 @@ class LaneScene {
 
 // Lanes are asked for what they are not, so that NaN, of ways along a plane or an edge, passes.
 
+namespace detail {
+
+/// Where straight ways cross a plane, their ends' distances from it known; `error_m` holds for both ends.
+inline LaneGate crossings(const LanePoints& from, const LanePoints& to, const Float8& first, const Float8& last,
+                          const Float8& error_m, std::uint32_t lanes) {
+  const LanePoints way = to - from;
+  const Float8 inverse = Float8(1.0F) / (first - last), share = first * inverse;
+  const Float8 length = simd::absolute(way.x) + simd::absolute(way.y) + simd::absolute(way.z);
+  return {{from.x + share * way.x, from.y + share * way.y, from.z + share * way.z},
+          error_m * (Float8(2.0F) + length * simd::absolute(inverse)),
+          lanes};
+}
+
+}  // namespace detail
+
 inline LaneGate LaneScene::cross(FacetId facet, const LanePoints& from, const LanePoints& to, const Float8& error_m,
                                  std::uint32_t lanes) const {
   const HalfSpace& plane = planes_[facet.value];
@@ -139,13 +175,8 @@ inline LaneGate LaneScene::cross(FacetId facet, const LanePoints& from, const La
   const Float8 last = dot(to, plane.x, plane.y, plane.z) - plane.offset;
   const Mask8 above = (error_m < first) & (error_m < last), below = (first < -error_m) & (last < -error_m);
   lanes &= ~(above | below).bits();
-  LaneGate gate{from, Float8(0.0F), lanes};
-  if (lanes == 0) return gate;
-  const LanePoints way = to - from;
-  const Float8 inverse = Float8(1.0F) / (first - last), share = first * inverse;
-  const Float8 length = simd::absolute(way.x) + simd::absolute(way.y) + simd::absolute(way.z);
-  gate.points = {from.x + share * way.x, from.y + share * way.y, from.z + share * way.z};
-  gate.beside_m = error_m * (Float8(2.0F) + length * simd::absolute(inverse));
+  if (lanes == 0) return {from, Float8(0.0F), lanes};
+  LaneGate gate = detail::crossings(from, to, first, last, error_m, lanes);
   const Float8 room = gate.beside_m + beside_m;
   for (const HalfSpace& side : sides(facet)) {
     gate.lanes &= ~(dot(gate.points, side.x, side.y, side.z) + room < Float8(side.offset)).bits();
@@ -160,13 +191,8 @@ inline LaneGate LaneScene::inside(const HalfSpace& plane, std::span<const HalfSp
   const Float8 last = dot(to, plane.x, plane.y, plane.z) - plane.offset;
   const Mask8 down = (room_m < first) & (last < -room_m), up = (first < -room_m) & (room_m < last);
   lanes &= (down | up).bits();
-  LaneGate gate{from, room_m, lanes};
-  if (lanes == 0) return gate;
-  const LanePoints way = to - from;
-  const Float8 inverse = Float8(1.0F) / (first - last), share = first * inverse;
-  const Float8 length = simd::absolute(way.x) + simd::absolute(way.y) + simd::absolute(way.z);
-  gate.points = {from.x + share * way.x, from.y + share * way.y, from.z + share * way.z};
-  gate.beside_m = room_m * (Float8(2.0F) + length * simd::absolute(inverse));
+  if (lanes == 0) return {from, room_m, lanes};
+  LaneGate gate = detail::crossings(from, to, first, last, room_m, lanes);
   for (const HalfSpace& side : sides) {
     gate.lanes &= (Float8(side.offset) + gate.beside_m < dot(gate.points, side.x, side.y, side.z)).bits();
     if (gate.lanes == 0) break;

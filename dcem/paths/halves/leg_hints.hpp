@@ -12,6 +12,7 @@
 #include "dcem/paths/halves/lanes.hpp"
 #include "dcem/paths/query/scene_tracer.hpp"
 #include "dcem/paths/sequence.hpp"
+#include "dcem/paths/solve/path_solver.hpp"
 
 namespace dcem {
 
@@ -20,11 +21,12 @@ template <typename Index>
 class LegHints {
  public:
   LegHints(const SceneTracer<Index>& tracer, const FacetOutlines& outlines, const LaneScene& lanes,
-           const IgnoredBodies& ignored)
+           const IgnoredBodies& ignored, SolverCounters& counters)
       : tracer_(tracer),
         outlines_(outlines),
         lanes_(lanes),
         ignored_(ignored),
+        counters_(counters),
         hints_(2 * (scene().facets().size() + scene().wedges().size()), nothing) {}
 
   /// Of legs from points on `first` to points on `last`, in the order from the transmitter, those that may be free.
@@ -48,8 +50,6 @@ class LegHints {
     const Legs legs{at_first.points, at_last.points, at_first.beside_m + at_last.beside_m, {first, last}, 2};
     return lanes & ~stopped(legs, hint, lanes);
   }
-
-  const TraversalCounters& traversal() const { return traversal_; }
 
  private:
   static constexpr std::uint32_t nothing = 0xffffffffU;
@@ -95,6 +95,7 @@ class LegHints {
     if (!(glm::distance(from_m, to_m) > in_plane_guard_m)) return nothing;
     const std::array<FacetId, 2> start = facets_of(legs.ends[0]), end = facets_of(legs.ends[1]);
     std::uint32_t blocker = nothing;
+    ++counters_.legs;
     tracer_.any_triangle_between(
         from_m, to_m, LegEnd{start, {}}, legs.end_count == 2 ? LegEnd{end, {}} : LegEnd{}, ignored_,
         [&](std::uint32_t triangle) {
@@ -102,7 +103,7 @@ class LegHints {
           blocker = triangle;
           return true;
         },
-        traversal_);
+        counters_.traversal);
     return blocker;
   }
 
@@ -152,7 +153,7 @@ class LegHints {
   const FacetOutlines& outlines_;
   const LaneScene& lanes_;
   IgnoredBodies ignored_;
-  TraversalCounters traversal_;
+  SolverCounters& counters_;
   std::vector<std::uint32_t> hints_;  ///< by element, for the leg before it and for the one after it
 };
 

@@ -8,6 +8,7 @@
 #include "dcem/paths/discover/path_search.hpp"
 #include "dcem/paths/halves/half_joiner.hpp"
 #include "dcem/paths/halves/kept_half.hpp"
+#include "dcem/paths/halves/triple_joiner.hpp"
 
 namespace dcem {
 
@@ -17,33 +18,54 @@ inline HalfSettings half_settings(const PathSearchSettings& settings) {
 inline HalfJoiner::Orders joined_orders(const PathSearchSettings& settings) {
   return {settings.max_reflections, settings.max_diffractions, settings.max_interactions};
 }
+/// Whether sequences of three elements are joined: both ends then look through their mirrors.
+inline bool joins_triples(const PathSearchSettings& settings) {
+  return settings.joined >= 3 && settings.max_interactions >= 3 && settings.max_reflections >= 2;
+}
+
+/// Room for a receiver's own half.
+struct ReceiverRoom {
+  PathHalf half;
+  BeamLists lists;
+};
 
 /// The halves that a search from one receiver joins.
 struct LinkHalves {
   const FacetOutlines& outlines;
   std::span<const KeptHalf> transmitters;  ///< by their numbers; those of absent ones are not looked at
-  PathHalf& receiver;                      ///< room for the receiver's own
+  ReceiverRoom& receiver;
+  const LaneScene& lanes;
 };
 
-/// By transmitter, every sequence that `halves_cover` names and that may carry a path to the receiver.
+/// By transmitter, every sequence that `halves_cover` names and that may carry a path to the receiver. `pairs`: those
+/// of at most two elements, where they are known already.
 inline std::vector<SequenceList> join_halves(const Scene& scene, const PathSearchSettings& settings,
                                              const LinkHalves& halves, const LinkEnd& receiver,
-                                             std::span<const std::optional<LinkEnd>> transmitters) {
-  std::vector<SequenceList> proposed(transmitters.size());
-  const bool direct_alone = settings.max_interactions == 0;
+                                             std::span<const std::optional<LinkEnd>> transmitters,
+                                             std::span<const SequenceList> pairs = {}) {
+  std::vector<SequenceList> proposed(pairs.begin(), pairs.end());
+  proposed.resize(transmitters.size());
+  const HalfSettings seen = half_settings(settings);
+  const bool triples = joins_triples(settings), direct_alone = settings.max_interactions == 0;
+  ReceiverRoom& room = halves.receiver;
   if (!direct_alone) {
-    halves.receiver.find_scenery(scene, halves.outlines, receiver, half_settings(settings));
-    halves.receiver.find_bodies(scene, halves.outlines, half_settings(settings));
+    room.half.find_scenery(scene, halves.outlines, receiver, seen);
+    room.half.find_bodies(scene, halves.outlines, seen);
   }
+  if (triples) room.lists.find_all({scene, halves.outlines, halves.lanes, room.half, seen, true});
   HalfJoiner joiner(scene, halves.outlines, joined_orders(settings));
   for (std::size_t index = 0; index < transmitters.size(); ++index) {
     if (!transmitters[index]) continue;
+    const auto add = [&](const Sequence& sequence) { proposed[index].add(sequence); };
     if (direct_alone) {
-      proposed[index].add({});
-    } else {
-      joiner.for_each_sequence(halves.receiver, halves.transmitters[index].half(),
-                               [&](const Sequence& sequence) { proposed[index].add(sequence); });
+      add({});
+      continue;
     }
+    const KeptHalf& transmitter = halves.transmitters[index];
+    if (pairs.empty()) joiner.for_each_sequence(room.half, transmitter.half(), add, transmitter.lists());
+    if (!triples) continue;
+    TripleJoiner(scene, halves.outlines, halves.lanes, joined_orders(settings))
+        .for_each_sequence(room.lists, *transmitter.lists(), add);
   }
   return proposed;
 }

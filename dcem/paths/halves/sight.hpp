@@ -11,11 +11,18 @@
 #include <vector>
 
 #include "dcem/paths/halves/facet_outlines.hpp"
+#include "dcem/paths/halves/mirror_beam.hpp"
 #include "dcem/paths/halves/view_map.hpp"
 #include "dcem/paths/query/link_end.hpp"
 #include "dcem/paths/solve/edge_rules.hpp"
 
 namespace dcem {
+
+/// Whether a direction away from an edge may lie in its exterior; at grazing the solver decides.
+inline bool may_face(const Wedge& wedge, const Vec3& away_m) {
+  const double azimuth = azimuth_rad(wedge, away_m);
+  return azimuth <= wedge.exterior_angle_rad + 1e-6 || azimuth >= 2.0 * pi - 1e-6;
+}
 
 /// What is the same for all halves.
 struct HalfSettings {
@@ -48,8 +55,8 @@ class Sight {
   /// The same of all other bodies, where they are now. The scenery must be known.
   void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
 
-  /// All facets that may be seen, of scenery and bodies, ascending.
-  void find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+  /// All facets that may be seen, of the scenery and, where they are asked for, of bodies.
+  void find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, bool bodies,
                    std::vector<FacetId>& seen);
   /// Whether a piece of an edge, or a bit of it, may be seen.
   bool shows(const Scene& scene, const FacetOutlines& outlines, WedgeId edge, const Vec3& from_m, const Vec3& to_m) {
@@ -89,8 +96,6 @@ class Sight {
   /// Triangles that leave their facet's plane by more hide as they are, not as the facet's hull. 2 µm from 13 cm away
   /// are 0.002 of a pixel.
   static constexpr double flat_m = 2e-6;
-  /// How much wider than its mirror's window a beam is: points beside a facet are left to the solver.
-  static constexpr double beside_beam_m = 5e-3;
 
   /// By how much more than for one point a lift counts: see `nearer_on`.
   double lift_share() const { return points_m_.size() == 1 ? 1.0 : 2.0; }
@@ -126,28 +131,18 @@ class Sight {
       return std::abs(signed_distance_m(plane, point_m)) <= in_plane_guard_m;
     });
   }
-  /// Whether a box is clearly outside the beam.
-  bool is_beside(const Aabb<double>& box) const {
-    const Vec3 centre = box.center(), half = 0.5 * box.extent();
-    return std::any_of(beam_.begin(), beam_.end(), [&](const BeamSide& side) {
-      return glm::dot(side.normal, centre) + glm::dot(glm::abs(side.normal), half) < side.offset_m;
-    });
+  bool is_beside(const Aabb<double>& box) const { return beam_ && beam_->is_beside(box); }
+  /// Whether all points are between the faces of a wedge, where it is solid.
+  bool is_inside(const Wedge& wedge) const {
+    return std::none_of(points_m_.begin(), points_m_.end(),
+                        [&](const Vec3& point_m) { return may_face(wedge, point_m - wedge.start_m); });
   }
-  bool is_inside(const Wedge& wedge) const;
   void finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
-
-  /// normal·x ≥ offset inside.
-  struct BeamSide {
-    Vec3 normal;
-    double offset_m;
-  };
 
   ViewMap map_;
   std::vector<Vec3> points_m_;
-  std::optional<FacetId> mirror_;  ///< that is looked through
-  std::vector<BeamSide> beam_;     ///< beyond the mirror comes first; empty where nothing is looked through
-  double hides_beyond_m_ = 0.0;    ///< how far beyond its first side something hides
-  double radius_m_ = 0.0;          ///< how far points are from the middle
+  std::optional<MirrorBeam> beam_;  ///< where a mirror is looked through
+  double radius_m_ = 0.0;           ///< how far points are from the middle
   std::optional<BodyId> ignored_body_;
   std::vector<FacetId> mounted_on_;
   std::vector<char> seen_;
@@ -161,30 +156,7 @@ inline void Sight::look_from(const LinkEnd& end) {
   radius_m_ = 0.0;
   ignored_body_ = end.ignored_body;
   mounted_on_ = end.mounted_on;
-  mirror_.reset();
-  beam_.clear();
-}
-
-inline void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, const Vec3& image_m,
-                                const std::optional<BodyId>& ignored_body) {
-  look_from(LinkEnd{image_m, ignored_body, {}});
-  const Plane& plane = scene.facet(mirror).plane;
-  mirror_ = mirror;
-  const Vec3 beyond = signed_distance_m(plane, image_m) > 0.0 ? -plane.normal : plane.normal;
-  beam_.push_back({beyond, glm::dot(beyond, plane.point_m) - beside_beam_m});
-  // A leg ignores what lies along its mirror: it hides only farther away than that.
-  hides_beyond_m_ = beside_beam_m + 2.0 * outlines.of(mirror).lift_m;
-  const std::span<const Vec3> window_m = scene.hull_m(scene.facet(mirror));
-  Vec3 centre_m(0.0);
-  for (const Vec3& corner : window_m) centre_m += corner / static_cast<double>(window_m.size());
-  for (std::size_t index = 0; index < window_m.size(); ++index) {
-    const Vec3 from = window_m[index] - image_m, to = window_m[(index + 1) % window_m.size()] - image_m;
-    const Vec3 across = glm::cross(from, to);
-    const double length = glm::length(across);
-    if (!(length > 1e-6 * glm::length(from) * glm::length(to))) continue;  // says nothing: the beam is wider
-    const Vec3 normal = (glm::dot(across, centre_m - image_m) < 0.0 ? -across : across) / length;
-    beam_.push_back({normal, glm::dot(normal, image_m) - beside_beam_m});
-  }
+  beam_.reset();
 }
 
 inline void Sight::look_from(std::span<const Vec3> points_m) {
@@ -202,8 +174,19 @@ inline void Sight::look_from(std::span<const Vec3> points_m) {
   points_m_.assign(points_m.begin(), points_m.end());
   ignored_body_.reset();
   mounted_on_.clear();
-  mirror_.reset();
-  beam_.clear();
+  beam_.reset();
+}
+
+inline void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, const Vec3& image_m,
+                                const std::optional<BodyId>& ignored_body) {
+  const WorldFacet& facet = scene.facet(mirror);
+  const std::span<const Vec3> window_m = scene.hull_m(facet);
+  points_m_.assign(1, image_m);
+  radius_m_ = 0.0;
+  ignored_body_ = ignored_body;
+  mounted_on_.clear();
+  beam_.emplace(mirror, facet.plane, image_m, window_m, outlines.of(mirror).lift_m);
+  map_.look_through(image_m, window_m, MirrorBeam::room_m, beam_->inwards());
 }
 
 inline void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
@@ -218,7 +201,7 @@ inline void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outl
   const auto hidden = [&](const Aabb<double>& box) { return is_beside(box) || map_.hides(box, longest_lift_m); };
   outlines.visit_from(position_m(), hidden, look_at);
   outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
-    if (is_lifted_far(scene, outlines, id)) look_at(id);
+    if (!is_beside(outlines.of(id).box) && is_lifted_far(scene, outlines, id)) look_at(id);
   });
 }
 
@@ -249,33 +232,29 @@ inline void Sight::find_bodies(const Scene& scene, const FacetOutlines& outlines
 }
 
 inline void Sight::find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                               std::vector<FacetId>& seen) {
+                               bool bodies, std::vector<FacetId>& seen) {
   seen.clear();
   look_at_scenery(scene, outlines, settings, seen);
-  look_at_bodies(scene, outlines, seen);
-  std::ranges::sort(seen);
+  if (bodies) look_at_bodies(scene, outlines, seen);
 }
 
 inline bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) {
   const WorldFacet& facet = scene.facet(id);
   if (!facet.present || facet.body == ignored_body_) return false;
   const double nearer = nearer_on(scene, outlines, id);
-  if (beam_.empty()) return map_.shows(scene.hull_m(facet), facet.plane, nearer);
-  if (id == *mirror_ || is_beside(outlines.of(id).box)) return false;
+  if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer);
+  if (id == beam_->mirror() || beam_->is_beside(outlines.of(id).box)) return false;
   detail::InsetOutline inside;
   if (!inside.assign(scene.hull_m(facet))) return true;
-  for (const BeamSide& side : beam_) {
-    if (!inside.keep(side.normal, side.offset_m)) return inside.count + 2 > detail::InsetOutline::capacity;
-  }
+  if (!beam_->cut(inside)) return inside.is_full();
   return map_.shows(inside.corners(), facet.plane, nearer);
 }
 
 /// Notes the part of an outline that is beyond the mirror, where one is looked through.
 inline void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane) {
-  if (beam_.empty()) return map_.cover(corners_m, plane);
+  if (!beam_) return map_.cover(corners_m, plane);
   detail::InsetOutline beyond;
-  if (!beyond.assign(corners_m) || !beyond.keep(beam_[0].normal, beam_[0].offset_m + hides_beyond_m_)) return;
-  map_.cover(beyond.corners(), plane);
+  if (beyond.assign(corners_m) && beam_->cut_to_occluder(beyond)) map_.cover(beyond.corners(), plane);
 }
 
 inline void Sight::cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings) {
@@ -302,15 +281,6 @@ inline void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet) 
     const Plane plane{corners_m[0], normal / size};
     if (least_distance_m(plane) > 0.01) cover_beyond(corners_m, plane);
   }
-}
-
-/// Whether all points are between the faces of a wedge, where it is solid.
-inline bool Sight::is_inside(const Wedge& wedge) const {
-  constexpr double graze_rad = 1e-6;  // there the solver decides
-  return std::all_of(points_m_.begin(), points_m_.end(), [&](const Vec3& point_m) {
-    const double azimuth = azimuth_rad(wedge, point_m - wedge.start_m);
-    return azimuth > wedge.exterior_angle_rad + graze_rad && azimuth < 2.0 * pi - graze_rad;
-  });
 }
 
 /// Adds the edges. Where a point of an edge is seen from its exterior, so is one of its faces beside it: but for a

@@ -1,6 +1,6 @@
 #pragma once
-/// What is hidden from a point, or from several points close to each other, for sure: a cube map of surfaces that fill
-/// whole pixels.
+/// What is hidden from a point, or from several points close to each other, for sure: a map of surfaces that fill whole
+/// pixels, on the faces of a cube or on one that looks through a window.
 ///
 /// Each pixel holds the depth of a surface that is known to fill the pixel by itself. Something is hidden where all
 /// pixels that it touches are filled by surfaces that are nearer. The map errs on one side alone: what it calls hidden
@@ -20,6 +20,7 @@
 #include "dcem/geometry/plane.hpp"
 #include "dcem/paths/halves/face_outline.hpp"
 #include "dcem/paths/halves/inset.hpp"
+#include "dcem/paths/halves/view_frame.hpp"
 
 namespace dcem {
 
@@ -29,11 +30,8 @@ class ViewMap {
   static constexpr double always_seen = 1e30;
 
   /// So many pixels along each side of the six faces: a multiple of 8, at most 1024.
-  explicit ViewMap(int pixels)
-      : pixels_(pixels),
-        tiles_(pixels / tile_pixels),
-        nearness_(6 * static_cast<std::size_t>(pixels * pixels)),
-        tile_nearness_(6 * static_cast<std::size_t>(tiles_ * tiles_)) {
+  explicit ViewMap(int pixels) : cube_pixels_(pixels) {
+    clear(pixels);
     DCEM_ASSERT(pixels > 0 && pixels % tile_pixels == 0 && pixels <= detail::FaceRows::most_pixels);
   }
 
@@ -42,8 +40,17 @@ class ViewMap {
   void look_from(const Vec3& point_m, std::span<const Vec3> offsets_m = {}) {
     from_m_ = point_m;
     offsets_m_.assign(offsets_m.begin(), offsets_m.end());
-    std::ranges::fill(nearness_, 0.0F);
-    std::ranges::fill(tile_nearness_, 0.0F);
+    faces_ = {};
+    clear(cube_pixels_);
+  }
+  /// The same of a point that looks through a convex window, and `room_m` around it: there is nothing else to be seen.
+  /// `inwards`: the normals of planes by the point which all of it is inside.
+  void look_through(const Vec3& point_m, std::span<const Vec3> window_m, double room_m, std::span<const Vec3> inwards) {
+    from_m_ = point_m;
+    offsets_m_.clear();
+    const auto frame = detail::frame_of_window(point_m, window_m, room_m, least_pixel_m, window_pixels);
+    faces_ = frame ? detail::ViewFaces(*frame) : detail::ViewFaces(inwards);
+    clear(frame ? window_pixels : cube_pixels_);
   }
   const Vec3& from_m() const { return from_m_; }
 
@@ -61,6 +68,9 @@ class ViewMap {
 
  private:
   static constexpr int tile_pixels = 8;
+  /// Through a window, of a pixel where the window is: what strays by 2 µm strays by less than the margin of a pixel.
+  static constexpr double least_pixel_m = 1e-3;
+  static constexpr int window_pixels = 32;  ///< by measurement: with more of them views take longer than they save
   static constexpr double rounding = 1e-5;  ///< relative, of nearness in single precision: 80 units of the last place
 
   /// 1/depth of a plane over a face: by_column·x + by_row·y + at_origin, in pixels.
@@ -68,12 +78,14 @@ class ViewMap {
     double by_column, by_row, at_origin;
   };
 
-  static detail::FacePoint on_face(int face, const Vec3& offset_m) {
-    const int axis = face / 2;
-    return {offset_m[(axis + 1) % 3], offset_m[(axis + 2) % 3], face % 2 == 0 ? offset_m[axis] : -offset_m[axis]};
+  void clear(int pixels) {
+    pixels_ = pixels;
+    tiles_ = pixels / tile_pixels;
+    nearness_.assign(static_cast<std::size_t>(faces_.count() * pixels * pixels), 0.0F);
+    tile_nearness_.assign(static_cast<std::size_t>(faces_.count() * tiles_ * tiles_), 0.0F);
   }
   Nearness nearness_of(int face, const Vec3& normal, double distance_m) const {
-    const detail::FacePoint turned = on_face(face, normal);
+    const detail::FacePoint turned = faces_.normal(face, normal);
     const double per_pixel = 2.0 / pixels_;
     return {turned.across / distance_m * per_pixel, turned.along / distance_m * per_pixel,
             (turned.depth - turned.across - turned.along) / distance_m};
@@ -82,7 +94,7 @@ class ViewMap {
   bool outline_on(int face, std::span<const Vec3> corners_m, double reach, detail::FaceOutline& outline) const {
     bool in_front = false;
     for (const Vec3& corner : corners_m) {
-      outline.add(on_face(face, corner - from_m_));
+      outline.add(faces_.point(face, corner - from_m_));
       in_front = in_front || outline[outline.size() - 1].depth > 0.0;
     }
     if (!in_front) return false;
@@ -93,7 +105,7 @@ class ViewMap {
   void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m);
   void cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness);
   void renew_tiles(int face, int first_row, int last_row, int first_column, int last_column);
-  bool hides_on(int face, const Vec3& low_m, const Vec3& high_m, double margin_m) const;
+  bool hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high, double margin_m) const;
   /// What single precision may add to or take from a nearness that is summed over a row.
   static double slack_of(const Nearness& nearness, int pixels) {
     return 4e-7 * ((std::abs(nearness.by_column) + std::abs(nearness.by_row)) * pixels + std::abs(nearness.at_origin));
@@ -105,7 +117,8 @@ class ViewMap {
     return nearness_.data() + static_cast<std::size_t>((face * pixels_ + number) * pixels_);
   }
 
-  int pixels_, tiles_;
+  int cube_pixels_, pixels_ = 0, tiles_ = 0;
+  detail::ViewFaces faces_;
   Vec3 from_m_{0.0};
   std::vector<Vec3> offsets_m_;       ///< of further points
   std::vector<float> nearness_;       ///< 1/depth of what fills the pixel; 0: nothing does
@@ -128,7 +141,7 @@ inline void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane) 
 }
 
 inline void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m) {
-  for (int face = 0; face < 6; ++face) {
+  for (int face = 0; face < faces_.count(); ++face) {
     detail::FaceOutline outline;
     // Over the rim, so that pixels at the rim are filled, too.
     if (outline_on(face, corners_m, 1.02, outline) && outline.size() >= 3) {
@@ -183,7 +196,7 @@ inline bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& plane, 
   const double distance_m = -signed_distance_m(plane, from_m_);
   const bool says_nothing = std::abs(distance_m) < 1e-6 || nearer >= always_seen;
   if (says_nothing || corners_m.size() > detail::FaceOutline::most_corners) return true;
-  for (int face = 0; face < 6; ++face) {
+  for (int face = 0; face < faces_.count(); ++face) {
     detail::FaceOutline outline;
     if (outline_on(face, corners_m, 1.0 + 1e-6, outline) &&
         shows_on(face, outline, nearness_of(face, plane.normal, distance_m), nearer)) {
@@ -195,7 +208,7 @@ inline bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& plane, 
 
 inline bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nearer) {
   const std::array<Vec3, 2> ends_m{from_m, to_m};
-  for (int face = 0; face < 6; ++face) {
+  for (int face = 0; face < faces_.count(); ++face) {
     detail::FaceOutline line;
     if (!outline_on(face, ends_m, 1.0 + 1e-6, line)) continue;
     const detail::FacePoint &first = line[0], &last = line[line.size() > 1 ? 1 : 0];
@@ -271,18 +284,19 @@ inline bool ViewMap::hides(const Aabb<double>& box, double margin_m) const {
   const Vec3 low_m = box.min - from_m_, high_m = box.max - from_m_;
   const bool inside = low_m.x <= 0 && low_m.y <= 0 && low_m.z <= 0 && high_m.x >= 0 && high_m.y >= 0 && high_m.z >= 0;
   if (inside) return false;
-  for (int face = 0; face < 6; ++face) {
-    if (!hides_on(face, low_m, high_m, margin_m)) return false;
+  for (int face = 0; face < faces_.count(); ++face) {
+    const auto [low, high] = faces_.box(face, {low_m, high_m});
+    if (!hides_on(face, low, high, margin_m)) return false;
   }
   return true;
 }
 
-inline bool ViewMap::hides_on(int face, const Vec3& low_m, const Vec3& high_m, double margin_m) const {
-  const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const double near = face % 2 == 0 ? low_m[axis] : -high_m[axis], far = face % 2 == 0 ? high_m[axis] : -low_m[axis];
-  if (far <= 0.0 || low_m[u] > far || -high_m[u] > far || low_m[v] > far || -high_m[v] > far) return true;
+inline bool ViewMap::hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high,
+                              double margin_m) const {
+  const double far = high.depth;
+  if (far <= 0.0 || low.across > far || -high.across > far || low.along > far || -high.along > far) return true;
   // No nearer than where the face's pyramid is wide enough to hold any of the box.
-  const double depth = std::max({near, 0.0, low_m[u], -high_m[u], low_m[v], -high_m[v]});
+  const double depth = std::max({low.depth, 0.0, low.across, -high.across, low.along, -high.along});
   if (depth - margin_m < 1e-3) return false;
   const auto first = [&](double bound) {
     const double seen = bound / (bound >= 0.0 ? far : depth);
@@ -293,8 +307,8 @@ inline bool ViewMap::hides_on(int face, const Vec3& low_m, const Vec3& high_m, d
     return std::min(tiles_ - 1, static_cast<int>(std::floor(std::min(seen + 1.0, 3.0) * 0.5 * tiles_ + 1e-6)));
   };
   const auto nearness = static_cast<float>((1.0 + rounding) / (depth - margin_m));
-  for (int tile_row = first(low_m[v]); tile_row <= last(high_m[v]); ++tile_row) {
-    for (int column = first(low_m[u]); column <= last(high_m[u]); ++column) {
+  for (int tile_row = first(low.along); tile_row <= last(high.along); ++tile_row) {
+    for (int column = first(low.across); column <= last(high.across); ++column) {
       if (nearness > tile_nearness_[static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column)])
         return false;
     }

@@ -20,8 +20,9 @@ inline void add_search_work(const SearchCounters& counters, WorkCounters& work) 
   work.primitives_tested += counters.solver.traversal.primitives_tested;
 }
 
-/// Pixels of the view maps of so many transmitters: 1.5 MB each, less where they are many.
+/// Pixels of the view maps of so many transmitters: 6 MB each, less where they are many.
 inline int view_pixels_for(std::size_t transmitters) {
+  if (transmitters <= 4) return 2 * PathHalf::default_pixels;
   return transmitters <= 64 ? PathHalf::default_pixels : transmitters <= 1024 ? PathHalf::default_pixels / 2 : 64;
 }
 /// The same where very many receivers pay for what a coarse map shows: 25 MB each at most.

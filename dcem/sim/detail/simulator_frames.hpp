@@ -31,7 +31,7 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   frame_ = frame;
   result.update_time_s = update_watch.seconds();
   const detail::Stopwatch solve_watch;
-  Solved solved = solve_all(scene_.receivers(), transmitter_ends(reach_, halves_), caches_);
+  Solved solved = solve_all(scene_.receivers(), transmitter_ends(reach_, halves_, plan_), caches_);
   result.links = std::move(solved.links);
   result.work = solved.work;
   result.cache += solved.cache;
@@ -55,7 +55,10 @@ TreeUpdateReport BasicSimulator<Surface, Index>::update_index(const ChangeSet& c
     const auto [first, last] = scene_.triangle_range(body);
     for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
   }
-  if (outlines_) outlines_->update(scene_, changes.moved);
+  if (outlines_) {
+    outlines_->update(scene_, changes.moved);
+    lanes_->update(scene_, *outlines_, changes.moved);
+  }
   // Kept where this throws (a box too far away): the index must hear of them in a later frame.
   const TreeUpdateReport report = index_.update(scene_.triangle_view(), scene_.triangle_boxes(), moved_);
   moved_.clear();
@@ -79,8 +82,10 @@ void BasicSimulator<Surface, Index>::forget_replaced(const ChangeSet& changes, C
 
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::transmitter_ends(
-    std::span<EdgeReach> reach, std::span<KeptHalf> halves, std::vector<char> embedded, bool fine) const {
+    std::span<EdgeReach> reach, std::span<KeptHalf> halves, const SearchPlan& plan, std::vector<char> embedded,
+    bool fine) const {
   TransmitterEnds ends;
+  ends.plan = plan;
   ends.embedded = std::move(embedded);
   for (const Device& device : scene_.transmitters()) {
     const DeviceState state = scene_.device_state(device, frame_);
@@ -89,9 +94,9 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
     ends.radio.push_back(detail::radio_end(device, state));
   }
   ends.reached.resize(ends.link.size());
-  const PathSearchSettings search = search_settings(ends.embedded);
+  const PathSearchSettings search = search_settings(ends.plan, ends.embedded);
   if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
-  if (plan_.halves && search.max_interactions > 0) find_transmitter_halves(ends, halves, fine);
+  if (plan.joined > 0 && search.max_interactions > 0) find_transmitter_halves(ends, halves, fine);
   return ends;
 }
 
@@ -104,9 +109,14 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
                            KeptHalf(fine ? detail::fine_view_pixels_for(count) : detail::view_pixels_for(count)));
     halves = ends.own_halves;
   }
-  const HalfSettings settings = half_settings(search_settings(ends.embedded));
+  const PathSearchSettings search = search_settings(ends.plan, ends.embedded);
+  const bool triples = joins_triples(search);
+  const bool over_mirrors = search.max_reflections >= 1 && search.max_interactions >= 2;
+  const HalfLists lists{fine || over_mirrors ? &*lanes_ : nullptr, over_mirrors, fine || triples,
+                        scene_.receivers().size()};
   pool_->for_each(ends.link.size(), [&](std::size_t index, unsigned) {
-    if (ends.link[index]) halves[index].update(scene_, *outlines_, *ends.link[index], settings);
+    if (!ends.link[index]) return;
+    halves[index].update(scene_, *outlines_, *ends.link[index], half_settings(search), lists);
   });
   ends.halves = halves;
 }
@@ -114,7 +124,7 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const {
   const Tracer tracer(scene_, index_);
-  const PathSearchSettings search = search_settings(ends.embedded);
+  const PathSearchSettings search = search_settings(ends.plan, ends.embedded);
   if (reach.empty()) {
     ends.own_reach.resize(ends.link.size());
     reach = ends.own_reach;
@@ -132,9 +142,10 @@ void BasicSimulator<Surface, Index>::find_transmitter_reach(TransmitterEnds& end
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-PathSearchSettings BasicSimulator<Surface, Index>::search_settings(std::span<const char> embedded_edges) const {
+PathSearchSettings BasicSimulator<Surface, Index>::search_settings(const SearchPlan& plan,
+                                                                   std::span<const char> embedded_edges) const {
   const PropagationSettings& propagation = settings_.propagation;
-  return {plan_.exhaustive,
+  return {plan.exhaustive,
           reflection_order(propagation),
           propagation.max_transmissions,
           propagation.rays,
@@ -144,7 +155,7 @@ PathSearchSettings BasicSimulator<Surface, Index>::search_settings(std::span<con
           interaction_order(propagation),
           {degrees_to_radians(propagation.diffraction.min_exterior_angle_deg), propagation.diffraction.free_edges,
            propagation.diffraction.region == DiffractionRegion::shadow, embedded_edges},
-          plan_.halves};
+          plan.joined};
 }
 
 }  // namespace dcem

@@ -11,7 +11,7 @@ namespace dcem {
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const Device> receivers,
                                                               WorkCounters* work) const {
-  Solved solved = solve_all(receivers, transmitter_ends({}, {}), {});
+  Solved solved = solve_all(receivers, transmitter_ends({}, {}, plan_), {});
   if (work != nullptr) *work += solved.work;
   return std::move(solved.links);
 }
@@ -20,7 +20,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_all(
     std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches) const {
   std::vector<Solved> by_receiver(receivers.size());
-  std::vector<PathHalf> rooms = rooms_for_halves();
+  std::vector<ReceiverRoom> rooms = rooms_for_halves();
   pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
     PathCache* cache = caches.empty() ? nullptr : &caches[index];
     by_receiver[index] =
@@ -64,13 +64,14 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   }
   SearchCounters counters;
   const LinkEnd end = link_end(state, counters.solver.traversal);
-  const PathSearchSettings search = search_settings(transmitters.embedded);
+  const PathSearchSettings search = search_settings(transmitters.plan, transmitters.embedded);
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
-  std::span<const SequenceList> joined = proposals.joined;
+  std::span<const SequenceList> joined = proposals.pairs;
   std::vector<SequenceList> own;
-  if (joined.empty() && proposals.room != nullptr) {
-    own = join_halves(scene_, search, {*outlines_, transmitters.halves, *proposals.room}, end, ends);
+  if (proposals.room != nullptr && (joined.empty() || joins_triples(search))) {
+    const LinkHalves halves{*outlines_, transmitters.halves, *proposals.room, *lanes_};
+    own = join_halves(scene_, search, halves, end, ends, joined);
     joined = own;
   }
   std::vector<LinkPaths> found =
@@ -144,7 +145,7 @@ void BasicSimulator<Surface, Index>::trace_elements(std::span<PathContribution> 
                                                     const DeviceEnd& to, const Evaluator& evaluator) const {
   if (settings_.propagation.antenna_array != ArrayChannel::exact || !has_array(from.radio, to.radio)) return;
   const Tracer tracer(scene_, index_);
-  const PathSearchSettings search = search_settings();
+  const PathSearchSettings search = search_settings(plan_);
   PathSolver<Index> solver(tracer, search.max_transmissions, search.edges);
   TraversalCounters counters;
   const double length_m = wavelength_m(settings_.frequency_hz);
@@ -163,7 +164,7 @@ std::optional<PathContribution> BasicSimulator<Surface, Index>::solve_path(std::
   const DeviceState from_state = scene_.device_state(from, frame_), to_state = scene_.device_state(to, frame_);
   if (!from_state.present || !to_state.present) return std::nullopt;
   const Tracer tracer(scene_, index_);
-  const PathSearchSettings search = search_settings();
+  const PathSearchSettings search = search_settings(plan_);
   PathSolver<Index> solver(tracer, search.max_transmissions, search.edges);
   TraversalCounters counters;
   const LinkEnd from_link = link_end(from_state, counters), to_link = link_end(to_state, counters);

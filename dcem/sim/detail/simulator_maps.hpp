@@ -25,38 +25,32 @@ struct BasicSimulator<Surface, Index>::MapShare {
   /// Sequences by point, then by transmitter.
   using Joined = std::vector<std::vector<SequenceList>>;
 
-  MapShare(const BasicSimulator& simulator, const TransmitterEnds& transmitters)
-      : lanes(simulator.scene_, *simulator.outlines_),
-        search(simulator.search_settings(transmitters.embedded)),
-        masts(transmitters.link.size()),
-        crowds(std::max(1U, simulator.pool_->size())) {
-    const bool both = search.max_interactions >= 2 && search.max_reflections >= 1;
-    simulator.pool_->for_each(masts.size(), [&](std::size_t index, unsigned) {
-      if (!transmitters.link[index]) return;
-      masts[index].emplace(simulator.scene_, *simulator.outlines_, lanes, transmitters.halves[index].half(),
-                           half_settings(search), both);
-    });
-  }
+  MapShare(const BasicSimulator& simulator, const TransmitterEnds& ends)
+      : transmitters(ends),
+        search(simulator.search_settings(ends.plan, ends.embedded)),
+        crowds(std::max(1U, simulator.pool_->size())) {}
 
   /// The sequences that paths to each of some points may take.
-  Joined join(const BasicSimulator& simulator, std::span<const Vec3> points_m, unsigned worker) {
-    Joined joined(points_m.size(), std::vector<SequenceList>(masts.size()));
-    crowds[worker].look_from(simulator.scene_, *simulator.outlines_, lanes, points_m, half_settings(search));
+  Joined join(const BasicSimulator& simulator, std::span<const Vec3> points_m, unsigned worker, WorkCounters& work) {
+    Joined joined(points_m.size(), std::vector<SequenceList>(transmitters.link.size()));
+    crowds[worker].look_from(simulator.scene_, *simulator.outlines_, *simulator.lanes_, points_m,
+                             half_settings(search));
     const Tracer tracer(simulator.scene_, simulator.index_);
-    CrowdJoiner<Index> joiner(tracer, *simulator.outlines_, lanes, joined_orders(search));
-    for (std::size_t index = 0; index < masts.size(); ++index) {
-      if (!masts[index]) continue;
+    SearchCounters counters;
+    CrowdJoiner<Index> joiner(tracer, *simulator.outlines_, *simulator.lanes_, joined_orders(search), counters.solver);
+    for (std::size_t index = 0; index < transmitters.link.size(); ++index) {
+      if (!transmitters.link[index]) continue;
       for (std::vector<SequenceList>& of_point : joined) of_point[index].add({});
-      joiner.for_each_sequence(crowds[worker], *masts[index], [&](const Sequence& sequence, std::size_t point) {
-        joined[point][index].add(sequence);
-      });
+      joiner.for_each_sequence(
+          crowds[worker], *transmitters.halves[index].lists(),
+          [&](const Sequence& sequence, std::size_t point) { joined[point][index].add(sequence); });
     }
+    detail::add_search_work(counters, work);
     return joined;
   }
 
-  LaneScene lanes;
+  const TransmitterEnds& transmitters;
   PathSearchSettings search;
-  std::vector<std::optional<MastLists>> masts;
   std::vector<Crowd> crowds;
 };
 
@@ -67,8 +61,8 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverG
   // Looking at an edge costs several microseconds; in a city it saves about a tenth of a millisecond per point.
   const bool looks_for_embedded = settings_.share_map_work && diffraction_order(settings_.propagation) > 0 &&
                                   grid.size() >= scene_.wedges().size() / 10;
-  TransmitterEnds transmitters =
-      transmitter_ends({}, {}, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
+  TransmitterEnds transmitters = transmitter_ends(
+      {}, {}, map_plan_, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
   // Maps hold no channel between elements, and their powers are those of one: none is computed.
   for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
   ReceiverGrid single = grid;
@@ -93,7 +87,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverG
   const auto position_m = [&](std::size_t cell) {
     return grid_point_m(grid, cell / grid.columns(), cell % grid.columns());
   };
-  const bool shares_views = plan_.halves && settings_.share_map_work && !transmitters.halves.empty();
+  const bool shares_views = map_plan_.joined > 0 && settings_.share_map_work && !transmitters.halves.empty();
   const std::vector<std::vector<std::size_t>> groups =
       detail::map_groups(grid, open, [&](std::size_t from, std::size_t to) {
         return shares_views && !index_.occluded(segment_between(position_m(from), position_m(to)), {}, nullptr);
@@ -102,13 +96,13 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverG
   std::optional<MapShare> share;
   if (shares_views) share.emplace(*this, transmitters);
   std::vector<WorkCounters> spent(groups.size());
-  std::vector<PathHalf> rooms = rooms_for_halves();
+  std::vector<ReceiverRoom> rooms = rooms_for_halves();
   pool_->for_each(groups.size(), [&](std::size_t number, unsigned worker) {
     const std::vector<std::size_t>& group = groups[number];
     std::vector<Vec3> points_m;
     for (const std::size_t cell : group) points_m.push_back(position_m(cell));
     typename MapShare::Joined joined;
-    if (share && group.size() > 1) joined = share->join(*this, points_m, worker);
+    if (share && group.size() > 1) joined = share->join(*this, points_m, worker, spent[number]);
     for (std::size_t at = 0; at < group.size(); ++at) {
       const std::size_t cell = group[at];
       const Solved solved = solve_receiver(

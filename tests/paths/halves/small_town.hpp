@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/paths/path_finder.hpp"
 #include "tests/paths/small_scenes.hpp"
 
@@ -57,6 +58,35 @@ inline std::vector<Path> all_sequences(TracedScene<>& traced, const LinkEnd& fro
   const std::vector<std::optional<LinkEnd>> ends{from};
   const std::vector<ReachedEdges> reached{reach.edges()};
   return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached).front().paths;
+}
+
+/// What the transmitter has listed beforehand.
+enum class Listed { nothing, scenery, all };
+
+/// The same by joining halves.
+inline std::vector<Path> joined(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
+                                int pixels = 256, Listed listed = Listed::all) {
+  PathSearchSettings settings;
+  settings.exhaustive = false;
+  settings.joined = most_joined_interactions;
+  settings.rays = 0;
+  settings.max_reflections = asked.reflections;
+  settings.max_diffractions = asked.diffractions;
+  settings.max_interactions = asked.interactions;
+  settings.max_transmissions = asked.transmissions;
+  settings.edges.free_edges = asked.free_edges;
+  const FacetOutlines outlines(traced.scene);
+  std::vector<KeptHalf> transmitters(1, KeptHalf(pixels));
+  const LaneScene lanes(traced.scene, outlines);
+  transmitters[0].update(traced.scene, outlines, from, half_settings(settings),
+                         {listed == Listed::nothing ? nullptr : &lanes, true, listed == Listed::all, 1000});
+  ReceiverRoom room{PathHalf(pixels), {}};
+  SearchCounters counters;
+  const std::vector<std::optional<LinkEnd>> ends{from};
+  const std::vector<SequenceList> proposed =
+      join_halves(traced.scene, settings, {outlines, transmitters, room, lanes}, to, ends);
+  const std::vector<ReachedEdges> reached(1);
+  return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached, proposed).front().paths;
 }
 
 /// The same sequences, and the same bits of every point.

@@ -27,11 +27,13 @@ std::vector<std::vector<Path>> found_together(TracedScene<>& traced, const LinkE
   PathHalf half(pixels);
   half.find_scenery(traced.scene, outlines, from, half_settings_of(asked));
   half.find_bodies(traced.scene, outlines, half_settings_of(asked));
-  const MastLists mast(traced.scene, outlines, lanes, half, half_settings_of(asked), true);
+  BeamLists mast;
+  mast.find_all({traced.scene, outlines, lanes, half, half_settings_of(asked), true});
   Crowd crowd(pixels);
   crowd.look_from(traced.scene, outlines, lanes, points_m, half_settings_of(asked));
+  SolverCounters counters;
   CrowdJoiner<WideIndex> joiner(traced.tracer, outlines, lanes,
-                                {asked.reflections, asked.diffractions, asked.interactions});
+                                {asked.reflections, asked.diffractions, asked.interactions}, counters);
   PathSolver<WideIndex> solver(traced.tracer, asked.transmissions, half_settings_of(asked).rules);
   std::vector<std::vector<Path>> paths(points_m.size());
   const auto solve = [&](const Sequence& sequence, std::size_t point) {

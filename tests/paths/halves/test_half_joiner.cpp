@@ -3,12 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "dcem/paths/halves/link_halves.hpp"
-#include "dcem/paths/path_finder.hpp"
 #include "tests/paths/halves/small_town.hpp"
 
 using namespace dcem;
@@ -16,34 +13,13 @@ using namespace dcem::test;
 
 namespace {
 
-std::vector<Path> joined(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
-                         int pixels = 256) {
-  PathSearchSettings settings;
-  settings.exhaustive = false;
-  settings.halves = true;
-  settings.rays = 0;
-  settings.max_reflections = asked.reflections;
-  settings.max_diffractions = asked.diffractions;
-  settings.max_interactions = asked.interactions;
-  settings.max_transmissions = asked.transmissions;
-  settings.edges.free_edges = asked.free_edges;
-  const FacetOutlines outlines(traced.scene);
-  std::vector<KeptHalf> transmitters(1, KeptHalf(pixels));
-  transmitters[0].update(traced.scene, outlines, from, half_settings(settings));
-  PathHalf room(pixels);
-  SearchCounters counters;
-  const std::vector<std::optional<LinkEnd>> ends{from};
-  const std::vector<SequenceList> proposed =
-      join_halves(traced.scene, settings, {outlines, transmitters, room}, to, ends);
-  const std::vector<ReachedEdges> reached(1);
-  return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached, proposed).front().paths;
-}
-
 /// Checks both searches against each other; returns how many paths there are.
 std::size_t check_joined(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
                          int pixels = 256) {
   const std::vector<Path> expected = all_sequences(traced, from, to, asked);
-  CHECK(same_paths(joined(traced, from, to, asked, pixels), expected));
+  for (const Listed listed : {Listed::nothing, Listed::scenery, Listed::all}) {
+    CHECK(same_paths(joined(traced, from, to, asked, pixels, listed), expected));
+  }
   return expected.size();
 }
 
@@ -170,4 +146,21 @@ TEST_CASE("from the plane of a sheet its rim is seen, though the sheet is not") 
     found += check_joined(traced, from, to, asked);
   }
   CHECK(found > 500);
+}
+
+TEST_CASE("what two triangles of a facet, one on the other, leave open is seen through") {
+  TriangleMesh mesh;
+  mesh.vertices_m = {{0, -5, 0}, {0, 5, 0}, {0, 5, 10}, {0, -5, 10}};
+  const std::uint32_t metal = material_index(mesh, "metal");
+  mesh.triangles = {{{0, 1, 2}, metal}, {{0, 1, 3}, metal}};  // as large as their hull, the top quarter of it open
+  add_sheet(mesh, Vec3(40, 0, 10), Vec3(0, 30, 0), Vec3(0, 0, 10), "metal");
+  TracedScene<> traced(scene_of(mesh));
+  REQUIRE(traced.scene.facets().size() == 2);
+  CHECK_FALSE(FacetOutlines(traced.scene).of(FacetId(0)).fills_hull);
+  std::size_t found = 0;
+  for (const double height_m : {3.0, 5.0, 7.0, 9.0}) {
+    const LinkEnd from = traced.end(Vec3(-20, 0, 8.5)), to = traced.end(Vec3(20, 0.3, height_m));
+    found += check_joined(traced, from, to, {0, 1, 1, 2});
+  }
+  CHECK(found > 4);
 }

@@ -30,6 +30,23 @@ TriangleMesh heap_of_boxes(Draw& draw, int boxes) {
   return mesh;
 }
 
+/// The facets that a ray meets beyond `from`, up to the first opaque one: sheets let rays pass.
+std::vector<FacetId> met_by(const TracedScene<>& traced, const Ray<double>& way, double from) {
+  double nearest = 1e30;
+  std::vector<std::pair<double, FacetId>> hits;
+  traced.index.visit_hits(way, HitFilter{}, [&](const TriangleHit& hit) {
+    const FacetId id = traced.scene.facet_of_triangle(hit.triangle);
+    if (hit.t > from) hits.emplace_back(hit.t, id);
+    if (hit.t > from && !traced.scene.facet(id).transmits) nearest = std::min(nearest, hit.t);
+    return false;
+  });
+  std::vector<FacetId> met;
+  for (const auto& [t, id] : hits) {
+    if (t <= nearest) met.push_back(id);
+  }
+  return met;
+}
+
 }  // namespace
 
 TEST_CASE("no ray meets a facet that a half calls hidden") {
@@ -46,18 +63,7 @@ TEST_CASE("no ray meets a facet that a half calls hidden") {
         const std::vector<FacetId>& seen = half.layers()[0].mirrors;
         hidden += outlines.size() - seen.size();
         for (int ray = 0; ray < 30'000; ++ray) {
-          // Sheets let rays pass: everything up to the first opaque facet may be seen.
-          const Ray<double> way{end.position_m, draw.direction()};
-          double nearest = 1e30;
-          std::vector<std::pair<double, FacetId>> hits;
-          traced.index.visit_hits(way, HitFilter{}, [&](const TriangleHit& hit) {
-            const FacetId id = traced.scene.facet_of_triangle(hit.triangle);
-            if (hit.t > 0.0) hits.emplace_back(hit.t, id);
-            if (hit.t > 0.0 && !traced.scene.facet(id).transmits) nearest = std::min(nearest, hit.t);
-            return false;
-          });
-          for (const auto& [t, id] : hits) {
-            if (t > nearest) continue;
+          for (const FacetId id : met_by(traced, {end.position_m, draw.direction()}, 0.0)) {
             ++met;
             lost += std::ranges::binary_search(seen, id) ? 0U : 1U;
           }
@@ -163,4 +169,37 @@ TEST_CASE("no ray from any point of a crowd meets a facet that the crowd calls h
   CHECK(lost == 0);
   CHECK(met > 500'000);
   CHECK(hidden > 400);
+}
+
+TEST_CASE("no ray from an image through its mirror meets a facet that the view through the mirror calls hidden") {
+  Draw draw(17);
+  std::size_t met = 0, hidden = 0, lost = 0;
+  for (int round = 0; round < 8; ++round) {
+    TracedScene<> traced(scene_of(heap_of_boxes(draw, 25)));
+    const FacetOutlines outlines(traced.scene);
+    Sight sight(round % 2 == 0 ? 64 : 128);
+    std::vector<FacetId> seen;
+    for (std::uint32_t triangle = 0; triangle < traced.scene.triangles().size(); triangle += 2) {
+      const Vec3 end_m = draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20));
+      const FacetId mirror = traced.scene.facet_of_triangle(triangle);
+      const Vec3 image_m = mirrored(traced.scene.facet(mirror).plane, end_m);
+      sight.look_through(traced.scene, outlines, mirror, image_m, std::nullopt);
+      sight.find_facets(traced.scene, outlines, {}, true, seen);
+      hidden += outlines.size() - seen.size();
+      const auto corners_m = traced.scene.corners_m(triangle);
+      for (int ray = 0; ray < 1'000; ++ray) {
+        const double u = draw.between(0, 1), v = draw.between(0, 1 - u);
+        const Vec3 point_m = corners_m[0] + u * (corners_m[1] - corners_m[0]) + v * (corners_m[2] - corners_m[0]);
+        for (const FacetId id : met_by(traced, {image_m, point_m - image_m}, 1.0)) {
+          if (id == mirror) continue;
+          ++met;
+          lost += std::ranges::find(seen, id) != seen.end() ? 0U : 1U;
+        }
+      }
+    }
+  }
+  MESSAGE(met << " hits, " << hidden << " facets hidden");
+  CHECK(lost == 0);
+  CHECK(met > 500'000);
+  CHECK(hidden > 100'000);
 }

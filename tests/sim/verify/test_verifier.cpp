@@ -346,6 +346,8 @@ TEST_CASE("where the scene is too large for exhaustive search, paths alone are c
   scene.add_receiver(device_at("r", Vec3(20.1, 20.2, 2)));
   SimulationSettings settings;
   settings.propagation.rays = 300;
+  settings.propagation.max_interactions = 4;
+  settings.propagation.max_reflections = 4;
   Simulator simulator(scene, settings);
   REQUIRE(simulator.cache() == CacheMode::seed);
   Verifier verifier(scene, settings);

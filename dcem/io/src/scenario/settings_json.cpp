@@ -62,7 +62,7 @@ Json propagation_json(const RunFacts& facts) {
           {"diffraction", diffraction_json(settings.diffraction)},
           {"discovery", word_of(facts.discovery)},
           {"discovery_asked_for", word_of(settings.discovery)},
-          {"exact_interactions", exactly_searched_interactions(settings, facts.discovery)},
+          {"exact_interactions", facts.exact_interactions},
           {"rays", sampled ? Json(settings.rays) : Json(nullptr)},
           {"rays_steady", cached ? Json(steady_rays(settings)) : Json(nullptr)},
           {"seed", sampled ? Json(settings.seed) : Json(nullptr)},

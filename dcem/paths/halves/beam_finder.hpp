@@ -1,0 +1,218 @@
+#pragma once
+/// Looks for what an end reaches directly and over each of its mirrors.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dcem/paths/halves/lanes.hpp"
+#include "dcem/paths/halves/path_half.hpp"
+#include "dcem/paths/solve/edge_rules.hpp"
+
+namespace dcem {
+
+/// A mirror of an end, and the image in it.
+struct BeamMirror {
+  FacetId facet;
+  Vec3 image_m;  ///< from the scene's origin
+  std::span<const HalfSpace> cone;
+};
+
+/// Where it is looked for. `half` must stay as it is as long as what is found is used.
+struct BeamSource {
+  const Scene& scene;
+  const FacetOutlines& outlines;
+  const LaneScene& lanes;
+  const PathHalf& half;
+  HalfSettings settings;
+  bool over_mirrors;  ///< look through the mirrors, too
+};
+
+/// What has been found, in the order in which it was.
+struct BeamFinds {
+  std::vector<std::array<std::uint32_t, 2>> pairs;  ///< a facet, and the place of the mirror that lights it
+  std::vector<EdgePart> parts;                      ///< seen directly; `edge`: the number of a wedge
+  std::vector<EdgePart> lit;                        ///< `edge`: the place of the mirror that lights it
+  std::vector<std::uint32_t> lit_edges;             ///< for each of them the number of the wedge
+};
+
+class BeamFinder {
+ public:
+  /// Of the view through a mirror that is too wide to be looked through along one axis.
+  static constexpr int view_pixels = 128;
+  /// Edges are looked up in pieces of half a metre, as many as this at most: more of them find less of each edge, once
+  /// for all receivers; for one receiver looking takes longer than that saves.
+  static constexpr int many_pieces = 64, few_pieces = 1;
+
+  BeamFinder(const BeamSource& source, std::span<const BeamMirror> mirrors) : source_(source), mirrors_(mirrors) {}
+
+  /// The parts of a layer's edges that may be seen directly.
+  void find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const;
+  /// What may be seen through the mirrors `first` … `last` − 1 of the scenery and, where they are asked for, of bodies.
+  void look_through(std::size_t first, std::size_t last, bool bodies, int most_pieces, BeamFinds& finds) const;
+  /// What moves, over the first `count` mirrors: everything in their cones, without a view.
+  void reach_bodies(std::size_t count, BeamFinds& finds) const;
+
+ private:
+  template <typename Shows, typename Visit>
+  static void for_each_shown(const Wedge& edge, const EdgePart& part, int most_pieces, Shows&& shows, Visit&& visit);
+  template <typename ForEach>
+  void find_lit_parts(std::uint32_t mirror, std::span<const FacetId> facets, ForEach&& for_each,
+                      BeamFinds& finds) const;
+  EdgePart lit_part(WedgeId edge, std::uint32_t mirror) const;
+  const std::optional<BodyId>& ignored_body() const { return source_.half.sight().ignored_body(); }
+
+  const BeamSource& source_;
+  std::span<const BeamMirror> mirrors_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// Pieces of a stretch of an edge, half a metre long, are looked up one by one: calls `visit(from, to)` for what shows,
+/// neighbours in one.
+template <typename Shows, typename Visit>
+void BeamFinder::for_each_shown(const Wedge& edge, const EdgePart& part, int most_pieces, Shows&& shows,
+                                Visit&& visit) {
+  constexpr double piece_m = 0.5;
+  const double from_m = part.from, to_m = part.to;
+  const Vec3 direction = edge_direction(edge);
+  const int pieces = static_cast<int>(std::clamp<double>(std::ceil((to_m - from_m) / piece_m), 1.0, most_pieces));
+  const auto place_m = [&](int piece) { return from_m + (to_m - from_m) * piece / pieces; };
+  for (int first = 0, piece = 0; piece <= pieces; ++piece) {
+    const bool shown = piece < pieces &&
+                       shows(edge.start_m + place_m(piece) * direction, edge.start_m + place_m(piece + 1) * direction);
+    if (shown) continue;
+    if (first < piece) visit(static_cast<float>(place_m(first)), static_cast<float>(place_m(piece)));
+    first = piece + 1;
+  }
+}
+
+inline void BeamFinder::find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const {
+  Sight sight = source_.half.sight();  // looking needs scratch memory
+  for (const WedgeId id : layer.edges) {
+    const Wedge& edge = source_.scene.wedge(id).edge;
+    EdgePart part = whole_edge(id.value, edge, source_.half.position_m());
+    const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
+      return sight.shows(source_.scene, source_.outlines, id, from_m, to_m);
+    };
+    for_each_shown(edge, part, most_pieces, shows, [&](float from, float to) {
+      part.from = from;
+      part.to = to;
+      finds.parts.push_back(part);
+    });
+  }
+}
+
+/// The part of an edge that an image may light through its mirror; its end lies before its beginning where there is
+/// none.
+inline EdgePart BeamFinder::lit_part(WedgeId id, std::uint32_t mirror) const {
+  const Wedge& edge = source_.scene.wedge(id).edge;
+  const Vec3& origin_m = source_.lanes.origin_m();
+  EdgePart part = whole_edge(mirror, edge, mirrors_[mirror].image_m + origin_m);
+  const Vec3 start = edge.start_m - origin_m, direction = edge_direction(edge);
+  for (const HalfSpace& plane : mirrors_[mirror].cone) {  // which has room for rounding
+    const Vec3 normal(plane.x, plane.y, plane.z);
+    const double inside = glm::dot(normal, start) - plane.offset, slope = glm::dot(normal, direction);
+    if (slope > 1e-9) {
+      part.from = std::max(part.from, static_cast<float>(-inside / slope));
+    } else if (slope < -1e-9) {
+      part.to = std::min(part.to, static_cast<float>(-inside / slope));
+    } else if (inside < 0.0) {
+      part.to = -1e30F;
+    }
+  }
+  return part;
+}
+
+/// Notes the parts of the edges of some facets that a mirror may light. `for_each(edge, part, visit)` calls
+/// `visit(from, to)` for what of a part is to be kept.
+template <typename ForEach>
+void BeamFinder::find_lit_parts(std::uint32_t mirror, std::span<const FacetId> facets, ForEach&& for_each,
+                                BeamFinds& finds) const {
+  const HalfSettings& settings = source_.settings;
+  if (!settings.edges) return;
+  std::vector<WedgeId> edges;
+  for (const FacetId seen : facets) {
+    for (const WedgeId id : source_.scene.wedges_of_facet(seen)) edges.push_back(id);
+  }
+  std::ranges::sort(edges);
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const FacetId facet = mirrors_[mirror].facet;
+  const Vec3 image_m = mirrors_[mirror].image_m + source_.lanes.origin_m();
+  for (const WedgeId id : edges) {
+    const WorldWedge& wedge = source_.scene.wedge(id);
+    if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules)) continue;
+    if (wedge.facets[0] == facet || wedge.facets[1] == facet) continue;  // that is in the wedge's own terms
+    EdgePart part = lit_part(id, mirror);
+    if (part.from > part.to || !may_face(wedge.edge, image_m - wedge.edge.start_m)) continue;
+    for_each(id, part, [&](float from, float to) {
+      part.from = from;
+      part.to = to;
+      finds.lit.push_back(part);
+      finds.lit_edges.push_back(id.value);
+    });
+  }
+}
+
+inline void BeamFinder::look_through(std::size_t first, std::size_t last, bool bodies, int most_pieces,
+                                     BeamFinds& finds) const {
+  Sight sight(view_pixels);
+  std::vector<FacetId> facets;
+  const auto show = [&](WedgeId id, const EdgePart& part, auto&& visit) {
+    const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
+      return sight.shows(source_.scene, source_.outlines, id, from_m, to_m);
+    };
+    for_each_shown(source_.scene.wedge(id).edge, part, most_pieces, shows, visit);
+  };
+  for (std::size_t at = first; at < last; ++at) {
+    const auto mirror = static_cast<std::uint32_t>(at);
+    const Vec3 image_m = mirrors_[at].image_m + source_.lanes.origin_m();
+    sight.look_through(source_.scene, source_.outlines, mirrors_[at].facet, image_m, ignored_body());
+    sight.find_facets(source_.scene, source_.outlines, source_.settings, bodies, facets);
+    for (const FacetId seen : facets) finds.pairs.push_back({seen.value, mirror});
+    find_lit_parts(mirror, facets, show, finds);
+  }
+}
+
+inline void BeamFinder::reach_bodies(std::size_t count, BeamFinds& finds) const {
+  const std::span<const FacetOutlines::BodyFacets> bodies = source_.outlines.bodies();
+  const Vec3& origin_m = source_.lanes.origin_m();
+  ConeClusters boxes;
+  boxes.build(bodies.size(), [&](std::uint32_t body) {
+    const Aabb<double>& box = bodies[body].box;
+    return box.empty() ? Aabb<double>{Vec3(0.0), Vec3(0.0)} : Aabb<double>{box.min - origin_m, box.max - origin_m};
+  });
+  const auto is_beside = [&](FacetId id, std::span<const HalfSpace> cone) {
+    const std::span<const Vec3> hull_m = source_.scene.hull_m(source_.scene.facet(id));
+    return std::ranges::any_of(cone, [&](const HalfSpace& plane) {
+      return std::ranges::all_of(hull_m, [&](const Vec3& corner_m) {
+        return glm::dot(Vec3(plane.x, plane.y, plane.z), corner_m - origin_m) < plane.offset;
+      });
+    });
+  };
+  const auto whole = [](WedgeId, const EdgePart& part, auto&& visit) { visit(part.from, part.to); };
+  std::vector<FacetId> facets;
+  for (std::uint32_t mirror = 0; mirror < count; ++mirror) {
+    facets.clear();
+    const auto look_at = [&](std::uint32_t body) {
+      if (body == ConeClusters::nothing || bodies[body].box.empty()) return;
+      for (std::uint32_t index = bodies[body].first; index < bodies[body].first + bodies[body].count; ++index) {
+        const WorldFacet& facet = source_.scene.facet(FacetId(index));
+        if (!facet.present || facet.body == ignored_body() || is_beside(FacetId(index), mirrors_[mirror].cone))
+          continue;
+        facets.push_back(FacetId(index));
+        finds.pairs.push_back({index, mirror});
+      }
+    };
+    boxes.for_each_in(mirrors_[mirror].cone, [&](std::size_t first) {
+      for (const std::uint32_t body : boxes.items().subspan(first, simd_lanes)) look_at(body);
+    });
+    find_lit_parts(mirror, facets, whole, finds);
+  }
+}
+
+}  // namespace dcem
