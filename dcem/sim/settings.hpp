@@ -34,7 +34,7 @@ enum class ArrayChannel {
   exact        ///< each pair of elements has a path of its own
 };
 
-/// Exact discovery beyond two interactions tries sequences of facets; this version offers it up to this many facets.
+/// Exact discovery beyond three interactions tries sequences of facets; this version offers it up to this many facets.
 inline constexpr std::size_t exact_discovery_facet_limit = 1000;
 
 /// Where around an edge diffracted paths are reported.

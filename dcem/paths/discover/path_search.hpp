@@ -36,8 +36,7 @@ struct PathSearchSettings {
 
 /// Whether rays have anything to look for.
 inline bool needs_rays(const PathSearchSettings& settings) {
-  return !settings.exhaustive &&
-         !halves_cover(settings.joined, settings.max_diffractions, settings.max_interactions);
+  return !settings.exhaustive && !halves_cover(settings.joined, settings.max_diffractions, settings.max_interactions);
 }
 
 inline ChainLimits chain_limits(const PathSearchSettings& settings) {
