@@ -92,7 +92,8 @@ nlohmann::ordered_json settings_json(const RunFacts& facts) {
           {"propagation", propagation_json(facts)},
           {"defaults_of_this_version",
            {{"cache", "seed with sampled discovery, else off"},
-            {"discovery", "exact up to " + std::to_string(exact_limit) + " facets, else sampled"}}}};
+            {"discovery", "exact up to three interactions, one of them a diffraction (maps: two), and up to " +
+                              std::to_string(exact_limit) + " facets; else sampled beyond"}}}};
 }
 
 }  // namespace dcem::io
