@@ -167,7 +167,7 @@ class BasicSimulator {
   std::vector<PathCache> caches_;          ///< one per receiver of the scene; none where the cache is off
   std::vector<EdgeReach> reach_;           ///< one per transmitter; none where the cache is off
   std::optional<FacetOutlines> outlines_;  ///< where the plan has halves
-  std::optional<LaneScene> lanes_;         ///< the same
+  std::unique_ptr<LaneScene> lanes_;       ///< the same; what is kept points to it, wherever the simulator is moved
   std::vector<KeptHalf> halves_;           ///< one per transmitter, where the plan has them
   Frame frame_;
   std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
@@ -197,7 +197,7 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   index_.build(scene_.triangle_view(), scene_.triangle_boxes(), scene_.first_triangles());
   if (plan_.joined == 0) return;
   outlines_.emplace(scene_);
-  lanes_.emplace(scene_, *outlines_);
+  lanes_ = std::make_unique<LaneScene>(scene_, *outlines_);
   const std::size_t transmitters = scene_.transmitters().size();
   halves_.assign(transmitters, KeptHalf(detail::view_pixels_for(transmitters)));
 }

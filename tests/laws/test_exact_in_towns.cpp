@@ -6,12 +6,16 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dcem/io/obj_reader.hpp"
 #include "dcem/io/scenario.hpp"
 #include "dcem/paths/discover/path_cache.hpp"
+#include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/detail/material_table_of.hpp"
 #include "dcem/sim/simulator.hpp"
+#include "tests/paths/small_scenes.hpp"
 #include "tests/support/law_scenes.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -186,4 +190,27 @@ TEST_CASE("where more is allowed than is searched exactly, rays add to it and ta
     for (const PathContribution& path : many.links[link].paths) longer += sequence_of(path.path).size() > 2 ? 1U : 0U;
   }
   CHECK(longer > 10);
+}
+
+TEST_CASE("a simulator that is moved between two frames goes on with what it has listed") {
+  TriangleMesh mesh;
+  for (int box = 0; box < 170; ++box) {
+    const Vec3 low_m(6.0 * (box % 13), 6.0 * (box / 13), 0.0);
+    add_box_faces(mesh, low_m, low_m + Vec3(3, 2 + box % 3, 3 + box % 5), "metal");
+  }
+  Scene scene;
+  scene.add_material({"metal", PerfectConductor{}});
+  scene.set_scenery(mesh);
+  REQUIRE(scene.facets().size() > exact_discovery_facet_limit);
+  scene.add_transmitter(device_at("tx", {4.5, 4.5, 5.0}));
+  scene.add_receiver(device_at("rx", {16.5, 11.0, 1.5}));
+  SimulationSettings settings;
+  settings.threads = 1;
+  const MaterialTable surface = detail::material_table_of(scene, settings);
+  BasicSimulator<MaterialTable> first(scene, settings, surface);
+  REQUIRE(first.plan().joined == 3);
+  const std::vector<double> numbers = numbers_of(first.advance(scene.frame_at(0.0, 0)));
+  BasicSimulator<MaterialTable> second = std::move(first);
+  CHECK(numbers == numbers_of(second.advance(scene.frame_at(0.0, 1))));
+  CHECK(numbers.size() > 100);
 }

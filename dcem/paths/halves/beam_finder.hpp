@@ -92,6 +92,7 @@ void BeamFinder::for_each_shown(const Wedge& edge, const EdgePart& part, int mos
 }
 
 inline void BeamFinder::find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const {
+  if (layer.edges.empty()) return;
   Sight sight = source_.half.sight();  // looking needs scratch memory
   for (const WedgeId id : layer.edges) {
     const Wedge& edge = source_.scene.wedge(id).edge;

@@ -54,7 +54,7 @@ class TripleJoiner {
   };
 
   const Scene& scene() const { return gates_.scene(); }
-  /// An image of `lists`' end in one of its mirrors.
+  /// The image of an end in one of its mirrors.
   Vec3 image_m(const BeamMirror& mirror) const { return mirror.image_m + lanes_.origin_m(); }
 
   template <typename Visit>

@@ -112,7 +112,7 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
   const PathSearchSettings search = search_settings(ends.plan, ends.embedded);
   const bool triples = joins_triples(search);
   const bool over_mirrors = search.max_reflections >= 1 && search.max_interactions >= 2;
-  const HalfLists lists{fine || over_mirrors ? &*lanes_ : nullptr, over_mirrors, fine || triples,
+  const HalfLists lists{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors, fine || triples,
                         scene_.receivers().size()};
   pool_->for_each(ends.link.size(), [&](std::size_t index, unsigned) {
     if (!ends.link[index]) return;

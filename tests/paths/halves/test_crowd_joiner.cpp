@@ -53,6 +53,20 @@ std::vector<Vec3> points_beside(Draw& draw, const Vec3& middle_m, const Vec3& si
   return points_m;
 }
 
+/// Checks what a crowd finds against each of its points by itself; returns how many paths there are.
+std::size_t check_crowd(TracedScene<>& traced, const LinkEnd& from, const std::vector<Vec3>& points_m,
+                        const Asked& asked, int pixels) {
+  const std::vector<std::vector<Path>> together = found_together(traced, from, points_m, asked, pixels);
+  std::size_t found = 0;
+  for (std::size_t point = 0; point < points_m.size(); ++point) {
+    CAPTURE(point);
+    const std::vector<Path> expected = all_sequences(traced, from, traced.end(points_m[point]), asked);
+    CHECK(same_paths(together[point], expected));
+    found += expected.size();
+  }
+  return found;
+}
+
 }  // namespace
 
 TEST_CASE("a crowd finds every path of each of its points, and the same bits") {
@@ -67,13 +81,7 @@ TEST_CASE("a crowd finds every path of each of its points, and the same bits") {
         points_beside(draw, draw.inside(Vec3(-20, -20, 0.3), Vec3(20, 20, 14)),
                       Vec3(size_m, size_m, draw.below(2) == 0 ? 0.0 : 0.5 * size_m), 1 + draw.below(16));
     CAPTURE(seed);
-    const auto together = found_together(traced, from, points_m, asked, draw.below(2) == 0 ? 256 : 64);
-    for (std::size_t point = 0; point < points_m.size(); ++point) {
-      CAPTURE(point);
-      const std::vector<Path> expected = all_sequences(traced, from, traced.end(points_m[point]), asked);
-      CHECK(same_paths(together[point], expected));
-      found += expected.size();
-    }
+    found += check_crowd(traced, from, points_m, asked, draw.below(2) == 0 ? 256 : 64);
   }
   MESSAGE(found << " paths");
   CHECK(found > 3'000);
@@ -95,12 +103,7 @@ TEST_CASE("points in planes of sheets and on lines of edges find together what e
     }
     if (points_m.empty()) continue;
     CAPTURE(seed);
-    const auto together = found_together(traced, from, points_m, asked, 128);
-    for (std::size_t point = 0; point < points_m.size(); ++point) {
-      const std::vector<Path> expected = all_sequences(traced, from, traced.end(points_m[point]), asked);
-      CHECK(same_paths(together[point], expected));
-      found += expected.size();
-    }
+    found += check_crowd(traced, from, points_m, asked, 128);
   }
   CHECK(found > 1'000);
 }
@@ -115,12 +118,7 @@ TEST_CASE("a transmitter far away is joined as one nearby") {
     const std::vector<Vec3> points_m =
         points_beside(draw, draw.inside(Vec3(-20, -20, 1), Vec3(20, 20, 6)), Vec3(3, 3, 0), 8);
     CAPTURE(seed);
-    const auto together = found_together(traced, from, points_m, {}, 256);
-    for (std::size_t point = 0; point < points_m.size(); ++point) {
-      const std::vector<Path> expected = all_sequences(traced, from, traced.end(points_m[point]), {});
-      CHECK(same_paths(together[point], expected));
-      found += expected.size();
-    }
+    found += check_crowd(traced, from, points_m, {}, 256);
   }
   CHECK(found > 500);
 }
