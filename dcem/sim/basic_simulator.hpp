@@ -135,11 +135,11 @@ class BasicSimulator {
   PathSearchSettings search_settings(const SearchPlan& plan, std::span<const char> embedded_edges = {}) const;
   std::span<const std::optional<LinkEnd>> ends_beside(const Device& receiver, const TransmitterEnds& transmitters,
                                                       std::vector<std::optional<LinkEnd>>& others) const;
-  /// Where a receiver's sequences of few interactions come from, where the plan has halves: they are joined in a room;
-  /// those of at most two elements may have been already.
+  /// Where a receiver's sequences of few interactions come from, where the plan has halves: they are joined in a room,
+  /// or have been already.
   struct Proposals {
     ReceiverRoom* room = nullptr;
-    std::span<const SequenceList> pairs{};
+    std::span<const SequenceList> joined{};
   };
 
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.

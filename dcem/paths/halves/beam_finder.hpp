@@ -114,18 +114,7 @@ inline EdgePart BeamFinder::lit_part(WedgeId id, std::uint32_t mirror) const {
   const Wedge& edge = source_.scene.wedge(id).edge;
   const Vec3& origin_m = source_.lanes.origin_m();
   EdgePart part = whole_edge(mirror, edge, mirrors_[mirror].image_m + origin_m);
-  const Vec3 start = edge.start_m - origin_m, direction = edge_direction(edge);
-  for (const HalfSpace& plane : mirrors_[mirror].cone) {  // which has room for rounding
-    const Vec3 normal(plane.x, plane.y, plane.z);
-    const double inside = glm::dot(normal, start) - plane.offset, slope = glm::dot(normal, direction);
-    if (slope > 1e-9) {
-      part.from = std::max(part.from, static_cast<float>(-inside / slope));
-    } else if (slope < -1e-9) {
-      part.to = std::min(part.to, static_cast<float>(-inside / slope));
-    } else if (inside < 0.0) {
-      part.to = -1e30F;
-    }
-  }
+  cut_to_cone(part, edge, origin_m, mirrors_[mirror].cone);
   return part;
 }
 

@@ -32,6 +32,20 @@ inline bool may_hold(std::span<const HalfSpace> cone, const Vec3& point, float r
       cone, [&](const HalfSpace& plane) { return plane.x * x + plane.y * y + plane.z * z + radius_m < plane.offset; });
 }
 
+/// Adds half spaces mirrored in a plane, each wider by `slack_m`. All count from `origin_m`.
+inline void add_mirrored(std::span<const HalfSpace> cone, const Plane& mirror, const Vec3& origin_m, double slack_m,
+                         std::vector<HalfSpace>& result) {
+  const Vec3& normal = mirror.normal;
+  const double offset_m = glm::dot(normal, mirror.point_m - origin_m);
+  for (const HalfSpace& side : cone) {
+    const Vec3 own(side.x, side.y, side.z);
+    const double along = glm::dot(own, normal);
+    const Vec3 turned = own - 2.0 * along * normal;
+    result.push_back({static_cast<float>(turned.x), static_cast<float>(turned.y), static_cast<float>(turned.z),
+                      static_cast<float>(side.offset - 2.0 * offset_m * along - slack_m)});
+  }
+}
+
 /// Calls `visit(normal)`, inwards and of length 1, for the planes through an apex and the sides of a convex window. A
 /// side that hardly says where it is is left out: the cone is wider.
 template <typename Visit>

@@ -13,6 +13,22 @@
 
 namespace dcem {
 
+/// What points see through a convex outline, as half spaces around an origin: see `for_each_common_side`.
+inline void common_cone(std::span<const HullSide> outline, const Plane& plane, const Vec3& up,
+                        std::span<const Vec3> points_m, const Vec3& origin_m, std::vector<HalfSpace>& result) {
+  const auto add = [&](const Vec3& inwards, double offset_m) {
+    const double length = glm::length(inwards);
+    const Vec3 normal = inwards / length;
+    // Points to be tested are in single precision, too, some of them far away.
+    const double here_m = offset_m / length - glm::dot(normal, origin_m);
+    result.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
+                      static_cast<float>(here_m - 1e-2 - 1e-6 * std::abs(here_m))});
+  };
+  result.clear();
+  for_each_common_side(outline, plane, up, points_m, add);
+  add(up, glm::dot(up, plane.point_m));  // last: it keeps more than the others do
+}
+
 /// Holds scratch memory: one per thread.
 class Crowd {
  public:
@@ -53,33 +69,21 @@ class Crowd {
     return {{images_m.data(), points_m.size()}, origin_m_};
   }
 
+  /// The points on one `side` (1 or −1) of a plane, in the order in which they are.
+  void points_beside(const Plane& plane, double side, std::vector<Vec3>& result_m) const {
+    result_m.clear();
+    for (const Vec3& point_m : points_m_) {
+      if (side * signed_distance_m(plane, point_m) > in_plane_guard_m) result_m.push_back(point_m);
+    }
+  }
+
   /// What the images of all points on one `side` (1 or −1) of a mirror may see through it; false where no point is
   /// there. The cone of each image is inside.
-  ///
-  /// With α the distance of a point inside a side of the mirror, β that from its plane, its image sees X, h in front of
-  /// the plane, inside that side where m·X − b + (α/β) h ≥ 0, m·x ≥ b being the side in the plane: the largest α/β of
-  /// all points serves all.
   bool cone(const FacetOutlines& outlines, FacetId facet, const Plane& plane, double side,
             std::vector<HalfSpace>& result) const {
-    result.clear();
-    std::vector<std::array<double, 2>>& beyond = scratch_;
-    beyond.clear();
-    for (std::size_t at = 0; at < points_m_.size(); ++at) {
-      const double height_m = side * signed_distance_m(plane, points_m_[at]);
-      if (height_m > in_plane_guard_m) beyond.push_back({static_cast<double>(at), height_m});
-    }
-    if (beyond.empty()) return false;
-    const Vec3 up = side * plane.normal;
-    for (const HullSide& edge : outlines.sides(facet)) {
-      double slope = -std::numeric_limits<double>::infinity();
-      for (const auto& [at, height_m] : beyond) {
-        const double inside_m = glm::dot(edge.normal, points_m_[static_cast<std::size_t>(at)]) - edge.offset_m;
-        slope = std::max(slope, inside_m / height_m);
-      }
-      if (slope > 1e4 || edge.normal == Vec3(0.0)) continue;  // hardly a bound
-      add(edge.normal + slope * up, edge.offset_m + slope * glm::dot(up, plane.point_m), result);
-    }
-    add(up, glm::dot(up, plane.point_m), result);  // last: it keeps more than the others do
+    points_beside(plane, side, scratch_m_);
+    if (scratch_m_.empty()) return false;
+    common_cone(outlines.sides(facet), plane, side * plane.normal, scratch_m_, origin_m_, result);
     return true;
   }
 
@@ -88,21 +92,12 @@ class Crowd {
     return points_m.subspan(number * simd_lanes,
                             std::min<std::size_t>(simd_lanes, points_m.size() - number * simd_lanes));
   }
-  void add(const Vec3& inwards, double offset_m, std::vector<HalfSpace>& result) const {
-    const double length = glm::length(inwards);
-    const Vec3 normal = inwards / length;
-    // Points to be tested are in single precision, too, some of them far away.
-    const double here_m = offset_m / length - glm::dot(normal, origin_m_);
-    result.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
-                      static_cast<float>(here_m - 1e-2 - 1e-6 * std::abs(here_m))});
-  }
-
   Sight sight_;
   std::array<SeenLayer, 2> layers_;
   std::vector<Vec3> points_m_;
   Vec3 origin_m_{0.0};
   double radius_m_ = 0.0;
-  mutable std::vector<std::array<double, 2>> scratch_;
+  mutable std::vector<Vec3> scratch_m_;
 };
 
 }  // namespace dcem

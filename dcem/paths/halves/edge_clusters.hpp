@@ -31,6 +31,23 @@ inline EdgePart whole_edge(std::uint32_t number, const Wedge& edge, const Vec3& 
           static_cast<float>(glm::distance(end_m, edge.start_m + place_m * direction))};
 }
 
+/// Cuts a part of an edge down to what is in a cone, which counts from `origin_m` and has room for rounding; where
+/// nothing is left the part ends before it begins.
+inline void cut_to_cone(EdgePart& part, const Wedge& edge, const Vec3& origin_m, std::span<const HalfSpace> cone) {
+  const Vec3 start = edge.start_m - origin_m, direction = edge_direction(edge);
+  for (const HalfSpace& plane : cone) {
+    const Vec3 normal(plane.x, plane.y, plane.z);
+    const double inside = glm::dot(normal, start) - plane.offset, slope = glm::dot(normal, direction);
+    if (slope > 1e-9) {
+      part.from = std::max(part.from, static_cast<float>(-inside / slope));
+    } else if (slope < -1e-9) {
+      part.to = std::min(part.to, static_cast<float>(-inside / slope));
+    } else if (inside < 0.0) {
+      part.to = -1e30F;
+    }
+  }
+}
+
 /// How far the point that diffracts may move along an edge while the other end moves by `moved_m`: with the places z₁,
 /// z₂ and distances d₁, d₂ of both ends it is at z₁ + (z₂ − z₁) d₁/(d₁ + d₂), of which the derivative by z₂ and d₂ has
 /// the size d₁/(d₁ + d₂) √(1 + ((z₂ − z₁)/(d₁ + d₂))²).
@@ -83,8 +100,9 @@ class EdgeClusters {
   std::span<const ConeClusters::Box> boxes() const { return clusters_.boxes(); }
 
   /// Calls `visit(part)` for parts on which the point that diffracts between the end and an apex may lie in a cone, for
-  /// the apex at `apex` or anywhere within `moved_m` of it.
-  template <typename Visit>
+  /// the apex at `apex` or anywhere within `moved_m` of it; where `end_moves` it is the end that may be within
+  /// `moved_m` of where it is.
+  template <bool end_moves = false, typename Visit>
   void for_each_in(std::span<const HalfSpace> cone, const Vec3& apex, float moved_m, Visit&& visit) const {
     const Float8 ax(static_cast<float>(apex.x)), ay(static_cast<float>(apex.y)), az(static_cast<float>(apex.z));
     const float slack_m = 5e-3F + 2e-6F * static_cast<float>(glm::length(apex));  // of a place, in single precision
@@ -96,12 +114,15 @@ class EdgeClusters {
       const Float8 dx = ax - sx, dy = ay - sy, dz = az - sz;
       const Float8 place = dx * ex + dy * ey + dz * ez;
       const Float8 x = dx - place * ex, y = dy - place * ey, z = dz - place * ez;
-      const Float8 sum = own_distance + simd::square_root(x * x + y * y + z * z), between = place - own_place;
+      const Float8 distance = simd::square_root(x * x + y * y + z * z), sum = own_distance + distance;
+      const Float8 between = place - own_place;
       Float8 point = own_place + between * (own_distance / sum);
       // Asked for so that NaN, of an end and an apex on the edge's line, is inside.
       const Float8 far = edge_point_error_m(own_place, own_distance);
       Float8 reach = far + slack_m;
-      if (moved_m > 0.0F) reach = reach + edge_point_reach_m(own_distance, sum, between, moved_m);
+      if (moved_m > 0.0F) {
+        reach = reach + edge_point_reach_m(end_moves ? distance : own_distance, sum, between, moved_m);
+      }
       std::uint32_t left = ~((point + reach < from) | (to + reach < point)).bits() & 0xffU;
       if (left == 0) return;
       Float8 room = far;

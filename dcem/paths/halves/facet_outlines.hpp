@@ -14,6 +14,7 @@
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/paths/halves/hull_filling.hpp"
+#include "dcem/paths/halves/hull_sides.hpp"
 #include "dcem/scene/scene.hpp"
 
 namespace dcem {
@@ -25,12 +26,6 @@ struct FacetOutline {
   double lift_m = 0.0;      ///< what is no farther from its plane does not hide it: legs ignore it there
   bool fills_hull = false;  ///< its triangles are its convex hull, without holes or dents
   std::uint32_t first_side = 0, side_count = 0;
-};
-
-/// A side of a facet's hull: points of the plane with normal·x ≥ offset are on the inner side.
-struct HullSide {
-  Vec3 normal{0.0};
-  double offset_m = 0.0;
 };
 
 /// The outlines of all facets, and a binary tree of boxes over those of the standing scenery; each other body has one

@@ -37,14 +37,11 @@ struct LinkHalves {
   const LaneScene& lanes;
 };
 
-/// By transmitter, every sequence that `halves_cover` names and that may carry a path to the receiver. `pairs`: those
-/// of at most two elements, where they are known already.
+/// By transmitter, every sequence that `halves_cover` names and that may carry a path to the receiver.
 inline std::vector<SequenceList> join_halves(const Scene& scene, const PathSearchSettings& settings,
                                              const LinkHalves& halves, const LinkEnd& receiver,
-                                             std::span<const std::optional<LinkEnd>> transmitters,
-                                             std::span<const SequenceList> pairs = {}) {
-  std::vector<SequenceList> proposed(pairs.begin(), pairs.end());
-  proposed.resize(transmitters.size());
+                                             std::span<const std::optional<LinkEnd>> transmitters) {
+  std::vector<SequenceList> proposed(transmitters.size());
   const HalfSettings seen = half_settings(settings);
   const bool triples = joins_triples(settings), direct_alone = settings.max_interactions == 0;
   ReceiverRoom& room = halves.receiver;
@@ -62,7 +59,7 @@ inline std::vector<SequenceList> join_halves(const Scene& scene, const PathSearc
       continue;
     }
     const KeptHalf& transmitter = halves.transmitters[index];
-    if (pairs.empty()) joiner.for_each_sequence(room.half, transmitter.half(), add, transmitter.lists());
+    joiner.for_each_sequence(room.half, transmitter.half(), add, transmitter.lists());
     if (!triples) continue;
     TripleJoiner(scene, halves.outlines, halves.lanes, joined_orders(settings))
         .for_each_sequence(room.lists, *transmitter.lists(), add);

@@ -1,5 +1,6 @@
 #pragma once
-/// What an image sees through its mirror: what is beyond the mirror, inside the cone over its outline.
+/// What an image sees through its mirror, or images side by side do: what is beyond the mirror, inside the cone over
+/// its outline.
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/plane.hpp"
 #include "dcem/paths/halves/cone.hpp"
+#include "dcem/paths/halves/hull_sides.hpp"
 #include "dcem/paths/halves/inset.hpp"
 
 namespace dcem {
@@ -31,6 +33,22 @@ class MirrorBeam {
     for_each_cone_side(image_m, window_m, [&](const Vec3& normal) {
       sides_.push_back({normal, glm::dot(normal, image_m) - room_m});
       if (!is_close) inwards_.push_back(normal);
+    });
+  }
+
+  /// Through a mirror of the given `outline`, from several images on one side of it.
+  MirrorBeam(FacetId mirror, const Plane& plane, std::span<const HullSide> outline, std::span<const Vec3> images_m,
+             double lift_m)
+      : mirror_(mirror), hides_beyond_m_(room_m + 2.0 * lift_m) {
+    const Vec3 beyond = signed_distance_m(plane, images_m[0]) > 0.0 ? -plane.normal : plane.normal;
+    sides_.push_back({beyond, glm::dot(beyond, plane.point_m) - room_m});
+    const bool is_close = std::ranges::any_of(
+        images_m, [&](const Vec3& image_m) { return std::abs(signed_distance_m(plane, image_m)) < 20.0 * room_m; });
+    if (!is_close) inwards_.push_back(beyond);
+    for_each_common_side(outline, plane, beyond, images_m, [&](const Vec3& normal, double offset_m) {
+      const double length = glm::length(normal);
+      sides_.push_back({normal / length, offset_m / length - room_m});
+      if (!is_close) inwards_.push_back(sides_.back().normal);
     });
   }
 

@@ -49,6 +49,8 @@ class Sight {
   /// The image must not lie in the mirror's plane.
   void look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, const Vec3& image_m,
                     const std::optional<BodyId>& ignored_body);
+  /// The same of the images of several points, which ride on nothing, on one side of the mirror.
+  void look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, std::span<const Vec3> images_m);
 
   /// Works out what may be seen of the scenery.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
@@ -118,6 +120,7 @@ class Sight {
     if ((middle_m - radius_m_) * longest_lift_m > most_m) return false;
     return least_distance_m(scene.facet(id).plane) * longest_lift_m <= most_m;
   }
+  void take_points(std::span<const Vec3> points_m, const Vec3& middle_m);
   void look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                        std::vector<FacetId>& seen);
   void look_at_bodies(const Scene& scene, const FacetOutlines& outlines, std::vector<FacetId>& seen);
@@ -140,7 +143,8 @@ class Sight {
   void finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
 
   ViewMap map_;
-  std::vector<Vec3> points_m_;
+  std::vector<Vec3> points_m_, offsets_m_;  ///< of several: from their middle
+  Vec3 middle_m_{0.0};
   std::optional<MirrorBeam> beam_;  ///< where a mirror is looked through
   double radius_m_ = 0.0;           ///< how far points are from the middle
   std::optional<BodyId> ignored_body_;
@@ -162,19 +166,24 @@ inline void Sight::look_from(const LinkEnd& end) {
 inline void Sight::look_from(std::span<const Vec3> points_m) {
   Aabb<double> box;
   for (const Vec3& point_m : points_m) box.extend(point_m);
-  const Vec3 middle_m = points_m.size() == 1 ? points_m[0] : box.center();
-  std::vector<Vec3> offsets_m;
+  take_points(points_m, points_m.size() == 1 ? points_m[0] : box.center());
+  map_.look_from(middle_m_, offsets_m_);
+  beam_.reset();
+}
+
+/// Notes points and where they are from their middle.
+inline void Sight::take_points(std::span<const Vec3> points_m, const Vec3& middle_m) {
+  middle_m_ = middle_m;
+  offsets_m_.clear();
   radius_m_ = 0.0;
   for (const Vec3& point_m : points_m) {
-    offsets_m.push_back(point_m - middle_m);
-    radius_m_ = std::max(radius_m_, 1e-6 + glm::length(offsets_m.back()));
+    offsets_m_.push_back(point_m - middle_m);
+    radius_m_ = std::max(radius_m_, 1e-6 + glm::length(offsets_m_.back()));
   }
-  if (points_m.size() == 1) offsets_m.clear();
-  map_.look_from(middle_m, offsets_m);
+  if (points_m.size() == 1) offsets_m_.clear();
   points_m_.assign(points_m.begin(), points_m.end());
   ignored_body_.reset();
   mounted_on_.clear();
-  beam_.reset();
 }
 
 inline void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, const Vec3& image_m,
@@ -187,6 +196,16 @@ inline void Sight::look_through(const Scene& scene, const FacetOutlines& outline
   mounted_on_.clear();
   beam_.emplace(mirror, facet.plane, image_m, window_m, outlines.of(mirror).lift_m);
   map_.look_through(image_m, window_m, MirrorBeam::room_m, beam_->inwards());
+}
+
+inline void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror,
+                                std::span<const Vec3> images_m) {
+  const WorldFacet& facet = scene.facet(mirror);
+  Vec3 middle_m(0.0);  // not that of a box around them, which may be on the other side of the mirror
+  for (const Vec3& image_m : images_m) middle_m += image_m / static_cast<double>(images_m.size());
+  take_points(images_m, middle_m);
+  beam_.emplace(mirror, facet.plane, outlines.sides(mirror), images_m, outlines.of(mirror).lift_m);
+  map_.look_through(middle_m_, scene.hull_m(facet), MirrorBeam::room_m, beam_->inwards(), offsets_m_);
 }
 
 inline void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,

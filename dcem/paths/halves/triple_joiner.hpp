@@ -158,16 +158,9 @@ class TripleJoiner {
     window_.clear();
     window_.add(lanes_.origin_m(), twice_m, facet.plane, scene().hull_m(facet));
     cone_.assign(window_[0].begin(), window_[0].end());
-    const Vec3& normal = facet.plane.normal;
-    const double offset_m = glm::dot(normal, facet.plane.point_m - lanes_.origin_m());
+    const double offset_m = glm::dot(facet.plane.normal, facet.plane.point_m - lanes_.origin_m());
     const double slack_m = 1e-3 + 1e-6 * (glm::length(twice_m - lanes_.origin_m()) + std::abs(offset_m));
-    for (const HalfSpace& side : mirror.cone.first(mirror.cone.size() - 1)) {
-      const Vec3 own(side.x, side.y, side.z);
-      const double along = glm::dot(own, normal);
-      const Vec3 turned = own - 2.0 * along * normal;
-      cone_.push_back({static_cast<float>(turned.x), static_cast<float>(turned.y), static_cast<float>(turned.z),
-                       static_cast<float>(side.offset - 2.0 * offset_m * along - slack_m)});
-    }
+    add_mirrored(mirror.cone.first(mirror.cone.size() - 1), facet.plane, lanes_.origin_m(), slack_m, cone_);
   }
 
   template <typename Visit>

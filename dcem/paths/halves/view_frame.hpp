@@ -20,11 +20,22 @@ struct WindowFrame {
   Vec3 across_of_normal, along_of_normal;  ///< of a normal, so that its product with an offset stays what it is
 };
 
-/// The smallest frame that holds a convex window seen from a point, with `room_m` around it; none where the window is
-/// too wide to be seen along one axis. No pixel, `pixels` to a side, is smaller than `least_pixel_m` where the window
-/// is nearest.
-inline std::optional<WindowFrame> frame_of_window(const Vec3& from_m, std::span<const Vec3> window_m, double room_m,
-                                                  double least_pixel_m, int pixels) {
+/// A convex window, and how finely it is looked through.
+struct WindowView {
+  std::span<const Vec3> window_m;
+  double room_m;                      ///< around it
+  double least_pixel_m;               ///< no pixel is smaller where the window is nearest
+  int pixels;                         ///< to a side
+  std::span<const Vec3> offsets_m{};  ///< of further points that look through the window
+};
+
+/// The smallest frame around a point that holds all that it, and the points beside it, see through a window; none where
+/// that is too wide to be seen along one axis.
+///
+/// What the point P + δ sees through W is X = W + s (W − P − δ) with s ≥ 0: it is in the frame around P if W and W − δ
+/// are.
+inline std::optional<WindowFrame> frame_of_window(const Vec3& from_m, const WindowView& view) {
+  const std::span<const Vec3> window_m = view.window_m;
   constexpr double widest = 2.0;  // tangent of half the angle
   Vec3 centre_m(0.0), longest_m(0.0);
   for (std::size_t index = 0; index < window_m.size(); ++index) {
@@ -39,15 +50,21 @@ inline std::optional<WindowFrame> frame_of_window(const Vec3& from_m, std::span<
                           : glm::normalize(glm::cross(depth, std::abs(depth.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0)));
   const Vec3 along = glm::cross(depth, across);
   double wide = 0.0, high = 0.0, nearest_m = std::numeric_limits<double>::infinity();
-  for (const Vec3& corner_m : window_m) {
-    const Vec3 offset_m = corner_m - from_m;
+  const auto hold = [&](const Vec3& offset_m) {
     const double depth_m = glm::dot(offset_m, depth);
-    if (!(depth_m > 1e-3)) return std::nullopt;
+    if (!(depth_m > 1e-3)) return false;
     wide = std::max(wide, std::abs(glm::dot(offset_m, across)) / depth_m);
     high = std::max(high, std::abs(glm::dot(offset_m, along)) / depth_m);
     nearest_m = std::min(nearest_m, depth_m);
+    return true;
+  };
+  for (const Vec3& corner_m : window_m) {
+    if (!hold(corner_m - from_m)) return std::nullopt;
+    for (const Vec3& other_m : view.offsets_m) {
+      if (!hold(corner_m - from_m - other_m)) return std::nullopt;
+    }
   }
-  const double least = 0.5 * pixels * least_pixel_m / nearest_m, room = 4.0 * room_m / nearest_m;
+  const double least = 0.5 * view.pixels * view.least_pixel_m / nearest_m, room = 4.0 * view.room_m / nearest_m;
   wide = std::max(least, 1.001 * wide + room);
   high = std::max(least, 1.001 * high + room);
   if (!(wide < widest && high < widest)) return std::nullopt;

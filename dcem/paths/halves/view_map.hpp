@@ -43,14 +43,16 @@ class ViewMap {
     faces_ = {};
     clear(cube_pixels_);
   }
-  /// The same of a point that looks through a convex window, and `room_m` around it: there is nothing else to be seen.
+  /// The same of points that look through a convex window, and `room_m` around it: there is nothing else to be seen.
   /// `inwards`: the normals of planes by the point which all of it is inside.
-  void look_through(const Vec3& point_m, std::span<const Vec3> window_m, double room_m, std::span<const Vec3> inwards) {
+  void look_through(const Vec3& point_m, std::span<const Vec3> window_m, double room_m, std::span<const Vec3> inwards,
+                    std::span<const Vec3> offsets_m = {}) {
     from_m_ = point_m;
-    offsets_m_.clear();
-    const auto frame = detail::frame_of_window(point_m, window_m, room_m, least_pixel_m, window_pixels);
+    offsets_m_.assign(offsets_m.begin(), offsets_m.end());
+    const int pixels = offsets_m_.empty() ? window_pixels : crowd_window_pixels;
+    const auto frame = detail::frame_of_window(point_m, {window_m, room_m, least_pixel_m, pixels, offsets_m_});
     faces_ = frame ? detail::ViewFaces(*frame) : detail::ViewFaces(inwards);
-    clear(frame ? window_pixels : cube_pixels_);
+    clear(frame ? pixels : cube_pixels_);
   }
   const Vec3& from_m() const { return from_m_; }
 
@@ -71,6 +73,7 @@ class ViewMap {
   /// Through a window, of a pixel where the window is: what strays by 2 µm strays by less than the margin of a pixel.
   static constexpr double least_pixel_m = 1e-3;
   static constexpr int window_pixels = 32;  ///< by measurement: with more of them views take longer than they save
+  static constexpr int crowd_window_pixels = 64;  ///< of several points, which see more through it
   static constexpr double rounding = 1e-5;  ///< relative, of nearness in single precision: 80 units of the last place
 
   /// 1/depth of a plane over a face: by_column·x + by_row·y + at_origin, in pixels.

@@ -67,11 +67,11 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const PathSearchSettings search = search_settings(transmitters.plan, transmitters.embedded);
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
-  std::span<const SequenceList> joined = proposals.pairs;
+  std::span<const SequenceList> joined = proposals.joined;
   std::vector<SequenceList> own;
-  if (proposals.room != nullptr && (joined.empty() || joins_triples(search))) {
+  if (proposals.room != nullptr && joined.empty()) {
     const LinkHalves halves{*outlines_, transmitters.halves, *proposals.room, *lanes_};
-    own = join_halves(scene_, search, halves, end, ends, joined);
+    own = join_halves(scene_, search, halves, end, ends);
     joined = own;
   }
   std::vector<LinkPaths> found =

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dcem/paths/halves/crowd_joiner.hpp"
+#include "dcem/paths/halves/crowd_triples.hpp"
 #include "dcem/paths/query/embedded_edges.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/map_groups.hpp"
@@ -28,22 +29,28 @@ struct BasicSimulator<Surface, Index>::MapShare {
   MapShare(const BasicSimulator& simulator, const TransmitterEnds& ends)
       : transmitters(ends),
         search(simulator.search_settings(ends.plan, ends.embedded)),
-        crowds(std::max(1U, simulator.pool_->size())) {}
+        crowds(std::max(1U, simulator.pool_->size())),
+        beams(joins_triples(search) ? crowds.size() : 0) {}
 
   /// The sequences that paths to each of some points may take.
   Joined join(const BasicSimulator& simulator, std::span<const Vec3> points_m, unsigned worker, WorkCounters& work) {
     Joined joined(points_m.size(), std::vector<SequenceList>(transmitters.link.size()));
-    crowds[worker].look_from(simulator.scene_, *simulator.outlines_, *simulator.lanes_, points_m,
-                             half_settings(search));
-    const Tracer tracer(simulator.scene_, simulator.index_);
+    const Scene& scene = simulator.scene_;
+    const FacetOutlines& outlines = *simulator.outlines_;
+    const LaneScene& lanes = *simulator.lanes_;
+    const HalfSettings seen = half_settings(search);
+    Crowd& crowd = crowds[worker];
+    crowd.look_from(scene, outlines, lanes, points_m, seen);
+    if (!beams.empty()) beams[worker].look_from(scene, outlines, lanes, crowd, seen);
+    const Tracer tracer(scene, simulator.index_);
     SearchCounters counters;
-    CrowdJoiner<Index> joiner(tracer, *simulator.outlines_, *simulator.lanes_, joined_orders(search), counters.solver);
     for (std::size_t index = 0; index < transmitters.link.size(); ++index) {
       if (!transmitters.link[index]) continue;
       for (std::vector<SequenceList>& of_point : joined) of_point[index].add({});
-      joiner.for_each_sequence(
-          crowds[worker], *transmitters.halves[index].lists(),
-          [&](const Sequence& sequence, std::size_t point) { joined[point][index].add(sequence); });
+      CrowdGates<Index> gates(tracer, outlines, lanes, crowd, *transmitters.halves[index].lists(), counters.solver);
+      const auto add = [&](const Sequence& sequence, std::size_t point) { joined[point][index].add(sequence); };
+      CrowdJoiner<Index>(gates, joined_orders(search)).for_each_sequence(add);
+      if (!beams.empty()) CrowdTriples<Index>(gates, beams[worker], joined_orders(search)).for_each_sequence(add);
     }
     detail::add_search_work(counters, work);
     return joined;
@@ -52,6 +59,7 @@ struct BasicSimulator<Surface, Index>::MapShare {
   const TransmitterEnds& transmitters;
   PathSearchSettings search;
   std::vector<Crowd> crowds;
+  std::vector<CrowdBeams> beams;  ///< none where no sequences of three elements are joined
 };
 
 template <SurfaceModel Surface, SpatialIndex Index>

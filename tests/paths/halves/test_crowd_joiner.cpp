@@ -3,71 +3,12 @@
 
 #include <doctest/doctest.h>
 
-#include <optional>
 #include <vector>
 
-#include "tests/paths/halves/small_town.hpp"
+#include "tests/paths/halves/crowds.hpp"
 
 using namespace dcem;
 using namespace dcem::test;
-
-namespace {
-
-HalfSettings half_settings_of(const Asked& asked) {
-  HalfSettings settings{asked.diffractions > 0, asked.transmissions == 0, {}};
-  settings.rules.free_edges = asked.free_edges;
-  return settings;
-}
-
-/// The paths from one end to each point of a crowd.
-std::vector<std::vector<Path>> found_together(TracedScene<>& traced, const LinkEnd& from,
-                                              const std::vector<Vec3>& points_m, const Asked& asked, int pixels) {
-  const FacetOutlines outlines(traced.scene);
-  const LaneScene lanes(traced.scene, outlines);
-  PathHalf half(pixels);
-  half.find_scenery(traced.scene, outlines, from, half_settings_of(asked));
-  half.find_bodies(traced.scene, outlines, half_settings_of(asked));
-  BeamLists mast;
-  mast.find_all({traced.scene, outlines, lanes, half, half_settings_of(asked), true});
-  Crowd crowd(pixels);
-  crowd.look_from(traced.scene, outlines, lanes, points_m, half_settings_of(asked));
-  SolverCounters counters;
-  CrowdJoiner<WideIndex> joiner(traced.tracer, outlines, lanes,
-                                {asked.reflections, asked.diffractions, asked.interactions}, counters);
-  PathSolver<WideIndex> solver(traced.tracer, asked.transmissions, half_settings_of(asked).rules);
-  std::vector<std::vector<Path>> paths(points_m.size());
-  const auto solve = [&](const Sequence& sequence, std::size_t point) {
-    if (auto path = solver.solve(from, traced.end(points_m[point]), sequence)) paths[point].push_back(std::move(*path));
-  };
-  for (std::size_t point = 0; point < points_m.size(); ++point) solve({}, point);
-  joiner.for_each_sequence(crowd, mast, solve);
-  for (std::vector<Path>& link : paths) dcem::detail::sort_and_drop_repeated(link);
-  return paths;
-}
-
-std::vector<Vec3> points_beside(Draw& draw, const Vec3& middle_m, const Vec3& size_m, std::size_t count) {
-  std::vector<Vec3> points_m;
-  for (std::size_t point = 0; point < count; ++point) {
-    points_m.push_back(middle_m + draw.inside(-0.5 * size_m, 0.5 * size_m));
-  }
-  return points_m;
-}
-
-/// Checks what a crowd finds against each of its points by itself; returns how many paths there are.
-std::size_t check_crowd(TracedScene<>& traced, const LinkEnd& from, const std::vector<Vec3>& points_m,
-                        const Asked& asked, int pixels) {
-  const std::vector<std::vector<Path>> together = found_together(traced, from, points_m, asked, pixels);
-  std::size_t found = 0;
-  for (std::size_t point = 0; point < points_m.size(); ++point) {
-    CAPTURE(point);
-    const std::vector<Path> expected = all_sequences(traced, from, traced.end(points_m[point]), asked);
-    CHECK(same_paths(together[point], expected));
-    found += expected.size();
-  }
-  return found;
-}
-
-}  // namespace
 
 TEST_CASE("a crowd finds every path of each of its points, and the same bits") {
   std::size_t found = 0;

@@ -1,0 +1,278 @@
+#pragma once
+/// Several receivers joined with one transmitter at once over three mirrors and edges: what `TripleJoiner` does for
+/// one, with the receivers as lanes.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dcem/paths/halves/crowd_beams.hpp"
+#include "dcem/paths/halves/crowd_gates.hpp"
+#include "dcem/paths/halves/half_joiner.hpp"
+#include "dcem/paths/halves/window_lanes.hpp"
+
+namespace dcem {
+
+template <typename Index>
+class CrowdTriples {
+ public:
+  CrowdTriples(CrowdGates<Index>& gates, const CrowdBeams& beams, const HalfJoiner::Orders& orders)
+      : gates_(gates), beams_(beams), scene_(gates.scene()), lanes_(gates.lanes()), orders_(orders) {}
+
+  /// Calls `visit(sequence, point)`, the sequence from the receiver outwards, for every sequence of three mirrors, or
+  /// of two mirrors and an edge, that a path from the transmitter to a point of the crowd may take.
+  template <typename Visit>
+  void for_each_sequence(Visit&& visit) {
+    if (orders_.interactions < 3 || orders_.reflections < 2) return;
+    lay_out_images();
+    const bool edges = orders_.diffractions >= 1;
+    if (edges) lay_out_edges();
+    for (std::uint32_t number = 0; number < scene_.facets().size(); ++number) {
+      over_two_mirrors(FacetId(number), edges, visit);
+      if (edges) edge_to_two_mirrors(FacetId(number), visit);
+    }
+    if (!edges) return;
+    for (std::uint32_t number = 0; number < scene_.wedges().size(); ++number) {
+      edge_between_mirrors(WedgeId(number), visit);
+    }
+  }
+
+ private:
+  static constexpr std::size_t most_packs = Crowd::most_points / simd_lanes;
+  /// The images of all points in a mirror, and the lanes of those that are on the side of it that is looked at.
+  struct Images {
+    std::array<LanePoints, most_packs> packs;
+    std::array<std::uint32_t, most_packs> lanes;
+  };
+
+  const BeamLists& mast() const { return gates_.mast(); }
+  std::size_t pack_count() const { return gates_.packs().size(); }
+  static LanePoints mirrored_in(const HalfSpace& plane, const LanePoints& points) {
+    const Float8 twice = Float8(2.0F) * (dot(points, plane.x, plane.y, plane.z) - plane.offset);
+    return {points.x - twice * plane.x, points.y - twice * plane.y, points.z - twice * plane.z};
+  }
+
+  void lay_out_images() {
+    images_.clear();
+    for (const CrowdMirror& mirror : beams_.mirrors()) {
+      const LanePoints none(Vec3(0.0));
+      Images images{{none, none}, {}};
+      for (std::size_t pack = 0; pack < pack_count(); ++pack) {
+        images.packs[pack] = gates_.crowd().images(pack, scene_.facet(mirror.facet).plane);
+        images.lanes[pack] = gates_.lanes_beside(pack, mirror.facet, mirror.side);
+      }
+      images_.push_back(images);
+    }
+  }
+
+  /// The edges that the crowd sees, as its middle does.
+  void lay_out_edges() {
+    std::vector<EdgePart> parts;
+    for (const SeenLayer& layer : gates_.crowd().layers()) {
+      for (const WedgeId id : layer.edges) {
+        parts.push_back(whole_edge(id.value, scene_.wedge(id).edge, gates_.crowd().sight().position_m()));
+      }
+    }
+    edges_.build(parts, lanes_.origin_m(),
+                 [&](const EdgePart& part) -> const Wedge& { return scene_.wedge(WedgeId(part.edge)).edge; });
+    edge_numbers_.clear();
+    for (const EdgePart& part : parts) edge_numbers_.push_back(part.edge);
+  }
+
+  /// The receivers' last two points are on mirrors, the second of which is `middle`.
+  template <typename Visit>
+  void over_two_mirrors(FacetId middle, bool edges, Visit& visit) {
+    const std::span<const std::uint32_t> near = beams_.mirrors_before(middle);
+    const bool mirrors = orders_.reflections >= 3 && !mast().mirrors_before(middle).empty();
+    if (near.empty() || (!edges && !mirrors)) return;
+    for (const std::uint32_t place : near) {
+      for (const double side : {1.0, -1.0}) {
+        if (!look_over(place, middle, side)) continue;
+        if (mirrors) join_mirrors(place, middle, visit);
+        if (edges) join_edges(place, middle, visit);
+      }
+    }
+  }
+
+  /// Works out what the images in two mirrors may see, of the points whose first image is on one side of the second
+  /// mirror; false where there are none.
+  bool look_over(std::uint32_t place, FacetId middle, double side) {
+    const CrowdMirror& mirror = beams_.mirrors()[place];
+    const Plane& plane = scene_.facet(middle).plane;
+    beside_m_.clear();
+    for (const Vec3& image_m : mirror.images_m) {
+      if (side * signed_distance_m(plane, image_m) > in_plane_guard_m) beside_m_.push_back(image_m);
+    }
+    if (beside_m_.empty()) return false;
+    common_cone(gates_.outlines().sides(middle), plane, side * plane.normal, beside_m_, lanes_.origin_m(), cone_);
+    twice_ = mirrored(plane, mirror.middle_m + lanes_.origin_m()) - lanes_.origin_m();
+    const double slack_m = 1e-3 + 2e-6 * (glm::length(twice_) + lanes_.reach_m());
+    add_mirrored(mirror.cone.first(mirror.cone.size() - 1), plane, lanes_.origin_m(), slack_m, cone_);
+    twice_error_m_ = gates_.error_with(2.0 * glm::length(twice_) + lanes_.reach_m());
+    for (std::size_t pack = 0; pack < pack_count(); ++pack) {
+      const LanePoints& images = images_[place].packs[pack];
+      twice_images_.packs[pack] = mirrored_in(lanes_.plane(middle), images);
+      twice_images_.lanes[pack] = gates_.lanes_beside(images, images_[place].lanes[pack], middle, side, twice_error_m_);
+    }
+    return true;
+  }
+
+  template <typename Visit>
+  void join_mirrors(std::uint32_t place, FacetId middle, Visit& visit) {
+    for (const std::uint32_t mirror : mast().mirrors_before(middle)) {
+      const BeamMirror& first = mast().mirrors()[mirror];
+      const double length_m = glm::length(first.image_m);
+      if (!may_hold(cone_, first.image_m, 1e-6F * static_cast<float>(length_m)) ||
+          !may_hold(first.cone, twice_, gates_.radius_m() + twice_error_m_))
+        continue;
+      const LanePoints apex(first.image_m);
+      const Float8 error_m(twice_error_m_ + LaneScene::error_m(length_m));
+      for (std::size_t pack = 0; pack < pack_count(); ++pack) {
+        const LaneGate at_first =
+            lanes_.cross(first.facet, apex, twice_images_.packs[pack], error_m, twice_images_.lanes[pack]);
+        if (at_first.lanes != 0) join_near(place, middle, pack, {first.facet, at_first}, error_m, visit);
+      }
+    }
+  }
+
+  template <typename Visit>
+  void join_edges(std::uint32_t place, FacetId middle, Visit& visit) {
+    const float radius_m = gates_.radius_m() + twice_error_m_;
+    mast().for_each_part_in(cone_, twice_, radius_m, [&](std::uint32_t number) {
+      const EdgePart& part = mast().parts()[number];
+      const WedgeId edge(part.edge);
+      const WorldWedge& wedge = scene_.wedge(edge);
+      if (wedge.facets[0] == middle || wedge.facets[1] == middle) return;  // that is in the wedge's own terms
+      for (std::size_t pack = 0; pack < pack_count(); ++pack) {
+        const LaneGate at_first =
+            lanes_.meet(part, twice_images_.packs[pack], twice_error_m_, twice_images_.lanes[pack]);
+        if (at_first.lanes != 0) join_near(place, middle, pack, {edge, at_first}, Float8(twice_error_m_), visit);
+      }
+    });
+  }
+
+  /// From a transmitter's first point over the middle mirror and that of the receivers.
+  template <typename Visit>
+  void join_near(std::uint32_t place, FacetId middle, std::size_t pack, const CrowdStop& first, const Float8& error_m,
+                 Visit& visit) {
+    const LaneGate at_middle =
+        lanes_.cross(middle, first.at.points, twice_images_.packs[pack], error_m + first.at.beside_m, first.at.lanes);
+    if (at_middle.lanes == 0) return;
+    const FacetId last = beams_.mirrors()[place].facet;
+    const LaneGate at_last =
+        lanes_.cross(last, at_middle.points, images_[place].packs[pack], error_m + at_middle.beside_m, at_middle.lanes);
+    if (at_last.lanes == 0) return;
+    gates_.offer(pack, std::array{CrowdStop{last, at_last}, CrowdStop{middle, at_middle}, first}, at_last.lanes, visit);
+  }
+
+  /// The receivers' last point is on an edge, the two before it on mirrors of the transmitter.
+  template <typename Visit>
+  void edge_to_two_mirrors(FacetId middle, Visit& visit) {
+    const std::span<const std::uint32_t> before = mast().mirrors_before(middle);
+    if (before.empty() || edge_numbers_.empty()) return;
+    const WorldFacet& facet = scene_.facet(middle);
+    const WindowLanes window(facet.plane, scene_.hull_m(facet), lanes_.origin_m());
+    for (std::size_t first = 0; first < before.size(); first += simd_lanes) {
+      const std::span<const std::uint32_t> eight =
+          before.subspan(first, std::min<std::size_t>(simd_lanes, before.size() - first));
+      std::array<Vec3, simd_lanes> twice_m;
+      for (std::size_t lane = 0; lane < eight.size(); ++lane) {
+        twice_m[lane] = mirrored(facet.plane, mast().mirrors()[eight[lane]].image_m + lanes_.origin_m());
+      }
+      const LanePoints images(std::span<const Vec3>(twice_m).first(eight.size()), lanes_.origin_m());
+      std::uint32_t left = window.seeing(images, edges_.boxes(), (1U << eight.size()) - 1U);
+      for (; left != 0; left &= left - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        edges_over(mast().mirrors()[eight[lane]], middle, twice_m[lane], visit);
+      }
+    }
+  }
+
+  template <typename Visit>
+  void edges_over(const BeamMirror& mirror, FacetId middle, const Vec3& twice_m, Visit& visit) {
+    const WorldFacet& facet = scene_.facet(middle);
+    const Vec3 twice = twice_m - lanes_.origin_m();
+    window_.clear();
+    window_.add(lanes_.origin_m(), twice_m, facet.plane, scene_.hull_m(facet));
+    cone_.assign(window_[0].begin(), window_[0].end());
+    const double slack_m = 1e-3 + 1e-6 * (glm::length(twice) + lanes_.reach_m());
+    add_mirrored(mirror.cone.first(mirror.cone.size() - 1), facet.plane, lanes_.origin_m(), slack_m, cone_);
+    const float error_m = gates_.error_with(2.0 * glm::length(twice) + lanes_.reach_m());
+    edges_.template for_each_in<true>(cone_, twice, gates_.radius_m(), [&](std::uint32_t number) {
+      const WedgeId edge(edge_numbers_[number]);
+      const WorldWedge& wedge = scene_.wedge(edge);
+      if (wedge.facets[0] == middle || wedge.facets[1] == middle) return;  // that is in the wedge's own terms
+      if (!may_face(wedge.edge, twice_m - wedge.edge.start_m)) return;
+      const EdgePart part = whole_edge(edge.value, wedge.edge, twice_m);
+      for (std::size_t pack = 0; pack < pack_count(); ++pack) {
+        const LaneGate at_edge = lanes_.meet(part, gates_.packs()[pack], error_m, gates_.crowd().lanes_of(pack));
+        if (at_edge.lanes != 0) join_far(mirror, middle, twice, pack, {edge, at_edge}, Float8(error_m), visit);
+      }
+    });
+  }
+
+  /// From an edge over the middle mirror and that of the transmitter.
+  template <typename Visit>
+  void join_far(const BeamMirror& mirror, FacetId middle, const Vec3& twice, std::size_t pack, const CrowdStop& last,
+                const Float8& error_m, Visit& visit) {
+    const LaneGate at_middle =
+        lanes_.cross(middle, LanePoints(twice), last.at.points, error_m + last.at.beside_m, last.at.lanes);
+    if (at_middle.lanes == 0) return;
+    const LaneGate at_first = lanes_.cross(mirror.facet, LanePoints(mirror.image_m), at_middle.points,
+                                           error_m + at_middle.beside_m, at_middle.lanes);
+    if (at_first.lanes == 0) return;
+    gates_.offer(pack, std::array{last, CrowdStop{middle, at_middle}, CrowdStop{mirror.facet, at_first}},
+                 at_first.lanes, visit);
+  }
+
+  /// An edge that both ends light over a mirror each.
+  template <typename Visit>
+  void edge_between_mirrors(WedgeId edge, Visit& visit) {
+    for (const std::uint32_t place : beams_.mirrors_before(edge)) {
+      const CrowdMirror& near = beams_.mirrors()[place];
+      const Images& images = images_[place];
+      const float radius_m = gates_.radius_m();
+      mast().for_each_lit_part(edge, near.middle_m, radius_m, [&](const EdgePart& part, std::uint32_t mirror) {
+        const BeamMirror& far = mast().mirrors()[mirror];
+        const float error_m =
+            gates_.error_with(glm::length(far.image_m) + glm::length(near.middle_m) + lanes_.reach_m());
+        for (std::size_t pack = 0; pack < pack_count(); ++pack) {
+          const LaneGate at_edge = lanes_.meet(part, images.packs[pack], error_m, images.lanes[pack]);
+          if (at_edge.lanes == 0) continue;
+          const Float8 off_m = Float8(error_m) + at_edge.beside_m;
+          const LaneGate at_first =
+              lanes_.cross(far.facet, LanePoints(far.image_m), at_edge.points, off_m, at_edge.lanes);
+          if (at_first.lanes == 0) continue;
+          const LaneGate at_last = lanes_.cross(near.facet, at_edge.points, images.packs[pack], off_m, at_first.lanes);
+          if (at_last.lanes == 0) continue;
+          gates_.offer(
+              pack,
+              std::array{CrowdStop{near.facet, at_last}, CrowdStop{edge, at_edge}, CrowdStop{far.facet, at_first}},
+              at_last.lanes, visit);
+        }
+      });
+    }
+  }
+
+  CrowdGates<Index>& gates_;
+  const CrowdBeams& beams_;
+  const Scene& scene_;
+  const LaneScene& lanes_;
+  HalfJoiner::Orders orders_;
+  std::vector<Images> images_;  ///< by the place of the mirror
+  EdgeClusters edges_;
+  std::vector<std::uint32_t> edge_numbers_;
+  ConeList window_;
+  std::vector<HalfSpace> cone_;
+  std::vector<Vec3> beside_m_;
+  // Of the two mirrors that are looked over.
+  Vec3 twice_{0.0};
+  float twice_error_m_ = 0.0F;
+  Images twice_images_{{LanePoints(Vec3(0.0)), LanePoints(Vec3(0.0))}, {}};
+};
+
+}  // namespace dcem
