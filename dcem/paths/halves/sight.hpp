@@ -220,7 +220,7 @@ inline void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outl
   const auto hidden = [&](const Aabb<double>& box) { return is_beside(box) || map_.hides(box, longest_lift_m); };
   outlines.visit_from(position_m(), hidden, look_at);
   outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
-    if (!is_beside(outlines.of(id).box) && is_lifted_far(scene, outlines, id)) look_at(id);
+    if (is_lifted_far(scene, outlines, id) && !is_beside(outlines.of(id).box)) look_at(id);
   });
 }
 
@@ -260,13 +260,12 @@ inline void Sight::find_facets(const Scene& scene, const FacetOutlines& outlines
 inline bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) {
   const WorldFacet& facet = scene.facet(id);
   if (!facet.present || facet.body == ignored_body_) return false;
-  const double nearer = nearer_on(scene, outlines, id);
-  if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer);
+  if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, id));
   if (id == beam_->mirror() || beam_->is_beside(outlines.of(id).box)) return false;
   detail::InsetOutline inside;
   if (!inside.assign(scene.hull_m(facet))) return true;
   if (!beam_->cut(inside)) return inside.is_full();
-  return map_.shows(inside.corners(), facet.plane, nearer);
+  return map_.shows(inside.corners(), facet.plane, nearer_on(scene, outlines, id));
 }
 
 /// Notes the part of an outline that is beyond the mirror, where one is looked through.
