@@ -1,5 +1,6 @@
 #pragma once
-/// Several transmitters over one grid: which one serves a point, and what the others and the noise leave of it.
+/// Several transmitters over one grid or list of points: which one serves a point, and what the others and the noise
+/// leave of it.
 ///
 /// All sums are over incoherent powers: transmitters are not in phase with each other, and over a cell of a map each of
 /// them shows its mean.
@@ -29,11 +30,13 @@ struct CombinedMapPoint {
   std::optional<double> snr_db;                ///< over the noise alone; absent without noise
 };
 
-/// The maps of all transmitters over one grid, taken together; points row by row.
+/// The maps of all transmitters over one grid or list, taken together; points in the order of the maps.
 struct CombinedMap {
-  ReceiverGrid grid;
+  MapPlaces places;
   std::vector<std::string> transmitters;
   std::vector<CombinedMapPoint> points;
+
+  const ReceiverGrid& grid() const { return places.grid(); }  ///< as there
 };
 
 /// 10·log10(Σ 10^(p/10)): the sum of powers, dBm. Counted from the largest one, so that no power is too weak or too
@@ -49,15 +52,16 @@ inline std::optional<double> power_sum_dbm(std::span<const double> powers_dbm) {
 /// The best server of each point and its SINR: S/(Σ I + N) with S the incoherent power of the best server, I those of
 /// all other transmitters and N the noise; without `noise_power_dbm` N is zero and the ratio is S/Σ I (SIR). Of
 /// transmitters with the same power the first one serves. Throws std::invalid_argument without a map and for maps of
-/// different grids.
+/// different points.
 CombinedMap combine_maps(std::span<const RadioMap> maps, std::optional<double> noise_power_dbm = {});
 
 // ---------------------------------------------------------------------------------------------------------------------
 
 namespace detail {
 
-inline bool same_points(const ReceiverGrid& one, const ReceiverGrid& other) {
-  return one.origin_m == other.origin_m && one.spacing_m == other.spacing_m && one.count == other.count;
+inline bool same_points(const RadioMap& one, const RadioMap& other) {
+  return one.places.shape() == other.places.shape() &&
+         std::ranges::equal(one.points, other.points, {}, &RadioMapPoint::position_m, &RadioMapPoint::position_m);
 }
 
 inline std::optional<std::size_t> best_server(std::span<const RadioMap> maps, std::size_t cell) {
@@ -95,15 +99,15 @@ inline CombinedMapPoint combine_point(std::span<const RadioMap> maps, std::size_
 
 inline CombinedMap combine_maps(std::span<const RadioMap> maps, std::optional<double> noise_power_dbm) {
   if (maps.empty()) throw std::invalid_argument("combine_maps: expected at least one map");
-  CombinedMap combined{maps.front().grid, {}, {}};
+  CombinedMap combined{maps.front().places, {}, {}};
   for (const RadioMap& map : maps) {
-    if (!detail::same_points(map.grid, combined.grid) || map.points.size() != combined.grid.size()) {
-      throw std::invalid_argument("combine_maps: expected maps of one grid");
+    if (!detail::same_points(map, maps.front()) || map.points.size() != combined.places.size()) {
+      throw std::invalid_argument("combine_maps: expected maps of the same points");
     }
     combined.transmitters.push_back(map.transmitter);
   }
-  combined.points.reserve(combined.grid.size());
-  for (std::size_t cell = 0; cell < combined.grid.size(); ++cell) {
+  combined.points.reserve(combined.places.size());
+  for (std::size_t cell = 0; cell < combined.places.size(); ++cell) {
     combined.points.push_back(detail::combine_point(maps, cell, noise_power_dbm));
   }
   return combined;

@@ -1,8 +1,11 @@
 #pragma once
-/// A coverage map: what a receiver would measure at each point of a grid.
+/// A coverage map: what a receiver would measure at each point of a grid or of a list.
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "dcem/channel/link_statistics.hpp"
@@ -20,11 +23,34 @@ struct RadioMapPoint {
   std::string strongest_kinds;  ///< kinds of the strongest path; empty also for the line of sight
 };
 
-/// The map of one transmitter over one grid, row by row (row 0 has the smallest y).
+/// Where the points of a map lie: on a grid, row by row (row 0 has the smallest y), or in a list.
+class MapPlaces {
+ public:
+  MapPlaces(ReceiverGrid grid) : id_(grid.id), places_(std::move(grid)) {}  // NOLINT: a map is one of a grid
+  MapPlaces(std::string list, std::size_t size) : id_(std::move(list)), places_(size) {}
+
+  const std::string& id() const { return id_; }
+  bool is_grid() const { return places_.index() == 0; }
+  /// Precondition: the places are a grid; throws std::bad_variant_access otherwise.
+  const ReceiverGrid& grid() const { return std::get<0>(places_); }
+  /// Rows and columns, or the length of the list.
+  std::vector<std::size_t> shape() const {
+    return is_grid() ? std::vector{grid().rows(), grid().columns()} : std::vector{std::get<1>(places_)};
+  }
+  std::size_t size() const { return is_grid() ? grid().size() : std::get<1>(places_); }
+
+ private:
+  std::string id_;
+  std::variant<ReceiverGrid, std::size_t> places_;
+};
+
+/// The map of one transmitter.
 struct RadioMap {
-  ReceiverGrid grid;
+  MapPlaces places;
   std::string transmitter;
   std::vector<RadioMapPoint> points;
+
+  const ReceiverGrid& grid() const { return places.grid(); }  ///< as there
 };
 
 /// Field strength (rms) that gives an isotropic receiver of gain 1 this power: E = √(4π·Z0·P)/λ, in dB over 1 µV/m.

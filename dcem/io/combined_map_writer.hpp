@@ -19,19 +19,20 @@ inline bool has_sinr(const CombinedMap& map, bool has_noise) {
   return has_noise || map.transmitters.size() > 1;
 }
 
-// Each throws `OutputError`. Rows are points, row by row; where nothing arrives the fields behind the coordinates are
-// empty.
+// Each throws `OutputError`. Rows are points, row by row or in the order of the list; where nothing arrives the fields
+// behind the coordinates are empty.
 
 void write_best_server_csv(AtomicFile& file, const CombinedMap& map);
 void write_sinr_csv(AtomicFile& file, const CombinedMap& map);
 
-/// Arrays over [row, column]: coordinates, `tx` uint32 (the number of the server in `tx_id`, 0 also where `served` is
-/// false), `served` and `obstructed` bool, the columns of the CSV as float64 with NaN where they are empty; `tx_id`
-/// text, the transmitters in order.
+/// Arrays over [row, column] or [point]: coordinates, `tx` uint32 (the number of the server in `tx_id`, 0 also where
+/// `served` is false), `served` and `obstructed` bool, the columns of the CSV as float64 with NaN where they are empty;
+/// `tx_id` text, the transmitters in order.
 void write_best_server_npz(AtomicFile& file, const CombinedMap& map);
 void write_sinr_npz(AtomicFile& file, const CombinedMap& map);
 
-/// ESRI ASCII grids: the server's number in the order of the scenario, counted from 0; and the SINR in dB.
+/// ESRI ASCII grids, of maps over a grid, as are the pictures: the server's number in the order of the scenario,
+/// counted from 0; and the SINR in dB.
 void write_best_server_asc(AtomicFile& file, const CombinedMap& map);
 void write_sinr_asc(AtomicFile& file, const CombinedMap& map);
 

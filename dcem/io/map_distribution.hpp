@@ -1,5 +1,5 @@
 #pragma once
-/// The distribution of the power over the points of a grid, for each transmitter and for the best server.
+/// The distribution of the power over the points of a grid or a list, for each transmitter and for the best server.
 #include <optional>
 #include <span>
 #include <string>

@@ -22,16 +22,17 @@ inline constexpr std::string_view map_csv_header =
 /// % and two hexadecimal digits. `frame` is absent where there is only one.
 std::string map_name(const std::string& grid, const std::string& transmitter, std::optional<std::size_t> frame = {});
 
-/// Writes a line per point, row by row. Of an obstructed point only the coordinates are given; the other fields are
-/// empty. The field strength belongs to the coherent power. Throws `OutputError`.
+/// Writes a line per point, row by row or in the order of the list. Of an obstructed point only the coordinates are
+/// given; the other fields are empty. The field strength belongs to the coherent power. Throws `OutputError`.
 void write_map_csv(AtomicFile& file, const RadioMap& map, double frequency_hz);
 
-/// Writes arrays over [row, column], row 0 that of the smallest y: `x_m`, `y_m`, `z_m` and the columns of the CSV under
-/// their names, float64 with NaN where the CSV is empty; `line_of_sight` and `obstructed` bool, `path_count` uint32,
-/// `strongest_kinds` text; and the number `frequency_hz`. Throws `OutputError`.
+/// Writes arrays over [row, column], row 0 that of the smallest y, or over [point]: `x_m`, `y_m`, `z_m` and the columns
+/// of the CSV under their names, float64 with NaN where the CSV is empty; `line_of_sight` and `obstructed` bool,
+/// `path_count` uint32, `strongest_kinds` text; and the number `frequency_hz`. Throws `OutputError`.
 void write_map_npz(AtomicFile& file, const RadioMap& map, double frequency_hz);
 
-/// Writes the coherent power in dBm as an ESRI ASCII grid (`write_esri_grid`). Throws `OutputError`.
+/// Writes the coherent power in dBm as an ESRI ASCII grid (`write_esri_grid`). Precondition, as of the picture: a map
+/// over a grid. Throws `OutputError`.
 void write_map_asc(AtomicFile& file, const RadioMap& map);
 
 /// The picture of a map: the incoherent power in dBm at each point. It is the mean over a few wavelengths, which is all

@@ -33,7 +33,7 @@ struct MapOutputs {
   bool png = true;
   bool npz = true;
   bool asc = true;
-  bool svg = true;  ///< the distribution over the points of a grid
+  bool svg = true;  ///< the distribution over the points
 };
 
 /// How much a page of results may hold, so that a browser opens a day's trace, too.
@@ -74,6 +74,13 @@ struct ScenarioOverrides {
   std::optional<std::string> output;  ///< KEY[,KEY…] in place of the file's `output` keys
 };
 
+/// An entry of `receivers` with a list of points: so many of the scene's receivers, one after the other.
+struct PointList {
+  std::string id;
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
 struct Scenario {
   std::string name;  ///< the file's name without folder and extension
   Scene scene;
@@ -82,6 +89,7 @@ struct Scenario {
   OutputSettings output;
   std::optional<NoiseSettings> noise{};  ///< of the receivers; absent: maps know no noise
   std::vector<ReceiverGrid> grids;       ///< not yet among the scene's receivers
+  std::vector<PointList> point_lists;    ///< which of the scene's receivers are points of a list
   std::optional<Traffic> traffic;        ///< vehicles of a trace; their frames come from a `FrameSource`
   std::vector<std::string> warnings;
 
@@ -91,5 +99,8 @@ struct Scenario {
 
 /// Reads a scenario and everything it names. Throws InputError.
 Scenario load_scenario(const std::filesystem::path& file, const ScenarioOverrides& overrides = {});
+
+/// Takes the points of lists out of the scene: for maps they are places and no devices of a frame.
+std::vector<ReceiverList> take_point_lists(Scenario& scenario);
 
 }  // namespace dcem::io

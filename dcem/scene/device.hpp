@@ -41,10 +41,13 @@ struct ReceiverGrid {
   std::array<double, 2> spacing_m{1.0, 1.0};  ///< along x and y
   std::array<std::size_t, 2> count{1, 1};     ///< along x (columns) and y (rows)
   Antenna antenna;
+  /// Maps: along x and y, the points over which each cell's values are averaged (channel/cell_average.hpp).
+  std::array<std::size_t, 2> samples{1, 1};
 
   std::size_t columns() const { return count[0]; }
   std::size_t rows() const { return count[1]; }
   std::size_t size() const { return count[0] * count[1]; }
+  std::size_t samples_per_cell() const { return samples[0] * samples[1]; }
 };
 
 inline Vec3 grid_point_m(const ReceiverGrid& grid, std::size_t row, std::size_t column) {
@@ -57,5 +60,11 @@ inline Device grid_receiver(const ReceiverGrid& grid, std::size_t row, std::size
   return device_at(grid.id + "[" + std::to_string(row) + "," + std::to_string(column) + "]",
                    grid_point_m(grid, row, column), 0.0, grid.antenna);
 }
+
+/// Receivers at points of a list, such as those along a route: `route[0]`, `route[1]`, …
+struct ReceiverList {
+  std::string id;
+  std::vector<Device> receivers;
+};
 
 }  // namespace dcem

@@ -60,6 +60,8 @@ class Scene {
   void add_body_pool(std::size_t count, const TriangleMesh& mesh);
   void add_transmitter(Device device);
   void add_receiver(Device device);
+  /// Takes all receivers out of the scene.
+  std::vector<Device> take_receivers();
 
   // Time.
 

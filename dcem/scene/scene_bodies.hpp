@@ -133,6 +133,11 @@ DCEM_INLINE void Scene::add_receiver(Device device) {
   receivers_.push_back(std::move(device));
 }
 
+DCEM_INLINE std::vector<Device> Scene::take_receivers() {
+  receiver_ids_.clear();
+  return std::exchange(receivers_, {});
+}
+
 DCEM_INLINE std::vector<std::uint32_t> Scene::first_triangles() const {
   std::vector<std::uint32_t> first;
   for (std::size_t index = 0; index < bodies_.size(); ++index) first.push_back(world_.first(BodyId(index)).triangle);

@@ -71,8 +71,11 @@ class BasicSimulator {
                                              const Sequence& sequence) const;
 
   /// One map per transmitter over the grid, in the current frame. `progress(n)` is called from the working threads
-  /// whenever n more points are done.
+  /// whenever n more points are done; where cells have several samples, these are the points.
   std::vector<RadioMap> radio_maps(const ReceiverGrid& grid, const std::function<void(std::size_t)>& progress = {},
+                                   WorkCounters* work = nullptr) const;
+  /// The same over a list, searched as links are: each point has what `solve` finds there, and none is left empty.
+  std::vector<RadioMap> radio_maps(const ReceiverList& list, const std::function<void(std::size_t)>& progress = {},
                                    WorkCounters* work = nullptr) const;
 
  private:
@@ -106,6 +109,9 @@ class BasicSimulator {
   };
 
   struct MapShare;
+  struct MapOrder;
+  std::vector<RadioMap> solve_map(const MapOrder& order, const std::function<void(std::size_t)>& progress,
+                                  WorkCounters* work) const;
 
   void check_surface_model() const;
   TreeUpdateReport update_index(const ChangeSet& changes);

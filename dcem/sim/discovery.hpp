@@ -7,6 +7,7 @@
 #include "dcem/paths/halves/covered.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/search_plan.hpp"
+#include "dcem/sim/search_size.hpp"
 #include "dcem/sim/settings.hpp"
 
 namespace dcem {
@@ -23,25 +24,59 @@ inline std::size_t automatic_exact_facet_limit(const PropagationSettings& propag
   return std::min(by_reflections, by_diffractions);
 }
 
-/// What a simulation with these settings really does: small scenes are searched exhaustively; in others short sequences
-/// are found from halves, and rays look for longer ones. Throws std::invalid_argument where exact discovery is asked
-/// for by name and cannot be had: what was asked for is never weakened in silence.
-inline SearchPlan plan_search(const PropagationSettings& propagation, const Scene& scene,
-                              SearchedFor searched_for = SearchedFor::links) {
-  if (propagation.discovery == Discovery::sampled) return {Discovery::sampled};
-  const std::size_t facets = scene.surface_count();
-  if (facets <= automatic_exact_facet_limit(propagation)) return {Discovery::exact, true};
-  const bool automatic = propagation.discovery == Discovery::automatic;
-  const int joined = automatic && searched_for == SearchedFor::maps ? 2 : most_joined_interactions;
-  if (halves_cover(joined, diffraction_order(propagation), interaction_order(propagation))) {
-    return {Discovery::exact, false, joined};
+/// Whether halves find every path within the orders, in a scene of any size.
+inline bool halves_cover(int joined, const PropagationSettings& propagation) {
+  return halves_cover(joined, diffraction_order(propagation), interaction_order(propagation));
+}
+
+namespace detail {
+
+/// The largest `max_interactions` with which an exact search ends.
+inline int most_interactions_that_end(PropagationSettings propagation, const Scene& scene) {
+  int most = interaction_order(propagation);
+  for (; most > 1; --most) {
+    propagation.max_interactions = most;
+    if (halves_cover(most_joined_interactions, propagation) || search_ends(propagation, scene)) break;
   }
-  if (automatic) return {Discovery::sampled, false, joined};
-  if (facets <= exact_discovery_facet_limit) return {Discovery::exact, true};
+  return most;
+}
+
+[[noreturn]] inline void refuse_endless_search(const PropagationSettings& propagation, const Scene& scene) {
+  const double sequences = estimated_sequences(propagation, scene);
+  throw std::invalid_argument(
+      "discovery exact: " + std::to_string(scene.surface_count()) + " facets and " +
+      std::to_string(scene.wedges().size()) + " edges make about " + two_digits_of(sequences) + " sequences of up to " +
+      std::to_string(reflection_order(propagation)) + " reflections and " +
+      std::to_string(diffraction_order(propagation)) + " diffractions for a link, about " +
+      rough_duration(sequences / sequences_tried_per_s) + " of one thread; expected max_interactions " +
+      std::to_string(most_interactions_that_end(propagation, scene)) + " or less, or discovery sampled");
+}
+
+[[noreturn]] inline void refuse_many_facets(std::size_t facets) {
   throw std::invalid_argument("discovery exact: not in this version for " + std::to_string(facets) +
                               " facets, except for at most three interactions, at most one of them a diffraction; "
                               "expected max_interactions 3 and max_diffractions 1, or at most " +
                               std::to_string(exact_discovery_facet_limit) + " facets");
+}
+
+}  // namespace detail
+
+/// What a simulation with these settings really does: small scenes are searched exhaustively, where that ends; in
+/// others short sequences are found from halves, and rays look for longer ones. Throws std::invalid_argument where
+/// exact discovery is asked for by name and cannot be had: what was asked for is never weakened in silence.
+inline SearchPlan plan_search(const PropagationSettings& propagation, const Scene& scene,
+                              SearchedFor searched_for = SearchedFor::links) {
+  if (propagation.discovery == Discovery::sampled) return {Discovery::sampled};
+  const std::size_t facets = scene.surface_count();
+  const bool is_small = facets <= automatic_exact_facet_limit(propagation);
+  if (is_small && search_ends(propagation, scene)) return {Discovery::exact, true};
+  const bool automatic = propagation.discovery == Discovery::automatic;
+  const int joined = automatic && searched_for == SearchedFor::maps ? 2 : most_joined_interactions;
+  if (halves_cover(joined, propagation)) return {Discovery::exact, false, joined};
+  if (automatic) return {Discovery::sampled, false, joined};
+  if (facets > exact_discovery_facet_limit) detail::refuse_many_facets(facets);
+  if (!search_ends(propagation, scene)) detail::refuse_endless_search(propagation, scene);
+  return {Discovery::exact, true};
 }
 
 /// Exact or sampled: whether a simulation with these settings finds every path. Throws as `plan_search` does.

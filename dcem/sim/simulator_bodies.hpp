@@ -72,5 +72,10 @@ DCEM_INLINE std::vector<RadioMap> Simulator::radio_maps(const ReceiverGrid& grid
                                                         WorkCounters* work) const {
   return body_->simulator.radio_maps(grid, progress, work);
 }
+DCEM_INLINE std::vector<RadioMap> Simulator::radio_maps(const ReceiverList& list,
+                                                        const std::function<void(std::size_t)>& progress,
+                                                        WorkCounters* work) const {
+  return body_->simulator.radio_maps(list, progress, work);
+}
 
 }  // namespace dcem

@@ -64,21 +64,24 @@ Simulator make_simulator(Job& job, const ScenarioOptions& options) {
   }
 }
 
-void require_grid_memory(const io::Scenario& scenario, const std::string& file, double point_bytes) {
+void require_memory(const std::string& file, const std::string& what, std::size_t points, double point_bytes) {
   const double available_bytes = memory_of_machine_bytes();
-  for (const ReceiverGrid& grid : scenario.grids) {
-    const double needed_bytes = point_bytes * static_cast<double>(grid.size());
-    if (needed_bytes <= available_bytes) continue;
-    throw io::InputError(file, "grid '" + grid.id + "': " + std::to_string(grid.size()) + " points need " +
-                                   gigabytes(needed_bytes) + "; expected less than the " + gigabytes(available_bytes) +
-                                   " of this machine's memory");
-  }
+  const double needed_bytes = point_bytes * static_cast<double>(points);
+  if (needed_bytes <= available_bytes) return;
+  throw io::InputError(file, what + ": " + std::to_string(points) + " points need " + gigabytes(needed_bytes) +
+                                 "; expected less than the " + gigabytes(available_bytes) +
+                                 " of this machine's memory");
 }
 
 void expand_grids(io::Scenario& scenario, const std::string& file) {
   const auto transmitters = static_cast<double>(scenario.scene.transmitters().size());
-  require_grid_memory(scenario, file, sizeof(Device) + transmitters * sizeof(LinkResult));
   for (const ReceiverGrid& grid : scenario.grids) {
+    require_memory(file, "grid '" + grid.id + "'", grid.size(), sizeof(Device) + transmitters * sizeof(LinkResult));
+  }
+  for (const ReceiverGrid& grid : scenario.grids) {
+    if (grid.samples_per_cell() > 1) {
+      scenario.warnings.push_back("grid '" + grid.id + "': samples are for maps; here each cell has its centre alone");
+    }
     for (std::size_t row = 0; row < grid.rows(); ++row) {
       for (std::size_t column = 0; column < grid.columns(); ++column) {
         try {

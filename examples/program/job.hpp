@@ -20,11 +20,12 @@ struct Job {
 };
 Job prepare_job(const ScenarioOptions& options);
 
-/// Throws InputError, with the memory that it would take, where a grid whose points take `point_bytes` each is more
-/// than this machine holds.
-void require_grid_memory(const io::Scenario& scenario, const std::string& file, double point_bytes);
+/// Throws InputError, with the memory that it would take, where `points` of a grid or a list that take `point_bytes`
+/// each are more than this machine holds. `what` as in "grid 'area'".
+void require_memory(const std::string& file, const std::string& what, std::size_t points, double point_bytes);
 
-/// Every point of every grid becomes a receiver of the scene. Throws InputError with the name of the scenario file.
+/// Every point of every grid becomes a receiver of the scene, of a cell with several samples its centre, which is a
+/// warning. Throws InputError with the name of the scenario file.
 void expand_grids(io::Scenario& scenario, const std::string& file);
 
 /// Takes the scene out of the job. What the simulator refuses is an InputError that names the scenario file.

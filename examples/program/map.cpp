@@ -1,4 +1,4 @@
-/// `dcem map`: a coverage map per grid, transmitter and frame, and what all transmitters together do.
+/// `dcem map`: a coverage map per grid or list of points, transmitter and frame, and what all transmitters together do.
 #include <chrono>
 #include <iostream>
 #include <set>
@@ -24,28 +24,60 @@ std::optional<std::size_t> numbered(const Job& job, std::size_t frame) {
   return job.frames.count() > 1 ? std::optional(frame) : std::nullopt;
 }
 
+/// What maps are asked of: grids, and lists of points.
+struct MapOrders {
+  const std::vector<ReceiverGrid>& grids;
+  const std::vector<ReceiverList>& lists;
+
+  /// Points that are computed, samples of cells among them.
+  std::size_t points() const {
+    std::size_t sum = 0;
+    for (const ReceiverGrid& grid : grids) sum += grid.size() * grid.samples_per_cell();
+    for (const ReceiverList& list : lists) sum += list.receivers.size();
+    return sum;
+  }
+  std::size_t cells() const {
+    std::size_t sum = 0;
+    for (const ReceiverGrid& grid : grids) sum += grid.size();
+    return sum;
+  }
+  /// `visit(id, "grid 'id'")`, or with "list".
+  template <typename Visit>
+  void for_each(Visit&& visit) const {
+    for (const ReceiverGrid& grid : grids) visit(grid.id, "grid '" + grid.id + "'");
+    for (const ReceiverList& list : lists) visit(list.id, "list '" + list.id + "'");
+  }
+};
+
 // Two ids may differ in a way that their file names do not, as in grids "a" and "a_b" with transmitters "b_c" and "c".
 // The names of what is over all transmitters are taken as well.
-void check_names(const Job& job, const std::string& file) {
+void check_names(const Scene& scene, const MapOrders& orders, const std::string& file) {
   std::set<std::string> names;
-  const auto take = [&](const ReceiverGrid& grid, const std::string& kind, const std::string& id) {
-    const std::string name = io::map_name(grid.id, id, {});
+  const auto take = [&](const std::string& id, const std::string& what, const std::string& kind,
+                        const std::string& part) {
+    const std::string name = io::map_name(id, part, {});
     if (names.insert(name).second) return;
-    throw io::InputError(file, "grid '" + grid.id + "' and " + kind + "'" + id + "' give the file name '" + name +
+    throw io::InputError(file, what + " and " + kind + "'" + part + "' give the file name '" + name +
                                    "' a second time; expected ids that keep the names apart");
   };
-  for (const ReceiverGrid& grid : job.scenario.grids) {
-    for (const char* part : {best_server_part, sinr_part, distribution_part}) take(grid, "", part);
-  }
-  for (const ReceiverGrid& grid : job.scenario.grids) {
-    for (const Device& transmitter : job.scenario.scene.transmitters()) take(grid, "transmitter ", transmitter.id);
-  }
+  orders.for_each([&](const std::string& id, const std::string& what) {
+    for (const char* part : {best_server_part, sinr_part, distribution_part}) take(id, what, "", part);
+  });
+  orders.for_each([&](const std::string& id, const std::string& what) {
+    for (const Device& transmitter : scene.transmitters()) take(id, what, "transmitter ", transmitter.id);
+  });
 }
 
-std::size_t point_count(const io::Scenario& scenario) {
-  std::size_t points = 0;
-  for (const ReceiverGrid& grid : scenario.grids) points += grid.size();
-  return points;
+/// While a map is folded to cells there are both.
+void check_memory(const Scene& scene, const MapOrders& orders, const std::string& file) {
+  const double point_bytes = static_cast<double>(scene.transmitters().size()) * sizeof(RadioMapPoint);
+  for (const ReceiverGrid& grid : orders.grids) {
+    const std::size_t samples = grid.samples_per_cell();
+    require_memory(file, "grid '" + grid.id + "'", grid.size() * (samples > 1 ? samples + 1 : 1), point_bytes);
+  }
+  for (const ReceiverList& list : orders.lists) {
+    require_memory(file, "list '" + list.id + "'", list.receivers.size(), point_bytes);
+  }
 }
 
 void add_figures(const RadioMap& map, io::FrameFigures& figures) {
@@ -57,7 +89,7 @@ void add_figures(const RadioMap& map, io::FrameFigures& figures) {
   }
 }
 
-/// Writes the files of the maps of one frame.
+/// Writes the files of the maps of one frame. Pictures and rasters are of grids alone.
 class MapFiles {
  public:
   MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& simulator, const Frame& frame)
@@ -90,41 +122,42 @@ class MapFiles {
   }
 
   std::string name_of(const CombinedMap& map, const char* part) const {
-    return io::map_name(map.grid.id, part, number_);
+    return io::map_name(map.places.id(), part, number_);
   }
 
   void write_one(const RadioMap& map) {
-    const std::string name = io::map_name(map.grid.id, map.transmitter, number_);
+    const std::string name = io::map_name(map.places.id(), map.transmitter, number_);
     if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_map_csv(file, map, frequency_hz_); });
     if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_map_npz(file, map, frequency_hz_); });
-    if (wanted_.asc) put(name + ".asc", [&](auto& file) { io::write_map_asc(file, map); });
+    if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_map_asc(file, map); });
     const auto draw = [&](auto& file) {
       io::write_heat_map_png(io::map_picture(map, scene_, frame_, frequency_hz_, time_s_), file);
     };
-    if (wanted_.png) put(name + ".png", draw);
+    if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
   }
 
   void write_best_server(const CombinedMap& map) {
     const std::string name = name_of(map, best_server_part);
     if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_best_server_csv(file, map); });
     if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_best_server_npz(file, map); });
-    if (wanted_.asc) put(name + ".asc", [&](auto& file) { io::write_best_server_asc(file, map); });
+    if (wanted_.asc && map.places.is_grid())
+      put(name + ".asc", [&](auto& file) { io::write_best_server_asc(file, map); });
     const auto draw = [&](auto& file) {
       io::write_heat_map_png(io::best_server_picture(map, scene_, frame_, frequency_hz_, time_s_), file);
     };
-    if (wanted_.png) put(name + ".png", draw);
+    if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
   }
 
   void write_sinr(const CombinedMap& map) {
     const std::string name = name_of(map, sinr_part);
     if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_sinr_csv(file, map); });
     if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_sinr_npz(file, map); });
-    if (wanted_.asc) put(name + ".asc", [&](auto& file) { io::write_sinr_asc(file, map); });
+    if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_sinr_asc(file, map); });
     const auto draw = [&](auto& file) {
       const bool has_noise = noise_dbm_.has_value();
       io::write_heat_map_png(io::sinr_picture(map, scene_, frame_, frequency_hz_, has_noise, time_s_), file);
     };
-    if (wanted_.png) put(name + ".png", draw);
+    if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
   }
 
   io::OutputFolder& folder_;
@@ -137,22 +170,24 @@ class MapFiles {
   std::optional<double> noise_dbm_;
 };
 
-io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, Simulator& simulator, const Frame& frame,
-                           io::ViewerWriter* viewer, io::ProgressBar& bar) {
+io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, const MapOrders& orders, Simulator& simulator,
+                           const Frame& frame, io::ViewerWriter* viewer, io::ProgressBar& bar) {
   const FrameResult result = simulator.advance(frame);
   io::FrameFigures figures = io::figures_of(result);
   if (viewer != nullptr) viewer->add(frame, result);
-  for (const ReceiverGrid& grid : job.scenario.grids) {
+  const auto make = [&](const auto& places) {
     const auto start = std::chrono::steady_clock::now();
     const auto maps = simulator.radio_maps(
-        grid, [&](std::size_t points) { bar.advance(points); }, &figures.work);
+        places, [&](std::size_t points) { bar.advance(points); }, &figures.work);
     figures.solve_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (const RadioMap& map : maps) {
       add_figures(map, figures);
-      if (viewer != nullptr) viewer->add(map);
+      if (viewer != nullptr && map.places.is_grid()) viewer->add(map);
     }
     MapFiles(folder, job, simulator, frame).write(maps);
-  }
+  };
+  for (const ReceiverGrid& grid : orders.grids) make(grid);
+  for (const ReceiverList& list : orders.lists) make(list);
   return figures;
 }
 
@@ -160,23 +195,30 @@ io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, Simulator& 
 
 void map_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
-  if (job.scenario.grids.empty()) {
-    throw io::InputError(options.scenario, "no receiver is a grid; expected one with the key 'grid' to draw a map of");
+  const std::vector<ReceiverList> lists = io::take_point_lists(job.scenario);
+  const MapOrders orders{job.scenario.grids, lists};
+  if (orders.points() == 0) {
+    throw io::InputError(
+        options.scenario,
+        "no receiver is a grid or a list of points; expected one with the key 'grid', 'positions_m' or "
+        "'points_csv' to make a map of");
   }
-  check_names(job, options.scenario);
-  const auto transmitters = static_cast<double>(job.scenario.scene.transmitters().size());
-  require_grid_memory(job.scenario, options.scenario, transmitters * sizeof(RadioMapPoint));
+  check_names(job.scenario.scene, orders, options.scenario);
+  check_memory(job.scenario.scene, orders, options.scenario);
   io::FrameSource frames(job.scenario);
   Simulator simulator = make_simulator(job, options);
   io::OutputFolder folder(job.folder);
-  const std::size_t points = point_count(job.scenario);
-  io::RunSummary summary(run_facts(job, simulator, simulator.map_plan(), points), simulator.scene());
+  const std::size_t points = orders.points();
+  io::RunSummary summary(
+      run_facts(job, simulator, orders.grids.empty() ? simulator.plan() : simulator.map_plan(), points),
+      simulator.scene());
   print_warnings(job.scenario.warnings, options);
-  const auto viewer = make_viewer(folder, job, simulator, points * simulator.scene().transmitters().size());
+  const auto viewer = make_viewer(folder, job, simulator, orders.cells() * simulator.scene().transmitters().size());
   {
     io::ProgressBar bar("points", points * job.frames.count(), progress_mode(options));
     for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
-      summary.add(map_frame(folder, job, simulator, frames.frame(simulator.scene(), frame), viewer.get(), bar));
+      const Frame instant = frames.frame(simulator.scene(), frame);
+      summary.add(map_frame(folder, job, orders, simulator, instant, viewer.get(), bar));
     }
   }
   finish_viewer(viewer.get(), summary);

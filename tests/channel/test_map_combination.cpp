@@ -13,9 +13,9 @@ namespace {
 
 /// One map over a row of points; NaN: nothing arrives.
 RadioMap row_map(const std::string& id, const std::vector<double>& powers_dbm) {
-  RadioMap map{{"row", {0, 0, 1.5}, {1, 1}, {powers_dbm.size(), 1}, {}}, id, {}};
+  RadioMap map{ReceiverGrid{"row", {0, 0, 1.5}, {1, 1}, {powers_dbm.size(), 1}, {}}, id, {}};
   for (std::size_t column = 0; column < powers_dbm.size(); ++column) {
-    RadioMapPoint point{grid_point_m(map.grid, 0, column), false, {}, {}};
+    RadioMapPoint point{grid_point_m(map.grid(), 0, column), false, {}, {}};
     if (!std::isnan(powers_dbm[column])) {
       point.statistics.power_incoherent_dbm = powers_dbm[column];
       point.statistics.power_dbm = powers_dbm[column] - 1.0;
@@ -84,7 +84,7 @@ TEST_CASE("obstructed points stay obstructed, and maps of different grids do not
   for (RadioMap& map : maps) map.points[0].obstructed = true;
   CHECK(combine_maps(maps).points[0].obstructed);
   CHECK_FALSE(combine_maps(maps).points[1].obstructed);
-  maps[1].grid.origin_m.x = 0.5;
+  maps[1].points[0].position_m.x = 0.5;
   CHECK_THROWS_AS(combine_maps(maps), std::invalid_argument);
   CHECK_THROWS_AS(combine_maps({}), std::invalid_argument);
 }

@@ -23,9 +23,9 @@ namespace {
 
 /// Three columns and two rows. Point 1 is lit, point 5 is obstructed, elsewhere nothing arrives.
 RadioMap small_map(const std::string& id, double power_dbm) {
-  RadioMap map{{"area", {-1, 2, 1.5}, {0.5, 0.5}, {3, 2}, {}}, id, {}};
+  RadioMap map{ReceiverGrid{"area", {-1, 2, 1.5}, {0.5, 0.5}, {3, 2}, {}}, id, {}};
   for (std::size_t cell = 0; cell < 6; ++cell) {
-    map.points.push_back({grid_point_m(map.grid, cell / 3, cell % 3), cell == 5, {}, {}});
+    map.points.push_back({grid_point_m(map.grid(), cell / 3, cell % 3), cell == 5, {}, {}});
   }
   LinkStatistics& lit = map.points[1].statistics;
   lit.line_of_sight = true;

@@ -27,10 +27,10 @@ Scene scene_with_boxes(const std::vector<std::pair<Vec3, Vec3>>& sizes_and_place
 }
 
 RadioMap small_map() {
-  RadioMap map{{"area", {-1, 2, 1.5}, {0.5, 1}, {2, 2}, {}}, "bs", {}};
+  RadioMap map{ReceiverGrid{"area", {-1, 2, 1.5}, {0.5, 1}, {2, 2}, {}}, "bs", {}};
   for (std::size_t row = 0; row < 2; ++row) {
     for (std::size_t column = 0; column < 2; ++column) {
-      map.points.push_back({grid_point_m(map.grid, row, column), false, {}, {}});
+      map.points.push_back({grid_point_m(map.grid(), row, column), false, {}, {}});
     }
   }
   LinkStatistics& lit = map.points[1].statistics;

@@ -192,6 +192,71 @@ TEST_CASE("a map has a CSV and a picture, and its values are those of a run at i
   CHECK(map.find("\n-3,-12,1.5,,,,,,,0,0,\n") != std::string::npos);
 }
 
+TEST_CASE("a list of points has tables with the values of a run, line by line, and no pictures") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write(folder / "route.csv", "note,z_m,x_m,y_m\na,1.5,-3,-4\nb,1.5,-2.5,-4\n,1.5,-2,-9.5\n");
+  write_scenario(folder, moving_receiver + R"(,{"id":"route","points_csv":"route.csv"},)" +
+                             R"({"id":"probe","positions_m":[[1,2,3]]})");
+  REQUIRE(dcem_program(folder, "map street.json --frames 0:1 --quiet -o m").exit_code == 0);
+  REQUIRE(dcem_program(folder, "run street.json --frames 0:1 --quiet -o r").exit_code == 0);
+  for (const char* name : {"map_route_bs.csv", "map_route_bs.npz", "map_route_best_server.csv", "map_probe_bs.csv",
+                           "map_route_distribution.svg", "map_route_best_server.npz"}) {
+    CHECK(std::filesystem::exists(folder.path() / "m" / name));
+  }
+  for (const char* name : {"map_route_bs.png", "map_route_bs.asc", "map_route_best_server.png"}) {
+    CHECK_FALSE(std::filesystem::exists(folder.path() / "m" / name));
+  }
+  const std::string map = file_bytes(folder.path() / "m" / "map_route_bs.csv");
+  const std::string links = file_bytes(folder.path() / "r" / "links.csv");
+  CHECK(line_count(map) == 1 + 3);
+  CHECK(line_count(links) == 1 + 1 + 3 + 1);
+  std::size_t line = map.find('\n') + 1;
+  for (const char* id : {"route[0]", "route[1]", "route[2]"}) {
+    std::size_t begin = line;
+    for (int column = 0; column < 3; ++column) begin = map.find(',', begin) + 1;
+    const std::string powers = map.substr(begin, map.find(',', map.find(',', begin) + 1) - begin);
+    CHECK(powers.size() > 20);
+    const std::size_t link = links.find(",\"" + std::string(id) + "\",");
+    const std::size_t plain = links.find("," + std::string(id) + ",");
+    const std::size_t found = std::min(link, plain);
+    REQUIRE(found != std::string::npos);
+    CHECK(links.find("," + powers + ",", found) < links.find('\n', found));
+    line = map.find('\n', line) + 1;
+  }
+  CHECK(map.find("\n-3,-4,1.5,") != std::string::npos);
+}
+
+TEST_CASE("a map of cells with one sample is the map of points, byte by byte; a run takes their centres and says so") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  const auto with_samples = [](const std::string& samples) {
+    std::string text = grid_receiver;
+    return text.insert(text.rfind("}}"), ",\"samples\":" + samples);
+  };
+  write_scenario(folder, grid_receiver);
+  REQUIRE(dcem_program(folder, "map street.json --frames 0:1 --quiet -o points").exit_code == 0);
+  write_scenario(folder, with_samples("[1,1]"));
+  REQUIRE(dcem_program(folder, "map street.json --frames 0:1 --quiet -o one").exit_code == 0);
+  write_scenario(folder, with_samples("[3,2]"));
+  const Outcome outcome = dcem_program(folder, "map street.json --frames 0:1 --progress always -o six");
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(outcome.error.find("points: 234 of 234 in ") != std::string::npos);  // 3 x 13 cells of 3 x 2
+  for (const char* name : {"map_area_bs.csv", "map_area_bs.png", "map_area_bs.npz", "map_area_bs.asc"}) {
+    CAPTURE(name);
+    const std::string points = file_bytes(folder.path() / "points" / name);
+    CHECK(points == file_bytes(folder.path() / "one" / name));
+    CHECK(points != file_bytes(folder.path() / "six" / name));
+  }
+  // The rows at y = -10 and 10 are walls; of the cells around them, no sample is.
+  const std::string six = file_bytes(folder.path() / "six" / "map_area_bs.csv");
+  CHECK(line_count(six) == 1 + 3 * 13);
+  CHECK(six.find(",,,,,,,,,") == std::string::npos);
+  const Outcome run = dcem_program(folder, "run street.json --frames 0:1 --progress never -o run");
+  CHECK(run.exit_code == 0);
+  CHECK(run.error.find("warning: grid 'area': samples are for maps") != std::string::npos);
+}
+
 TEST_CASE("a map of several frames has the frame in its file names") {
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;

@@ -181,6 +181,29 @@ TEST_CASE("a device has one of five forms") {
   CHECK(scenario.grids[0].antenna.is_dual());
 }
 
+TEST_CASE("points of a list are receivers in their place, and a map can take them out") {
+  ScenarioCase files;
+  files.receivers = R"({"id": "a", "position_m": [5, 0, 1]}, {"id": "list", "positions_m": [[1, 2, 3], [4, 5, 6]]},)"
+                    R"({"id": "b", "position_m": [6, 0, 1]}, {"id": "c", "positions_m": [[7, 8, 9]]},)"
+                    R"({"id": "area", "grid": {"origin_m": [0, 0, 1], "spacing_m": [1, 1], "count": [2, 2],)"
+                    R"( "samples": [4, 3]}})";
+  io::Scenario scenario = files.load();
+  CHECK(scenario.grids.at(0).samples == std::array<std::size_t, 2>{4, 3});
+  const auto ids = [](std::span<const Device> devices) {
+    std::string text;
+    for (const Device& device : devices) text += device.id + " ";
+    return text;
+  };
+  CHECK(ids(scenario.scene.receivers()) == "a list[0] list[1] b c[0] ");
+  const std::vector<ReceiverList> lists = io::take_point_lists(scenario);
+  CHECK(ids(scenario.scene.receivers()) == "a b ");
+  REQUIRE(lists.size() == 2);
+  CHECK(lists[0].id == "list");
+  CHECK(ids(lists[0].receivers) == "list[0] list[1] ");
+  CHECK(ids(lists[1].receivers) == "c[0] ");
+  CHECK(io::take_point_lists(scenario).empty());
+}
+
 TEST_CASE("every polarization has a name") {
   const auto read = [](const std::string& text) {
     ScenarioCase files;

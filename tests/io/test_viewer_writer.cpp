@@ -234,7 +234,7 @@ TEST_CASE("a map stands in the page point by point, with what is inside an objec
   io::ViewerWriter writer(output, scene, {"area", 28e9, 0, 1, 6}, {});
   const Frame frame = scene.frame_at(0.0, 0);
   writer.add(frame, FrameResult{});
-  RadioMap map{{"area", {400040, 10, 1.5}, {2.0, 1.0}, {3, 2}, {}}, "mast", std::vector<RadioMapPoint>(6)};
+  RadioMap map{ReceiverGrid{"area", {400040, 10, 1.5}, {2.0, 1.0}, {3, 2}, {}}, "mast", std::vector<RadioMapPoint>(6)};
   for (std::size_t point = 0; point < 6; ++point) {
     map.points[point].statistics.power_incoherent_dbm = -60.0 - static_cast<double>(point);
   }

@@ -2,10 +2,12 @@
 /// How a `BasicSimulator` makes maps; included by basic_simulator.hpp.
 #include <algorithm>
 
+#include "dcem/channel/cell_average.hpp"
 #include "dcem/paths/halves/crowd_joiner.hpp"
 #include "dcem/paths/halves/crowd_triples.hpp"
 #include "dcem/paths/query/embedded_edges.hpp"
 #include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/detail/list_groups.hpp"
 #include "dcem/sim/detail/map_groups.hpp"
 
 namespace dcem {
@@ -62,45 +64,87 @@ struct BasicSimulator<Surface, Index>::MapShare {
   std::vector<CrowdBeams> beams;  ///< none where no sequences of three elements are joined
 };
 
+/// What is asked of a map: where, how, and the receiver at each point. On a grid, points where none could stand are
+/// left out; those of a list are devices, mounted ones among them, and all have values.
+template <SurfaceModel Surface, SpatialIndex Index>
+struct BasicSimulator<Surface, Index>::MapOrder {
+  MapPlaces places;
+  const SearchPlan& plan;
+  std::function<Vec3(std::size_t)> position_m;
+  std::function<Device(std::size_t)> receiver;  ///< without an array: maps hold no channel between elements
+};
+
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverGrid& grid,
                                                                  const std::function<void(std::size_t)>& progress,
                                                                  WorkCounters* work) const {
-  // Looking at an edge costs several microseconds; in a city it saves about a tenth of a millisecond per point.
-  const bool looks_for_embedded = settings_.share_map_work && diffraction_order(settings_.propagation) > 0 &&
-                                  grid.size() >= scene_.wedges().size() / 10;
-  TransmitterEnds transmitters = transmitter_ends(
-      {}, {}, map_plan_, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
-  // Maps hold no channel between elements, and their powers are those of one: none is computed.
-  for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
+  if (grid.samples_per_cell() > 1) {
+    std::vector<RadioMap> maps = radio_maps(sample_grid(grid), progress, work);
+    for (RadioMap& map : maps) map = cell_averages(grid, map);
+    return maps;
+  }
   ReceiverGrid single = grid;
   single.antenna.array = {};
+  const std::size_t columns = grid.columns();
+  return solve_map(
+      {grid, map_plan_, [&](std::size_t cell) { return grid_point_m(grid, cell / columns, cell % columns); },
+       [&](std::size_t cell) { return grid_receiver(single, cell / columns, cell % columns); }},
+      progress, work);
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverList& list,
+                                                                 const std::function<void(std::size_t)>& progress,
+                                                                 WorkCounters* work) const {
+  const auto position_m = [&](std::size_t point) {
+    return scene_.device_state(list.receivers[point], frame_).position_m;
+  };
+  const auto receiver = [&](std::size_t point) {
+    Device device = list.receivers[point];
+    device.antenna.array = {};
+    return device;
+  };
+  return solve_map({{list.id, list.receivers.size()}, plan_, position_m, receiver}, progress, work);
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& order,
+                                                                const std::function<void(std::size_t)>& progress,
+                                                                WorkCounters* work) const {
+  const std::size_t size = order.places.size();
+  const bool is_grid = order.places.is_grid();
+  // Looking at an edge costs several microseconds; in a city it saves about a tenth of a millisecond per point.
+  const bool looks_for_embedded =
+      settings_.share_map_work && diffraction_order(settings_.propagation) > 0 && size >= scene_.wedges().size() / 10;
+  TransmitterEnds transmitters = transmitter_ends(
+      {}, {}, order.plan, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
+  // Maps hold no channel between elements, and their powers are those of one: none is computed.
+  for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
   const Tracer tracer(scene_, index_);
   std::vector<Vec3> transmitters_m;
   std::vector<RadioMap> maps;
   for (std::size_t index = 0; index < transmitters.radio.size(); ++index) {
     if (transmitters.link[index]) transmitters_m.push_back(transmitters.radio[index].position_m);
-    maps.push_back({grid, scene_.transmitters()[index].id, std::vector<RadioMapPoint>(grid.size())});
+    maps.push_back({order.places, scene_.transmitters()[index].id, std::vector<RadioMapPoint>(size)});
   }
   const ObstructionTest<Index> obstruction(tracer, index_, transmitters_m);
-  std::vector<char> open(grid.size(), 0);
-  pool_->for_each(grid.rows(), [&](std::size_t row, unsigned) {
-    for (std::size_t column = 0; column < grid.columns(); ++column) {
-      const std::size_t cell = row * grid.columns() + column;
-      const Vec3 position_m = grid_point_m(grid, row, column);
-      open[cell] = obstruction.obstructed(position_m) ? 0 : 1;
-      for (RadioMap& map : maps) map.points[cell] = {position_m, open[cell] == 0, {}, {}};
+  std::vector<Vec3> positions_m(size);
+  std::vector<char> open(size, 0);
+  constexpr std::size_t block = 64;
+  pool_->for_each((size + block - 1) / block, [&](std::size_t number, unsigned) {
+    for (std::size_t point = number * block; point < std::min(size, (number + 1) * block); ++point) {
+      positions_m[point] = order.position_m(point);
+      open[point] = obstruction.obstructed(positions_m[point]) ? 0 : 1;
+      for (RadioMap& map : maps) map.points[point] = {positions_m[point], is_grid && open[point] == 0, {}, {}};
     }
   });
-  const auto position_m = [&](std::size_t cell) {
-    return grid_point_m(grid, cell / grid.columns(), cell % grid.columns());
+  const bool shares_views = order.plan.joined > 0 && settings_.share_map_work && !transmitters.halves.empty();
+  const auto is_free = [&](std::size_t from, std::size_t to) {
+    return shares_views && !index_.occluded(segment_between(positions_m[from], positions_m[to]), {}, nullptr);
   };
-  const bool shares_views = map_plan_.joined > 0 && settings_.share_map_work && !transmitters.halves.empty();
-  const std::vector<std::vector<std::size_t>> groups =
-      detail::map_groups(grid, open, [&](std::size_t from, std::size_t to) {
-        return shares_views && !index_.occluded(segment_between(position_m(from), position_m(to)), {}, nullptr);
-      });
-  if (progress) progress(static_cast<std::size_t>(std::ranges::count(open, 0)));
+  const std::vector<std::vector<std::size_t>> groups = is_grid ? detail::map_groups(order.places.grid(), open, is_free)
+                                                               : detail::list_groups(positions_m, open, is_free);
+  if (progress && is_grid) progress(static_cast<std::size_t>(std::ranges::count(open, 0)));
   std::optional<MapShare> share;
   if (shares_views) share.emplace(*this, transmitters);
   std::vector<WorkCounters> spent(groups.size());
@@ -108,15 +152,15 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverG
   pool_->for_each(groups.size(), [&](std::size_t number, unsigned worker) {
     const std::vector<std::size_t>& group = groups[number];
     std::vector<Vec3> points_m;
-    for (const std::size_t cell : group) points_m.push_back(position_m(cell));
+    for (const std::size_t point : group) points_m.push_back(positions_m[point]);
     typename MapShare::Joined joined;
     if (share && group.size() > 1) joined = share->join(*this, points_m, worker, spent[number]);
     for (std::size_t at = 0; at < group.size(); ++at) {
-      const std::size_t cell = group[at];
+      const std::size_t point = group[at];
       const Solved solved = solve_receiver(
-          grid_receiver(single, cell / grid.columns(), cell % grid.columns()), cell, transmitters, nullptr,
+          order.receiver(point), point, transmitters, nullptr,
           {rooms.empty() ? nullptr : &rooms[worker], joined.empty() ? std::span<const SequenceList>{} : joined[at]});
-      for (const LinkResult& link : solved.links) maps[link.transmitter].points[cell] = map_point(link, points_m[at]);
+      for (const LinkResult& link : solved.links) maps[link.transmitter].points[point] = map_point(link, points_m[at]);
       spent[number] += solved.work;
     }
     if (progress) progress(group.size());

@@ -36,7 +36,7 @@ void write_csv(AtomicFile& file, const CombinedMap& map, std::string_view header
 
 void write_npz(AtomicFile& file, const CombinedMap& map, const char* first_name, Value first, const char* second_name,
                Value second) {
-  MapArrays arrays(map.grid, map.points);
+  MapArrays arrays(map.places, map.points);
   arrays.add_counts("tx", [](const CombinedMapPoint& point) { return point.server.value_or(0); });
   arrays.add_flags("served", [](const CombinedMapPoint& point) { return point.server.has_value(); });
   arrays.add_flags("obstructed", [](const CombinedMapPoint& point) { return point.obstructed; });
@@ -60,7 +60,7 @@ std::vector<double> values_of(const CombinedMap& map, Get&& get) {
 
 HeatMap picture_without_values(const CombinedMap& map, const MapOccasion& occasion, const std::string& what) {
   HeatMap picture =
-      empty_map_picture(map.grid, occasion, map.grid.id + ": " + what, [](const std::string&) { return true; });
+      empty_map_picture(map.grid(), occasion, map.places.id() + ": " + what, [](const std::string&) { return true; });
   for (const CombinedMapPoint& point : map.points) picture.hatched.push_back(point.obstructed ? 1 : 0);
   return picture;
 }
@@ -95,11 +95,11 @@ void write_sinr_npz(AtomicFile& file, const CombinedMap& map) {
 }
 
 void write_best_server_asc(AtomicFile& file, const CombinedMap& map) {
-  write_esri_grid(file, map.grid, values_of(map, server_number));
+  write_esri_grid(file, map.grid(), values_of(map, server_number));
 }
 
 void write_sinr_asc(AtomicFile& file, const CombinedMap& map) {
-  write_esri_grid(file, map.grid, values_of(map, [](const CombinedMapPoint& point) { return point.sinr_db; }));
+  write_esri_grid(file, map.grid(), values_of(map, [](const CombinedMapPoint& point) { return point.sinr_db; }));
 }
 
 HeatMap best_server_picture(const CombinedMap& map, const Scene& scene, const Frame& frame, double frequency_hz,

@@ -1,5 +1,5 @@
 #pragma once
-/// The arrays of a map over [row, column], collected for an NPZ file. Private to dcem::io.
+/// The arrays of a map over [row, column] or [point], collected for an NPZ file. Private to dcem::io.
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dcem/channel/radio_map.hpp"
 #include "dcem/io/npz_writer.hpp"
-#include "dcem/scene/device.hpp"
 
 namespace dcem::io {
 
@@ -18,14 +18,14 @@ template <typename Point>
 class MapArrays {
  public:
   /// The points outlive the arrays.
-  MapArrays(const ReceiverGrid& grid, std::span<const Point> points)
-      : shape_{grid.rows(), grid.columns()}, points_(points), writer_(NpzCompression::deflate) {
+  MapArrays(const MapPlaces& places, std::span<const Point> points)
+      : shape_(places.shape()), points_(points), writer_(NpzCompression::deflate) {
     add_numbers("x_m", [](const Point& point) { return std::optional(point.position_m.x); });
     add_numbers("y_m", [](const Point& point) { return std::optional(point.position_m.y); });
     add_numbers("z_m", [](const Point& point) { return std::optional(point.position_m.z); });
   }
-  MapArrays(const ReceiverGrid& grid, const std::vector<Point>& points)
-      : MapArrays(grid, std::span<const Point>(points)) {}
+  MapArrays(const MapPlaces& places, const std::vector<Point>& points)
+      : MapArrays(places, std::span<const Point>(points)) {}
 
   /// Absent values are NaN.
   template <typename Value>

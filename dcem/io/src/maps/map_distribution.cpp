@@ -44,7 +44,7 @@ std::string map_distribution_svg(std::span<const RadioMap> maps, const CombinedM
     parts.push_back(distribution_of("best server", combined.points,
                                     [](const CombinedMapPoint& point) { return point.power_incoherent_dbm; }));
   }
-  std::string title = combined.grid.id + ": received power";
+  std::string title = combined.places.id() + ": received power";
   if (time_s) title += ", t = " + format_fixed(*time_s, 3) + " s";
   std::vector<LineChart> charts = distribution_charts({title, "incoherent power", "dBm"}, parts);
   if (charts.empty()) charts.push_back(chart_of_nothing(title));

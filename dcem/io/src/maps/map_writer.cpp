@@ -79,7 +79,7 @@ void write_map_csv(AtomicFile& file, const RadioMap& map, double frequency_hz) {
 }
 
 void write_map_npz(AtomicFile& file, const RadioMap& map, double frequency_hz) {
-  MapArrays arrays(map.grid, map.points);
+  MapArrays arrays(map.places, map.points);
   const auto add = [&](const char* name, std::optional<double> LinkStatistics::*value) {
     arrays.add_numbers(name, [value](const RadioMapPoint& point) { return point.statistics.*value; });
   };
@@ -102,15 +102,15 @@ void write_map_asc(AtomicFile& file, const RadioMap& map) {
   std::vector<double> powers_dbm;
   powers_dbm.reserve(map.points.size());
   for (const RadioMapPoint& point : map.points) powers_dbm.push_back(point.statistics.power_dbm.value_or(no_number));
-  write_esri_grid(file, map.grid, powers_dbm);
+  write_esri_grid(file, map.grid(), powers_dbm);
 }
 
 HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame, double frequency_hz,
                     std::optional<double> time_s) {
   const MapOccasion occasion{scene, frame, frequency_hz, time_s};
-  HeatMap picture =
-      empty_map_picture(map.grid, occasion, map.grid.id + ", transmitter " + map.transmitter + ": incoherent power",
-                        [&](const std::string& id) { return id == map.transmitter; });
+  HeatMap picture = empty_map_picture(map.grid(), occasion,
+                                      map.places.id() + ", transmitter " + map.transmitter + ": incoherent power",
+                                      [&](const std::string& id) { return id == map.transmitter; });
   picture.label = "incoherent received power";
   for (const RadioMapPoint& point : map.points) {
     picture.values.push_back(point.statistics.power_incoherent_dbm.value_or(no_number));
@@ -123,6 +123,9 @@ std::string map_title_end(const ReceiverGrid& grid, const MapOccasion& occasion)
   std::string title = ", ";
   append_number(title, std::round(occasion.frequency_hz / 1e3) / 1e6);
   title += " GHz, z = " + format_fixed(grid.origin_m.z, 2) + " m";
+  if (grid.samples_per_cell() > 1) {
+    title += ", " + std::to_string(grid.samples[0]) + " x " + std::to_string(grid.samples[1]) + " points a cell";
+  }
   if (occasion.time_s) title += ", t = " + format_fixed(*occasion.time_s, 3) + " s";
   return title;
 }

@@ -23,7 +23,7 @@ template <typename Labelled>
 HeatMap empty_map_picture(const ReceiverGrid& grid, const MapOccasion& occasion, const std::string& what,
                           Labelled&& labelled);
 
-/// ", 30 GHz, z = 1.50 m" and, where there is one, the instant.
+/// ", 30 GHz, z = 1.50 m" and, where there are any, the samples of a cell and the instant.
 std::string map_title_end(const ReceiverGrid& grid, const MapOccasion& occasion);
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -74,7 +74,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   MotionReader motions(file.parent_path(), result.time.start_s);
   BodyLoader(root, file.parent_path(), motions, result).load();
   AntennaReader antennas(file.parent_path());
-  read_devices(root, motions, antennas, result);
+  read_devices(root, file.parent_path(), motions, antennas, result);
   motions.check_all_taken();
   reported_at(root.value(), [&] { validate(result.settings); });
   check_exact_discovery(result, root, command_line);
@@ -92,6 +92,23 @@ Scenario load_scenario(const std::filesystem::path& file, const ScenarioOverride
                               "receivers", "propagation", "output", "mobility", "links", "noise", "geo", "tree"});
   return read_scenario(file, root,
                        command_line.root().object({"--discovery", "--cache", "--rays", "--seed", "--output"}));
+}
+
+std::vector<ReceiverList> take_point_lists(Scenario& scenario) {
+  std::vector<Device> receivers = scenario.scene.take_receivers();
+  std::vector<ReceiverList> lists;
+  std::size_t next = 0;
+  const auto put_back_until = [&](std::size_t end) {
+    for (; next < end; ++next) scenario.scene.add_receiver(std::move(receivers[next]));
+  };
+  for (const PointList& list : scenario.point_lists) {
+    put_back_until(list.first);
+    lists.push_back({list.id, {}});
+    for (; next < list.first + list.count; ++next) lists.back().receivers.push_back(std::move(receivers[next]));
+  }
+  put_back_until(receivers.size());
+  scenario.point_lists.clear();
+  return lists;
 }
 
 }  // namespace dcem::io

@@ -4,6 +4,7 @@
 
 #include "dcem/channel/radio_map.hpp"
 #include "dcem/core/units.hpp"
+#include "dcem/io/src/scenario/points_csv.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
@@ -11,8 +12,9 @@ namespace dcem::io {
 
 namespace {
 
-/// Points of one grid; a map keeps what is written for each of them until it is done.
+/// Points of one grid, samples of its cells among them; a map keeps what is found at each of them until it is done.
 constexpr double most_grid_points = 1e8;
+constexpr long long most_samples = 16;  ///< of a cell along one axis
 /// What tables and pictures tell apart.
 constexpr double least_grid_spacing_m = 1e-6;
 /// Numbers in the channel matrix of one path: 16 MB.
@@ -29,8 +31,27 @@ std::size_t read_count(const JsonValue& value) {
   return static_cast<std::size_t>(value.integer(1, 1'000'000'000));
 }
 
+/// `samples`; one a cell where it is missing.
+std::array<std::size_t, 2> read_samples(const JsonObject& grid) {
+  const auto value = grid.find("samples");
+  if (!value) return {1, 1};
+  const auto samples = value->elements(2, "two whole numbers [along x, along y]");
+  return {static_cast<std::size_t>(samples[0].integer(1, most_samples)),
+          static_cast<std::size_t>(samples[1].integer(1, most_samples))};
+}
+
+void check_point_count(const JsonObject& object, const ReceiverGrid& grid) {
+  const double points = static_cast<double>(grid.count[0]) * static_cast<double>(grid.count[1]) *
+                        static_cast<double>(grid.samples_per_cell());
+  if (points <= most_grid_points) return;
+  const double gigabytes = points * static_cast<double>(sizeof(RadioMapPoint)) / 1e9;
+  object.at(grid.samples_per_cell() > 1 ? "samples" : "count")
+      .fail(std::to_string(std::llround(points)) + " points need " + std::to_string(std::llround(gigabytes)) +
+            " GB for each transmitter; expected at most " + std::to_string(std::llround(most_grid_points)) + " points");
+}
+
 ReceiverGrid read_grid(const JsonValue& value) {
-  const JsonObject object = value.object({"origin_m", "spacing_m", "count"});
+  const JsonObject object = value.object({"origin_m", "spacing_m", "count", "samples"});
   ReceiverGrid grid;
   grid.origin_m = object.at("origin_m").vector3(farthest_coordinate_m);
   const auto spacing = object.at("spacing_m").elements(2, "two numbers [along x, along y]");
@@ -39,13 +60,8 @@ ReceiverGrid read_grid(const JsonValue& value) {
     grid.spacing_m[axis] = spacing[axis].number({least_grid_spacing_m, 1e6});
     grid.count[axis] = read_count(count[axis]);
   }
-  const double points = static_cast<double>(grid.count[0]) * static_cast<double>(grid.count[1]);
-  if (points > most_grid_points) {
-    const double gigabytes = points * static_cast<double>(sizeof(RadioMapPoint)) / 1e9;
-    object.at("count").fail(std::to_string(std::llround(points)) + " points need " +
-                            std::to_string(std::llround(gigabytes)) + " GB for each transmitter; expected at most " +
-                            std::to_string(std::llround(most_grid_points)) + " points");
-  }
+  grid.samples = read_samples(object);
+  check_point_count(object, grid);
   const Vec3 last_m = grid_point_m(grid, grid.rows() - 1, grid.columns() - 1);
   if (!(glm::length(last_m) <= 2.0 * farthest_coordinate_m))
     value.fail("reaches too far; expected points within 1e9 m");
@@ -55,10 +71,12 @@ ReceiverGrid read_grid(const JsonValue& value) {
 /// Reads one entry of `transmitters` or `receivers`.
 class DeviceReader {
  public:
-  DeviceReader(const JsonValue& value, bool transmits, MotionReader& motions, AntennaReader& antennas, Scenario& result)
-      : object_(value.object({"id", "position_m", "positions_m", "grid", "attach_to", "offset_m", "sees_own_body",
-                              "velocity_mps", "motion", "power_dbm", "power_w", "antenna"})),
+  DeviceReader(const JsonValue& value, bool transmits, const std::filesystem::path& folder, MotionReader& motions,
+               AntennaReader& antennas, Scenario& result)
+      : object_(value.object({"id", "position_m", "positions_m", "points_csv", "grid", "attach_to", "offset_m",
+                              "sees_own_body", "velocity_mps", "motion", "power_dbm", "power_w", "antenna"})),
         transmits_(transmits),
+        folder_(folder),
         motions_(motions),
         antennas_(antennas),
         result_(result) {}
@@ -67,11 +85,14 @@ class DeviceReader {
     device_.id = object_.at("id").identifier();
     device_.antenna = antennas_.read(object_);
     read_power();
-    const std::string form = object_.exactly_one_of({"position_m", "positions_m", "grid", "attach_to", "motion"});
+    const std::string form =
+        object_.exactly_one_of({"position_m", "positions_m", "points_csv", "grid", "attach_to", "motion"});
     if (form != "attach_to") refuse({"offset_m", "sees_own_body"}, "attach_to");
-    if (form != "position_m" && form != "positions_m") refuse({"velocity_mps"}, "position_m or positions_m");
-    if (form == "position_m") add_at(device_.id, object_.at("position_m"));
-    if (form == "positions_m") add_list();
+    const bool stands = form == "position_m" || form == "positions_m" || form == "points_csv";
+    if (!stands) refuse({"velocity_mps"}, "position_m, positions_m or points_csv");
+    if (form == "position_m") add_at(device_.id, read_position_m(object_.at("position_m")));
+    if (form == "positions_m") add_list(read_positions_m());
+    if (form == "points_csv") add_list(read_points_m());
     if (form == "grid") add_grid();
     if (form == "attach_to") add_attached();
     if (form == "motion") add_moving(device_.id, motions_.read(object_.at("motion"), device_.id));
@@ -101,16 +122,31 @@ class DeviceReader {
     add(std::move(device));
   }
 
-  void add_at(const std::string& id, const JsonValue& position) {
-    const Pose pose{position.vector3(farthest_coordinate_m)};
-    add_moving(id, LinearMotion{pose, read_velocity_mps(object_), result_.time.start_s});
+  static Vec3 read_position_m(const JsonValue& position) { return position.vector3(farthest_coordinate_m); }
+
+  void add_at(const std::string& id, const Vec3& position_m) {
+    add_moving(id, LinearMotion{{position_m}, read_velocity_mps(object_), result_.time.start_s});
   }
 
-  void add_list() {
-    const auto positions = object_.at("positions_m").elements();
-    if (positions.empty()) object_.at("positions_m").fail("no position; expected at least one");
-    for (std::size_t index = 0; index < positions.size(); ++index) {
-      add_at(device_.id + "[" + std::to_string(index) + "]", positions[index]);
+  std::vector<Vec3> read_positions_m() const {
+    std::vector<Vec3> positions_m;
+    for (const JsonValue& position : object_.at("positions_m").elements()) {
+      positions_m.push_back(read_position_m(position));
+    }
+    if (positions_m.empty()) object_.at("positions_m").fail("no position; expected at least one");
+    return positions_m;
+  }
+
+  std::vector<Vec3> read_points_m() const {
+    return read_points_csv(existing_file(object_.at("points_csv"), folder_, "expected a table of points"));
+  }
+
+  void add_list(const std::vector<Vec3>& positions_m) {
+    if (!transmits_) {
+      result_.point_lists.push_back({device_.id, result_.scene.receivers().size(), positions_m.size()});
+    }
+    for (std::size_t index = 0; index < positions_m.size(); ++index) {
+      add_at(device_.id + "[" + std::to_string(index) + "]", positions_m[index]);
     }
   }
 
@@ -158,6 +194,7 @@ class DeviceReader {
 
   JsonObject object_;
   bool transmits_;
+  const std::filesystem::path& folder_;
   MotionReader& motions_;
   AntennaReader& antennas_;
   Scenario& result_;
@@ -165,11 +202,11 @@ class DeviceReader {
 };
 
 /// One id per entry; those of a list or a grid get their numbers only after that.
-void read_list(const JsonValue& list, bool transmits, MotionReader& motions, AntennaReader& antennas,
-               Scenario& result) {
+void read_list(const JsonValue& list, bool transmits, const std::filesystem::path& folder, MotionReader& motions,
+               AntennaReader& antennas, Scenario& result) {
   std::set<std::string> ids;
   for (const JsonValue& element : list.elements()) {
-    DeviceReader(element, transmits, motions, antennas, result).read();
+    DeviceReader(element, transmits, folder, motions, antennas, result).read();
     const JsonValue id = element.member("id");
     if (!ids.insert(id.text()).second) id.fail(in_quotes(id.text()) + " is there twice; expected a new id");
   }
@@ -197,9 +234,10 @@ void check_channel_size(const JsonValue& receivers, const Scenario& result) {
 
 }  // namespace
 
-void read_devices(const JsonObject& scenario, MotionReader& motions, AntennaReader& antennas, Scenario& result) {
-  read_list(scenario.at("transmitters"), true, motions, antennas, result);
-  read_list(scenario.at("receivers"), false, motions, antennas, result);
+void read_devices(const JsonObject& scenario, const std::filesystem::path& folder, MotionReader& motions,
+                  AntennaReader& antennas, Scenario& result) {
+  read_list(scenario.at("transmitters"), true, folder, motions, antennas, result);
+  read_list(scenario.at("receivers"), false, folder, motions, antennas, result);
   check_channel_size(scenario.at("receivers"), result);
 }
 

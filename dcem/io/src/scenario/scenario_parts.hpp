@@ -102,8 +102,9 @@ class AntennaReader {
 
 // scenario_devices.cpp
 
-/// Adds the transmitters and receivers to the scene, and the receiver grids beside it.
-void read_devices(const JsonObject& scenario, MotionReader& motions, AntennaReader& antennas, Scenario& result);
+/// Adds the transmitters and receivers to the scene, and the receiver grids beside it. Files are relative to `folder`.
+void read_devices(const JsonObject& scenario, const std::filesystem::path& folder, MotionReader& motions,
+                  AntennaReader& antennas, Scenario& result);
 
 // scenario_bodies.cpp
 

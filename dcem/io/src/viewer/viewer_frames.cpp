@@ -120,7 +120,7 @@ void ViewerFrames::add(const Scene& scene, const Frame& frame, const FrameResult
 
 void ViewerFrames::add(const RadioMap& map) {
   if (!keeps_last_) return;
-  const ReceiverGrid& grid = map.grid;
+  const ReceiverGrid& grid = map.grid();
   const Vec3 corner_m = grid.origin_m - 0.5 * Vec3(grid.spacing_m[0], grid.spacing_m[1], 0.0);
   const double step = static_cast<double>(map_step_);
   ViewedMap viewed{grid.id, map.transmitter, corner_m, {step * grid.spacing_m[0], step * grid.spacing_m[1]}, 0, 0, {},
