@@ -43,13 +43,15 @@ inline int most_interactions_that_end(PropagationSettings propagation, const Sce
 
 [[noreturn]] inline void refuse_endless_search(const PropagationSettings& propagation, const Scene& scene) {
   const double sequences = estimated_sequences(propagation, scene);
-  throw std::invalid_argument(
-      "discovery exact: " + std::to_string(scene.surface_count()) + " facets and " +
-      std::to_string(scene.wedges().size()) + " edges make about " + two_digits_of(sequences) + " sequences of up to " +
-      std::to_string(reflection_order(propagation)) + " reflections and " +
-      std::to_string(diffraction_order(propagation)) + " diffractions for a link, about " +
-      rough_duration(sequences / sequences_tried_per_s) + " of one thread; expected max_interactions " +
-      std::to_string(most_interactions_that_end(propagation, scene)) + " or less, or discovery sampled");
+  // Where there are edges, rays may propose more chains than can be tried, too.
+  const char* const otherwise = diffraction_order(propagation) == 0 ? ", or discovery sampled" : "";
+  throw std::invalid_argument("discovery exact: " + std::to_string(scene.surface_count()) + " facets and " +
+                              std::to_string(scene.wedges().size()) + " edges make about " + two_digits_of(sequences) +
+                              " sequences of up to " + std::to_string(reflection_order(propagation)) +
+                              " reflections and " + std::to_string(diffraction_order(propagation)) +
+                              " diffractions for a link, about " + rough_duration(sequences / sequences_tried_per_s) +
+                              " of one thread; expected max_interactions " +
+                              std::to_string(most_interactions_that_end(propagation, scene)) + " or less" + otherwise);
 }
 
 [[noreturn]] inline void refuse_many_facets(std::size_t facets) {

@@ -205,8 +205,9 @@ TEST_CASE("a list of points has the values of a run there, whatever neighbours s
     ReceiverList list{"route", {}};
     for (std::size_t index = 0; index < points; ++index) {
       const double along_m = static_cast<double>(index);
+      const double climb_m = 0.4 * static_cast<double>(index % 5);  // no plane, as a grid is
       const Vec3 place_m = index % 10 == 9 ? (corners_m[0] + corners_m[1] + corners_m[2]) / 3.0
-                                           : start_m + Vec3(0.9 * along_m, 0.2 * along_m, 0.0);
+                                           : start_m + Vec3(0.9 * along_m, 0.2 * along_m, climb_m);
       Device device = device_at("route[" + std::to_string(index) + "]", place_m);
       if (index % 10 == 8) device.motion = LinearMotion{{place_m}, Vec3(1.0, 0.0, 0.0), 0.0};
       list.receivers.push_back(device);
@@ -236,7 +237,7 @@ TEST_CASE("a list of points has the values of a run there, whatever neighbours s
       }
       paths += link.paths.size();
     }
-    CHECK(glm::distance(maps[0][0].points[8].position_m, start_m + Vec3(7.2 + 4.0, 1.6, 0.0)) < 1e-9);
+    CHECK(glm::distance(maps[0][0].points[8].position_m, start_m + Vec3(7.2 + 4.0, 1.6, 1.2)) < 1e-9);
     CHECK(paths > 100);
     MESSAGE(paths << " paths, " << work[0].sequences_solved << " sequences solved instead of "
                   << work[1].sequences_solved);
