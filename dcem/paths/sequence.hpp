@@ -44,10 +44,6 @@ inline std::size_t edge_count(std::span<const SequenceElement> sequence) {
 /// Many sequences, one after another.
 class SequenceList {
  public:
-  void clear() {
-    elements_.clear();
-    ends_.clear();
-  }
   void add(std::span<const SequenceElement> sequence) {
     elements_.insert(elements_.end(), sequence.begin(), sequence.end());
     ends_.push_back(elements_.size());

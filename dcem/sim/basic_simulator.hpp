@@ -46,10 +46,9 @@ class BasicSimulator {
   const SimulationSettings& settings() const { return settings_; }
   const Index& index() const { return index_; }
   const Surface& surface() const { return surface_; }
-  Discovery discovery() const { return plan_.discovery; }   ///< exact or sampled: what is really done for links
-  const SearchPlan& plan() const { return plan_; }          ///< how links are searched …
-  const SearchPlan& map_plan() const { return map_plan_; }  ///< … and the points of maps
-  CacheMode cache() const { return cache_; }                ///< off or seed: what is really remembered
+  Discovery discovery() const { return plan_.discovery; }  ///< exact or sampled: what is really done
+  const SearchPlan& plan() const { return plan_; }         ///< how links and the points of maps are searched
+  CacheMode cache() const { return cache_; }               ///< off or seed: what is really remembered
 
   /// Moves the scene to a frame and solves all links, starting from what is remembered of the frame before.
   FrameResult advance(const Frame& frame);
@@ -90,7 +89,6 @@ class BasicSimulator {
     std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
     std::span<const KeptHalf> halves;   ///< none where the plan has none
     std::vector<KeptHalf> own_halves;   ///< holds them where nothing is kept
-    SearchPlan plan;                    ///< how links to them are searched
     std::vector<char> embedded;         ///< edges that no path can use; empty where nobody has looked
     WorkCounters work;                  ///< what finding them took
   };
@@ -121,14 +119,17 @@ class BasicSimulator {
   void forget_replaced(const ChangeSet& changes, CacheCounters& counters);
   Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters,
                    std::span<PathCache> caches) const;
-  /// With `reach`, which has an entry per transmitter, edges that were within reach in frames before count, too.
-  /// `embedded` as in `EdgeRules`.
-  /// With `halves`, which has an entry per transmitter too, what is kept of them is used; otherwise they are made,
-  /// `fine` where very many receivers join them.
-  TransmitterEnds transmitter_ends(std::span<EdgeReach> reach, std::span<KeptHalf> halves, const SearchPlan& plan,
-                                   std::vector<char> embedded = {}, bool fine = false) const;
+  /// As so many receivers need them. With `reach`, which has an entry per transmitter, edges that were within reach in
+  /// frames before count, too. `embedded` as in `EdgeRules`.
+  /// With `halves`, which has an entry per transmitter too, what is kept of them is brought up to date; without, what
+  /// is kept is used where it is that of the frame, and otherwise they are made, `fine` where very many receivers join
+  /// them.
+  TransmitterEnds transmitter_ends(std::size_t receivers, std::span<EdgeReach> reach = {},
+                                   std::span<KeptHalf> halves = {}, std::vector<char> embedded = {},
+                                   bool fine = false) const;
   void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
-  void find_transmitter_halves(TransmitterEnds& ends, std::span<KeptHalf> halves, bool fine) const;
+  void find_transmitter_halves(TransmitterEnds& ends, std::size_t receivers, std::span<KeptHalf> halves,
+                               bool fine) const;
   /// Room for the halves of receivers, one per thread; empty where the plan has none.
   std::vector<ReceiverRoom> rooms_for_halves() const {
     return std::vector<ReceiverRoom>(plan_.joined > 0 ? std::max(1U, pool_->size()) : 0U);
@@ -138,7 +139,7 @@ class BasicSimulator {
     return Evaluator(scene_, surface_, propagation.path_loss, settings_.frequency_hz,
                      {propagation.diffraction.lossy_wedge, propagation.max_transmissions}, medium_);
   }
-  PathSearchSettings search_settings(const SearchPlan& plan, std::span<const char> embedded_edges = {}) const;
+  PathSearchSettings search_settings(std::span<const char> embedded_edges = {}) const;
   std::span<const std::optional<LinkEnd>> ends_beside(const Device& receiver, const TransmitterEnds& transmitters,
                                                       std::vector<std::optional<LinkEnd>>& others) const;
   /// Where a receiver's sequences of few interactions come from, where the plan has halves: they are joined in a room,
@@ -167,14 +168,15 @@ class BasicSimulator {
   Surface surface_;
   Index index_;
   MediumLoss medium_;
-  SearchPlan plan_, map_plan_;
+  SearchPlan plan_;
   CacheMode cache_;
   std::vector<std::uint32_t> moved_;       ///< triangles that the index has still to hear of
   std::vector<PathCache> caches_;          ///< one per receiver of the scene; none where the cache is off
   std::vector<EdgeReach> reach_;           ///< one per transmitter; none where the cache is off
   std::optional<FacetOutlines> outlines_;  ///< where the plan has halves
   std::unique_ptr<LaneScene> lanes_;       ///< the same; what is kept points to it, wherever the simulator is moved
-  std::vector<KeptHalf> halves_;           ///< one per transmitter, where the plan has them
+  std::vector<KeptHalf> halves_;           ///< one per transmitter, where the plan has them …
+  bool halves_are_current_ = false;        ///< … and whether they are those of the current frame
   Frame frame_;
   std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
 };
@@ -192,7 +194,6 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   check_surface_model();
   medium_ = MediumLoss(settings_.propagation.atmosphere, scene_.materials(), settings_.frequency_hz);
   plan_ = plan_search(settings_.propagation, scene_);
-  map_plan_ = plan_search(settings_.propagation, scene_, SearchedFor::maps);
   cache_ = resolve_cache(settings_.propagation, plan_.discovery);
   if (cache_ == CacheMode::seed) {
     caches_.resize(scene_.receivers().size());

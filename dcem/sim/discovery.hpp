@@ -66,16 +66,14 @@ inline int most_interactions_that_end(PropagationSettings propagation, const Sce
 /// What a simulation with these settings really does: small scenes are searched exhaustively, where that ends; in
 /// others short sequences are found from halves, and rays look for longer ones. Throws std::invalid_argument where
 /// exact discovery is asked for by name and cannot be had: what was asked for is never weakened in silence.
-inline SearchPlan plan_search(const PropagationSettings& propagation, const Scene& scene,
-                              SearchedFor searched_for = SearchedFor::links) {
+inline SearchPlan plan_search(const PropagationSettings& propagation, const Scene& scene) {
   if (propagation.discovery == Discovery::sampled) return {Discovery::sampled};
   const std::size_t facets = scene.surface_count();
   const bool is_small = facets <= automatic_exact_facet_limit(propagation);
   if (is_small && search_ends(propagation, scene)) return {Discovery::exact, true};
-  const bool automatic = propagation.discovery == Discovery::automatic;
-  const int joined = automatic && searched_for == SearchedFor::maps ? 2 : most_joined_interactions;
+  constexpr int joined = most_joined_interactions;
   if (halves_cover(joined, propagation)) return {Discovery::exact, false, joined};
-  if (automatic) return {Discovery::sampled, false, joined};
+  if (propagation.discovery == Discovery::automatic) return {Discovery::sampled, false, joined};
   if (facets > exact_discovery_facet_limit) detail::refuse_many_facets(facets);
   if (!search_ends(propagation, scene)) detail::refuse_endless_search(propagation, scene);
   return {Discovery::exact, true};

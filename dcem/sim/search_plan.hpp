@@ -11,8 +11,4 @@ struct SearchPlan {
   int joined = 0;           ///< sequences of up to so many elements, one edge at most, are all found from halves
 };
 
-/// What is searched for. A link over three mirrors and edges takes a quarter of a second in a city, which is too much
-/// for tens of thousands of points: there the third one is looked for by rays, unless `exact` is asked for by name.
-enum class SearchedFor { links, maps };
-
 }  // namespace dcem

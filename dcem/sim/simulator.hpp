@@ -30,9 +30,8 @@ class Simulator {
 
   const Scene& scene() const;
   const SimulationSettings& settings() const;
-  Discovery discovery() const;     ///< exact or sampled: what is really done for links
-  SearchPlan plan() const;         ///< how links are searched …
-  SearchPlan map_plan() const;     ///< … and the points of maps
+  Discovery discovery() const;     ///< exact or sampled: what is really done
+  SearchPlan plan() const;         ///< how links and the points of maps are searched
   CacheMode cache() const;         ///< off or seed: what is really remembered
   const WideIndex& index() const;  ///< over the scene's triangles (dcem/accel/wide_index.hpp)
 

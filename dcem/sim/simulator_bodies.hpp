@@ -33,11 +33,6 @@ DCEM_INLINE const SimulationSettings& Simulator::settings() const {
 DCEM_INLINE SearchPlan Simulator::plan() const {
   return body_->simulator.plan();
 }
-
-DCEM_INLINE SearchPlan Simulator::map_plan() const {
-  return body_->simulator.map_plan();
-}
-
 DCEM_INLINE Discovery Simulator::discovery() const {
   return body_->simulator.discovery();
 }

@@ -210,7 +210,7 @@ void map_scenario(const ScenarioOptions& options) {
   io::OutputFolder folder(job.folder);
   const std::size_t points = orders.points();
   io::RunSummary summary(
-      run_facts(job, simulator, orders.grids.empty() ? simulator.plan() : simulator.map_plan(), points),
+      run_facts(job, simulator, simulator.plan(), points),
       simulator.scene());
   print_warnings(job.scenario.warnings, options);
   const auto viewer = make_viewer(folder, job, simulator, orders.cells() * simulator.scene().transmitters().size());

@@ -82,20 +82,6 @@ TEST_CASE("small scenes are searched exhaustively; in others short paths are fou
   CHECK(exactly_searched_interactions(propagation, large) == 0);
 }
 
-TEST_CASE("a map looks for a third interaction by rays, unless exact is asked for by name") {
-  PropagationSettings propagation;  // two reflections and a diffraction
-  const Scene large = scene_with_facets(1001);
-  CHECK(plan_search(propagation, large).discovery == Discovery::exact);
-  const SearchPlan left_to_itself = plan_search(propagation, large, SearchedFor::maps);
-  CHECK(left_to_itself.discovery == Discovery::sampled);
-  CHECK(exactly_searched_interactions(propagation, left_to_itself) == 2);
-  propagation.discovery = Discovery::exact;
-  CHECK(plan_search(propagation, large, SearchedFor::maps).joined == 3);
-  propagation.discovery = Discovery::automatic;
-  propagation.max_interactions = 2;
-  CHECK(plan_search(propagation, large, SearchedFor::maps).discovery == Discovery::exact);
-}
-
 TEST_CASE("max_interactions counts when the order is judged") {
   PropagationSettings propagation;
   propagation.max_reflections = 10;

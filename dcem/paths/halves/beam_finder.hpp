@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/paths/halves/lanes.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 #include "dcem/paths/solve/edge_rules.hpp"
@@ -29,7 +30,8 @@ struct BeamSource {
   const LaneScene& lanes;
   const PathHalf& half;
   HalfSettings settings;
-  bool over_mirrors;  ///< look through the mirrors, too
+  bool over_mirrors;           ///< look through the mirrors, too
+  ThreadPool* pool = nullptr;  ///< looks through many mirrors at once; none: the calling thread does
 };
 
 /// What has been found, in the order in which it was.
@@ -38,6 +40,13 @@ struct BeamFinds {
   std::vector<EdgePart> parts;                      ///< seen directly; `edge`: the number of a wedge
   std::vector<EdgePart> lit;                        ///< `edge`: the place of the mirror that lights it
   std::vector<std::uint32_t> lit_edges;             ///< for each of them the number of the wedge
+
+  void append(const BeamFinds& more) {
+    pairs.insert(pairs.end(), more.pairs.begin(), more.pairs.end());
+    parts.insert(parts.end(), more.parts.begin(), more.parts.end());
+    lit.insert(lit.end(), more.lit.begin(), more.lit.end());
+    lit_edges.insert(lit_edges.end(), more.lit_edges.begin(), more.lit_edges.end());
+  }
 };
 
 class BeamFinder {
@@ -52,12 +61,14 @@ class BeamFinder {
 
   /// The parts of a layer's edges that may be seen directly.
   void find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const;
-  /// What may be seen through the mirrors `first` … `last` − 1 of the scenery and, where they are asked for, of bodies.
+  /// What may be seen through the mirrors `first` … `last` − 1 of the scenery and, where they are asked for, of bodies:
+  /// the same in the same order from any number of threads.
   void look_through(std::size_t first, std::size_t last, bool bodies, int most_pieces, BeamFinds& finds) const;
   /// What moves, over the first `count` mirrors: everything in their cones, without a view.
   void reach_bodies(std::size_t count, BeamFinds& finds) const;
 
  private:
+  void look_through_block(std::size_t first, std::size_t last, bool bodies, int most_pieces, BeamFinds& finds) const;
   template <typename Shows, typename Visit>
   static void for_each_shown(const Wedge& edge, const EdgePart& part, int most_pieces, Shows&& shows, Visit&& visit);
   template <typename ForEach>
@@ -150,6 +161,19 @@ void BeamFinder::find_lit_parts(std::uint32_t mirror, std::span<const FacetId> f
 
 inline void BeamFinder::look_through(std::size_t first, std::size_t last, bool bodies, int most_pieces,
                                      BeamFinds& finds) const {
+  constexpr std::size_t block = 64;
+  const std::size_t blocks = (last - first + block - 1) / block;
+  if (source_.pool == nullptr || blocks <= 1) return look_through_block(first, last, bodies, most_pieces, finds);
+  std::vector<BeamFinds> found(blocks);
+  source_.pool->for_each(blocks, [&](std::size_t number, unsigned) {
+    const std::size_t from = first + number * block;
+    look_through_block(from, std::min(last, from + block), bodies, most_pieces, found[number]);
+  });
+  for (const BeamFinds& one : found) finds.append(one);
+}
+
+inline void BeamFinder::look_through_block(std::size_t first, std::size_t last, bool bodies, int most_pieces,
+                                           BeamFinds& finds) const {
   Sight sight(view_pixels);
   std::vector<FacetId> facets;
   const auto show = [&](WedgeId id, const EdgePart& part, auto&& visit) {

@@ -15,6 +15,7 @@ struct HalfLists {
   bool over_mirrors = false;         ///< what is reached over mirrors, too
   bool at_once = false;              ///< all of it, now; otherwise of the scenery, when it has become worth while
   std::size_t receivers = 0;         ///< that join the half every time
+  ThreadPool* pool = nullptr;        ///< for lists: as in `BeamSource`
 };
 
 class KeptHalf {
@@ -35,7 +36,7 @@ class KeptHalf {
     end_ = end;
     if (wanted.lanes == nullptr) return;
     joins_ += wanted.receivers;
-    const BeamSource source{scene, outlines, *wanted.lanes, half_, settings, wanted.over_mirrors};
+    const BeamSource source{scene, outlines, *wanted.lanes, half_, settings, wanted.over_mirrors, wanted.pool};
     if (!has_lists_ && (wanted.at_once || pay(joins_))) {
       lists_.find_scenery(source);
       has_lists_ = true;

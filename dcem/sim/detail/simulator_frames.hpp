@@ -31,7 +31,9 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   frame_ = frame;
   result.update_time_s = update_watch.seconds();
   const detail::Stopwatch solve_watch;
-  Solved solved = solve_all(scene_.receivers(), transmitter_ends(reach_, halves_, plan_), caches_);
+  const TransmitterEnds transmitters = transmitter_ends(scene_.receivers().size(), reach_, halves_);
+  halves_are_current_ = !transmitters.halves.empty();
+  Solved solved = solve_all(scene_.receivers(), transmitters, caches_);
   result.links = std::move(solved.links);
   result.work = solved.work;
   result.cache += solved.cache;
@@ -51,6 +53,7 @@ TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
 
 template <SurfaceModel Surface, SpatialIndex Index>
 TreeUpdateReport BasicSimulator<Surface, Index>::update_index(const ChangeSet& changes) {
+  halves_are_current_ = false;
   for (const BodyId body : changes.moved) {
     const auto [first, last] = scene_.triangle_range(body);
     for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
@@ -82,10 +85,9 @@ void BasicSimulator<Surface, Index>::forget_replaced(const ChangeSet& changes, C
 
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::transmitter_ends(
-    std::span<EdgeReach> reach, std::span<KeptHalf> halves, const SearchPlan& plan, std::vector<char> embedded,
+    std::size_t receivers, std::span<EdgeReach> reach, std::span<KeptHalf> halves, std::vector<char> embedded,
     bool fine) const {
   TransmitterEnds ends;
-  ends.plan = plan;
   ends.embedded = std::move(embedded);
   for (const Device& device : scene_.transmitters()) {
     const DeviceState state = scene_.device_state(device, frame_);
@@ -94,37 +96,48 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
     ends.radio.push_back(detail::radio_end(device, state));
   }
   ends.reached.resize(ends.link.size());
-  const PathSearchSettings search = search_settings(ends.plan, ends.embedded);
+  const PathSearchSettings search = search_settings(ends.embedded);
   if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
-  if (plan.joined > 0 && search.max_interactions > 0) find_transmitter_halves(ends, halves, fine);
+  if (plan_.joined > 0 && search.max_interactions > 0) find_transmitter_halves(ends, receivers, halves, fine);
   return ends;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& ends, std::span<KeptHalf> halves,
-                                                             bool fine) const {
+void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& ends, std::size_t receivers,
+                                                             std::span<KeptHalf> halves, bool fine) const {
+  const PathSearchSettings search = search_settings(ends.embedded);
+  const bool triples = joins_triples(search);
+  const auto serves = [&](const KeptHalf& half) { return !triples || half.lists() != nullptr; };
+  if (halves.empty() && !fine && halves_are_current_ && std::ranges::all_of(halves_, serves)) {
+    ends.halves = halves_;
+    return;
+  }
   if (halves.empty()) {
     const std::size_t count = ends.link.size();
     ends.own_halves.assign(count,
                            KeptHalf(fine ? detail::fine_view_pixels_for(count) : detail::view_pixels_for(count)));
     halves = ends.own_halves;
   }
-  const PathSearchSettings search = search_settings(ends.plan, ends.embedded);
-  const bool triples = joins_triples(search);
   const bool over_mirrors = search.max_reflections >= 1 && search.max_interactions >= 2;
-  const HalfLists lists{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors, fine || triples,
-                        scene_.receivers().size()};
-  pool_->for_each(ends.link.size(), [&](std::size_t index, unsigned) {
+  const HalfLists lists{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors, fine || (triples && receivers > 0),
+                        receivers, pool_.get()};
+  const auto update = [&](std::size_t index, unsigned) {
     if (!ends.link[index]) return;
     halves[index].update(scene_, *outlines_, *ends.link[index], half_settings(search), lists);
-  });
+  };
+  // A few transmitters one after another, with all threads for each: lists are most of the work.
+  if (ends.link.size() >= pool_->size()) {
+    pool_->for_each(ends.link.size(), update);
+  } else {
+    for (std::size_t index = 0; index < ends.link.size(); ++index) update(index, 0);
+  }
   ends.halves = halves;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const {
   const Tracer tracer(scene_, index_);
-  const PathSearchSettings search = search_settings(ends.plan, ends.embedded);
+  const PathSearchSettings search = search_settings(ends.embedded);
   if (reach.empty()) {
     ends.own_reach.resize(ends.link.size());
     reach = ends.own_reach;
@@ -142,10 +155,9 @@ void BasicSimulator<Surface, Index>::find_transmitter_reach(TransmitterEnds& end
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-PathSearchSettings BasicSimulator<Surface, Index>::search_settings(const SearchPlan& plan,
-                                                                   std::span<const char> embedded_edges) const {
+PathSearchSettings BasicSimulator<Surface, Index>::search_settings(std::span<const char> embedded_edges) const {
   const PropagationSettings& propagation = settings_.propagation;
-  return {plan.exhaustive,
+  return {plan_.exhaustive,
           reflection_order(propagation),
           propagation.max_transmissions,
           propagation.rays,
@@ -155,7 +167,7 @@ PathSearchSettings BasicSimulator<Surface, Index>::search_settings(const SearchP
           interaction_order(propagation),
           {degrees_to_radians(propagation.diffraction.min_exterior_angle_deg), propagation.diffraction.free_edges,
            propagation.diffraction.region == DiffractionRegion::shadow, embedded_edges},
-          plan.joined};
+          plan_.joined};
 }
 
 }  // namespace dcem

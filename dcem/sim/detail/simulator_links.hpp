@@ -11,7 +11,7 @@ namespace dcem {
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const Device> receivers,
                                                               WorkCounters* work) const {
-  Solved solved = solve_all(receivers, transmitter_ends({}, {}, plan_), {});
+  Solved solved = solve_all(receivers, transmitter_ends(receivers.size()), {});
   if (work != nullptr) *work += solved.work;
   return std::move(solved.links);
 }
@@ -64,7 +64,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   }
   SearchCounters counters;
   const LinkEnd end = link_end(state, counters.solver.traversal);
-  const PathSearchSettings search = search_settings(transmitters.plan, transmitters.embedded);
+  const PathSearchSettings search = search_settings(transmitters.embedded);
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
   std::span<const SequenceList> joined = proposals.joined;
@@ -145,7 +145,7 @@ void BasicSimulator<Surface, Index>::trace_elements(std::span<PathContribution> 
                                                     const DeviceEnd& to, const Evaluator& evaluator) const {
   if (settings_.propagation.antenna_array != ArrayChannel::exact || !has_array(from.radio, to.radio)) return;
   const Tracer tracer(scene_, index_);
-  const PathSearchSettings search = search_settings(plan_);
+  const PathSearchSettings search = search_settings();
   PathSolver<Index> solver(tracer, search.max_transmissions, search.edges);
   TraversalCounters counters;
   const double length_m = wavelength_m(settings_.frequency_hz);
@@ -164,7 +164,7 @@ std::optional<PathContribution> BasicSimulator<Surface, Index>::solve_path(std::
   const DeviceState from_state = scene_.device_state(from, frame_), to_state = scene_.device_state(to, frame_);
   if (!from_state.present || !to_state.present) return std::nullopt;
   const Tracer tracer(scene_, index_);
-  const PathSearchSettings search = search_settings(plan_);
+  const PathSearchSettings search = search_settings();
   PathSolver<Index> solver(tracer, search.max_transmissions, search.edges);
   TraversalCounters counters;
   const LinkEnd from_link = link_end(from_state, counters), to_link = link_end(to_state, counters);

@@ -30,7 +30,7 @@ struct BasicSimulator<Surface, Index>::MapShare {
 
   MapShare(const BasicSimulator& simulator, const TransmitterEnds& ends)
       : transmitters(ends),
-        search(simulator.search_settings(ends.plan, ends.embedded)),
+        search(simulator.search_settings(ends.embedded)),
         crowds(std::max(1U, simulator.pool_->size())),
         beams(joins_triples(search) ? crowds.size() : 0) {}
 
@@ -69,7 +69,6 @@ struct BasicSimulator<Surface, Index>::MapShare {
 template <SurfaceModel Surface, SpatialIndex Index>
 struct BasicSimulator<Surface, Index>::MapOrder {
   MapPlaces places;
-  const SearchPlan& plan;
   std::function<Vec3(std::size_t)> position_m;
   std::function<Device(std::size_t)> receiver;  ///< without an array: maps hold no channel between elements
 };
@@ -86,10 +85,9 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverG
   ReceiverGrid single = grid;
   single.antenna.array = {};
   const std::size_t columns = grid.columns();
-  return solve_map(
-      {grid, map_plan_, [&](std::size_t cell) { return grid_point_m(grid, cell / columns, cell % columns); },
-       [&](std::size_t cell) { return grid_receiver(single, cell / columns, cell % columns); }},
-      progress, work);
+  return solve_map({grid, [&](std::size_t cell) { return grid_point_m(grid, cell / columns, cell % columns); },
+                    [&](std::size_t cell) { return grid_receiver(single, cell / columns, cell % columns); }},
+                   progress, work);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -104,7 +102,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverL
     device.antenna.array = {};
     return device;
   };
-  return solve_map({{list.id, list.receivers.size()}, plan_, position_m, receiver}, progress, work);
+  return solve_map({{list.id, list.receivers.size()}, position_m, receiver}, progress, work);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -117,7 +115,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
   const bool looks_for_embedded =
       settings_.share_map_work && diffraction_order(settings_.propagation) > 0 && size >= scene_.wedges().size() / 10;
   TransmitterEnds transmitters = transmitter_ends(
-      {}, {}, order.plan, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
+      size, {}, {}, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
   // Maps hold no channel between elements, and their powers are those of one: none is computed.
   for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
   const Tracer tracer(scene_, index_);
@@ -138,7 +136,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
       for (RadioMap& map : maps) map.points[point] = {positions_m[point], is_grid && open[point] == 0, {}, {}};
     }
   });
-  const bool shares_views = order.plan.joined > 0 && settings_.share_map_work && !transmitters.halves.empty();
+  const bool shares_views = plan_.joined > 0 && settings_.share_map_work && !transmitters.halves.empty();
   const auto is_free = [&](std::size_t from, std::size_t to) {
     return shares_views && !index_.occluded(segment_between(positions_m[from], positions_m[to]), {}, nullptr);
   };

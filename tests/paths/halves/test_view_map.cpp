@@ -171,9 +171,35 @@ TEST_CASE("no ray from any point of a crowd meets a facet that the crowd calls h
   CHECK(hidden > 400);
 }
 
+namespace {
+
+/// How many facets rays from some images through a triangle of their mirror meet, and how many of these are not among
+/// what is `seen`.
+struct RaysThrough {
+  std::size_t met = 0, lost = 0;
+
+  void shoot(const TracedScene<>& traced, Draw& draw, std::uint32_t triangle, std::span<const Vec3> images_m,
+             std::span<const FacetId> seen) {
+    const auto corners_m = traced.scene.corners_m(triangle);
+    for (int ray = 0; ray < 1'000; ++ray) {
+      const Vec3& image_m = images_m[draw.below(images_m.size())];
+      const double u = draw.between(0, 1), v = draw.between(0, 1 - u);
+      const Vec3 point_m = corners_m[0] + u * (corners_m[1] - corners_m[0]) + v * (corners_m[2] - corners_m[0]);
+      for (const FacetId id : met_by(traced, {image_m, point_m - image_m}, 1.0)) {
+        if (id == traced.scene.facet_of_triangle(triangle)) continue;
+        ++met;
+        lost += std::ranges::find(seen, id) != seen.end() ? 0U : 1U;
+      }
+    }
+  }
+};
+
+}  // namespace
+
 TEST_CASE("no ray from an image through its mirror meets a facet that the view through the mirror calls hidden") {
   Draw draw(17);
-  std::size_t met = 0, hidden = 0, lost = 0;
+  std::size_t hidden = 0;
+  RaysThrough rays;
   for (int round = 0; round < 8; ++round) {
     TracedScene<> traced(scene_of(heap_of_boxes(draw, 25)));
     const FacetOutlines outlines(traced.scene);
@@ -186,20 +212,43 @@ TEST_CASE("no ray from an image through its mirror meets a facet that the view t
       sight.look_through(traced.scene, outlines, mirror, image_m, std::nullopt);
       sight.find_facets(traced.scene, outlines, {}, true, seen);
       hidden += outlines.size() - seen.size();
-      const auto corners_m = traced.scene.corners_m(triangle);
-      for (int ray = 0; ray < 1'000; ++ray) {
-        const double u = draw.between(0, 1), v = draw.between(0, 1 - u);
-        const Vec3 point_m = corners_m[0] + u * (corners_m[1] - corners_m[0]) + v * (corners_m[2] - corners_m[0]);
-        for (const FacetId id : met_by(traced, {image_m, point_m - image_m}, 1.0)) {
-          if (id == mirror) continue;
-          ++met;
-          lost += std::ranges::find(seen, id) != seen.end() ? 0U : 1U;
-        }
-      }
+      rays.shoot(traced, draw, triangle, {&image_m, 1}, seen);
     }
   }
-  MESSAGE(met << " hits, " << hidden << " facets hidden");
-  CHECK(lost == 0);
-  CHECK(met > 500'000);
+  MESSAGE(rays.met << " hits, " << hidden << " facets hidden");
+  CHECK(rays.lost == 0);
+  CHECK(rays.met > 500'000);
   CHECK(hidden > 100'000);
+}
+
+TEST_CASE("nor does a ray from any image of several points side by side") {
+  Draw draw(18);
+  std::size_t hidden = 0;
+  RaysThrough rays;
+  for (int round = 0; round < 8; ++round) {
+    TracedScene<> traced(scene_of(heap_of_boxes(draw, 25)));
+    const FacetOutlines outlines(traced.scene);
+    Sight sight(round % 2 == 0 ? 64 : 128);
+    std::vector<FacetId> seen;
+    for (std::uint32_t triangle = 0; triangle < traced.scene.triangles().size(); triangle += 2) {
+      const FacetId mirror = traced.scene.facet_of_triangle(triangle);
+      const Plane& plane = traced.scene.facet(mirror).plane;
+      const Vec3 middle_m = draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20));
+      const double side = signed_distance_m(plane, middle_m) > 0.0 ? 1.0 : -1.0, size_m = draw.between(0.1, 6.0);
+      std::vector<Vec3> images_m;
+      for (std::size_t point = 0; point < 16; ++point) {
+        const Vec3 point_m = middle_m + draw.inside(Vec3(-0.5 * size_m), Vec3(0.5 * size_m));
+        if (side * signed_distance_m(plane, point_m) > in_plane_guard_m) images_m.push_back(mirrored(plane, point_m));
+      }
+      if (images_m.empty()) continue;
+      sight.look_through(traced.scene, outlines, mirror, images_m);
+      sight.find_facets(traced.scene, outlines, {}, true, seen);
+      hidden += outlines.size() - seen.size();
+      rays.shoot(traced, draw, triangle, images_m, seen);
+    }
+  }
+  MESSAGE(rays.met << " hits, " << hidden << " facets hidden");
+  CHECK(rays.lost == 0);
+  CHECK(rays.met > 500'000);
+  CHECK(hidden > 50'000);
 }
