@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dcem/sim/discovery.hpp"
 #include "dcem/sim/simulator.hpp"
 #include "tests/paths/small_scenes.hpp"
 
