@@ -134,7 +134,8 @@ void add_commands(CLI::App& app, Options& options) {
   CLI::App* run = app.add_subcommand("run", "Every frame of a scenario: paths, received power, delay profiles");
   add_scenario_options(*run, options.scenario);
   run->callback([&] { run_scenario(options.scenario); });
-  CLI::App* map = app.add_subcommand("map", "Coverage maps for each transmitter over the scenario's grids and lists of points");
+  CLI::App* map =
+      app.add_subcommand("map", "Coverage maps for each transmitter over the scenario's grids and lists of points");
   add_scenario_options(*map, options.scenario);
   map->callback([&] { map_scenario(options.scenario); });
   CLI::App* inspect = app.add_subcommand(

@@ -209,9 +209,7 @@ void map_scenario(const ScenarioOptions& options) {
   Simulator simulator = make_simulator(job, options);
   io::OutputFolder folder(job.folder);
   const std::size_t points = orders.points();
-  io::RunSummary summary(
-      run_facts(job, simulator, simulator.plan(), points),
-      simulator.scene());
+  io::RunSummary summary(run_facts(job, simulator, simulator.plan(), points), simulator.scene());
   print_warnings(job.scenario.warnings, options);
   const auto viewer = make_viewer(folder, job, simulator, orders.cells() * simulator.scene().transmitters().size());
   {
