@@ -22,7 +22,6 @@
 #include "dcem/accel/hit_filter.hpp"
 #include "dcem/accel/sah_cost.hpp"
 #include "dcem/accel/wide/arrays.hpp"
-#include "dcem/accel/wide/build/builder.hpp"
 #include "dcem/accel/wide/build/plan.hpp"
 #include "dcem/accel/wide/trace/kernels.hpp"
 #include "dcem/accel/wide/update/degradation.hpp"
@@ -233,6 +232,9 @@ class WideBvh {
 }  // namespace dcem
 
 #include "dcem/accel/wide/box_queries.hpp"
-#include "dcem/accel/wide/update/edits.hpp"
-#include "dcem/accel/wide/update/rebuild_subtree.hpp"
-#include "dcem/accel/wide/update/rotation.hpp"
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/accel/wide_bvh_bodies.hpp"
+#include "dcem/accel/wide_bvh_rebuild_bodies.hpp"
+#include "dcem/accel/wide_bvh_rotate_bodies.hpp"
+#endif

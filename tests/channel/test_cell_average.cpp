@@ -123,18 +123,21 @@ TEST_CASE("samples lie evenly and symmetrically in their cells; one sample is th
   CHECK(fine.samples_per_cell() == 1);
   CHECK(glm::distance(grid_point_m(fine, 0, 0), Vec3(-0.35 - 0.175, 2.1 - 0.8, 1.5)) < 1e-12);
   CHECK(glm::distance(grid_point_m(fine, 9, 5), Vec3(-0.35 + 1.4 + 0.175, 2.1 + 2.0 + 0.8, 1.5)) < 1e-12);
-  // Every cell gets its own samples: their mean position is the grid point.
+  // Every cell gets its own samples: those that lie around its grid point, and their mean is that point.
   RadioMap map{fine, "bs", {}};
+  std::vector<Vec3> means_m(grid.size(), Vec3(0.0));
   for (std::size_t at = 0; at < fine.size(); ++at) {
-    map.points.push_back({grid_point_m(fine, at / fine.columns(), at % fine.columns()), false, {}, {}});
+    const Vec3 point_m = grid_point_m(fine, at / fine.columns(), at % fine.columns());
+    const Vec3 steps = (point_m - grid.origin_m) / Vec3(grid.spacing_m[0], grid.spacing_m[1], 1.0);
+    const std::size_t cell =
+        static_cast<std::size_t>(std::lround(steps.x)) + 3 * static_cast<std::size_t>(std::lround(steps.y));
+    means_m[cell] += point_m / 10.0;
+    map.points.push_back(sample(-60.0 - static_cast<double>(cell), 1e-8));
   }
-  std::vector<RadioMapPoint> samples;
+  const RadioMap averages = cell_averages(grid, map);
   for (std::size_t cell = 0; cell < grid.size(); ++cell) {
-    detail::collect_samples(grid, cell / 3, cell % 3, map, samples);
-    REQUIRE(samples.size() == 10);
-    Vec3 mean_m(0.0);
-    for (const RadioMapPoint& at : samples) mean_m += at.position_m / 10.0;
-    CHECK(glm::distance(mean_m, grid_point_m(grid, cell / 3, cell % 3)) < 1e-12);
+    CHECK(averages.points[cell].statistics.power_incoherent_dbm == -60.0 - static_cast<double>(cell));
+    CHECK(glm::distance(means_m[cell], grid_point_m(grid, cell / 3, cell % 3)) < 1e-12);
   }
 }
 

@@ -153,10 +153,10 @@ def check_tree(root):
     lines += [f"{path}: defines GLM_FORCE_..., which changes GLM for whoever includes it"
               for path, text in texts.items() if re.search(r"#\s*define\s+GLM_FORCE_", text)]
 
-    lines += [f"{path}: bodies are included by {path.replace('_bodies', '')} and dcem/engine alone; {other} does, too"
+    lines += [f"{path}: bodies are included by the header that they are named after and dcem/engine alone; {other} does, too"
               for other, found in includes.items() for _, path in found
               if path.endswith("_bodies.hpp") and path != other
-              and other != path.replace("_bodies", "") and room_of(other) != "engine"]
+              and not path.startswith(other.replace(".hpp", "_")) and room_of(other) != "engine"]
     lines += check_figures(root, library)
     return lines
 

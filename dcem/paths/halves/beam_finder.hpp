@@ -1,20 +1,19 @@
 #pragma once
 /// Looks for what an end reaches directly and over each of its mirrors.
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "dcem/core/thread_pool.hpp"
 #include "dcem/paths/halves/lanes.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 #include "dcem/paths/solve/edge_rules.hpp"
 
 namespace dcem {
+
+class ThreadPool;
 
 /// A mirror of an end, and the image in it.
 struct BeamMirror {
@@ -81,152 +80,8 @@ class BeamFinder {
   std::span<const BeamMirror> mirrors_;
 };
 
-// ---------------------------------------------------------------------------------------------------------------------
-
-/// Pieces of a stretch of an edge, half a metre long, are looked up one by one: calls `visit(from, to)` for what shows,
-/// neighbours in one.
-template <typename Shows, typename Visit>
-void BeamFinder::for_each_shown(const Wedge& edge, const EdgePart& part, int most_pieces, Shows&& shows,
-                                Visit&& visit) {
-  constexpr double piece_m = 0.5;
-  const double from_m = part.from, to_m = part.to;
-  const Vec3 direction = edge_direction(edge);
-  const int pieces = static_cast<int>(std::clamp<double>(std::ceil((to_m - from_m) / piece_m), 1.0, most_pieces));
-  const auto place_m = [&](int piece) { return from_m + (to_m - from_m) * piece / pieces; };
-  for (int first = 0, piece = 0; piece <= pieces; ++piece) {
-    const bool shown = piece < pieces &&
-                       shows(edge.start_m + place_m(piece) * direction, edge.start_m + place_m(piece + 1) * direction);
-    if (shown) continue;
-    if (first < piece) visit(static_cast<float>(place_m(first)), static_cast<float>(place_m(piece)));
-    first = piece + 1;
-  }
-}
-
-inline void BeamFinder::find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const {
-  if (layer.edges.empty()) return;
-  Sight sight = source_.half.sight();  // looking needs scratch memory
-  for (const WedgeId id : layer.edges) {
-    const Wedge& edge = source_.scene.wedge(id).edge;
-    EdgePart part = whole_edge(id.value, edge, source_.half.position_m());
-    const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
-      return sight.shows(source_.scene, source_.outlines, id, from_m, to_m);
-    };
-    for_each_shown(edge, part, most_pieces, shows, [&](float from, float to) {
-      part.from = from;
-      part.to = to;
-      finds.parts.push_back(part);
-    });
-  }
-}
-
-/// The part of an edge that an image may light through its mirror; its end lies before its beginning where there is
-/// none.
-inline EdgePart BeamFinder::lit_part(WedgeId id, std::uint32_t mirror) const {
-  const Wedge& edge = source_.scene.wedge(id).edge;
-  const Vec3& origin_m = source_.lanes.origin_m();
-  EdgePart part = whole_edge(mirror, edge, mirrors_[mirror].image_m + origin_m);
-  cut_to_cone(part, edge, origin_m, mirrors_[mirror].cone);
-  return part;
-}
-
-/// Notes the parts of the edges of some facets that a mirror may light. `for_each(edge, part, visit)` calls
-/// `visit(from, to)` for what of a part is to be kept.
-template <typename ForEach>
-void BeamFinder::find_lit_parts(std::uint32_t mirror, std::span<const FacetId> facets, ForEach&& for_each,
-                                BeamFinds& finds) const {
-  const HalfSettings& settings = source_.settings;
-  if (!settings.edges) return;
-  std::vector<WedgeId> edges;
-  for (const FacetId seen : facets) {
-    for (const WedgeId id : source_.scene.wedges_of_facet(seen)) edges.push_back(id);
-  }
-  std::ranges::sort(edges);
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  const FacetId facet = mirrors_[mirror].facet;
-  const Vec3 image_m = mirrors_[mirror].image_m + source_.lanes.origin_m();
-  for (const WedgeId id : edges) {
-    const WorldWedge& wedge = source_.scene.wedge(id);
-    if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules)) continue;
-    if (wedge.facets[0] == facet || wedge.facets[1] == facet) continue;  // that is in the wedge's own terms
-    EdgePart part = lit_part(id, mirror);
-    if (part.from > part.to || !may_face(wedge.edge, image_m - wedge.edge.start_m)) continue;
-    for_each(id, part, [&](float from, float to) {
-      part.from = from;
-      part.to = to;
-      finds.lit.push_back(part);
-      finds.lit_edges.push_back(id.value);
-    });
-  }
-}
-
-inline void BeamFinder::look_through(std::size_t first, std::size_t last, bool bodies, int most_pieces,
-                                     BeamFinds& finds) const {
-  constexpr std::size_t block = 64;
-  const std::size_t blocks = (last - first + block - 1) / block;
-  if (source_.pool == nullptr || blocks <= 1) return look_through_block(first, last, bodies, most_pieces, finds);
-  std::vector<BeamFinds> found(blocks);
-  source_.pool->for_each(blocks, [&](std::size_t number, unsigned) {
-    const std::size_t from = first + number * block;
-    look_through_block(from, std::min(last, from + block), bodies, most_pieces, found[number]);
-  });
-  for (const BeamFinds& one : found) finds.append(one);
-}
-
-inline void BeamFinder::look_through_block(std::size_t first, std::size_t last, bool bodies, int most_pieces,
-                                           BeamFinds& finds) const {
-  Sight sight(view_pixels);
-  std::vector<FacetId> facets;
-  const auto show = [&](WedgeId id, const EdgePart& part, auto&& visit) {
-    const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
-      return sight.shows(source_.scene, source_.outlines, id, from_m, to_m);
-    };
-    for_each_shown(source_.scene.wedge(id).edge, part, most_pieces, shows, visit);
-  };
-  for (std::size_t at = first; at < last; ++at) {
-    const auto mirror = static_cast<std::uint32_t>(at);
-    const Vec3 image_m = mirrors_[at].image_m + source_.lanes.origin_m();
-    sight.look_through(source_.scene, source_.outlines, mirrors_[at].facet, image_m, ignored_body());
-    sight.find_facets(source_.scene, source_.outlines, source_.settings, bodies, facets);
-    for (const FacetId seen : facets) finds.pairs.push_back({seen.value, mirror});
-    find_lit_parts(mirror, facets, show, finds);
-  }
-}
-
-inline void BeamFinder::reach_bodies(std::size_t count, BeamFinds& finds) const {
-  const std::span<const FacetOutlines::BodyFacets> bodies = source_.outlines.bodies();
-  const Vec3& origin_m = source_.lanes.origin_m();
-  ConeClusters boxes;
-  boxes.build(bodies.size(), [&](std::uint32_t body) {
-    const Aabb<double>& box = bodies[body].box;
-    return box.empty() ? Aabb<double>{Vec3(0.0), Vec3(0.0)} : Aabb<double>{box.min - origin_m, box.max - origin_m};
-  });
-  const auto is_beside = [&](FacetId id, std::span<const HalfSpace> cone) {
-    const std::span<const Vec3> hull_m = source_.scene.hull_m(source_.scene.facet(id));
-    return std::ranges::any_of(cone, [&](const HalfSpace& plane) {
-      return std::ranges::all_of(hull_m, [&](const Vec3& corner_m) {
-        return glm::dot(Vec3(plane.x, plane.y, plane.z), corner_m - origin_m) < plane.offset;
-      });
-    });
-  };
-  const auto whole = [](WedgeId, const EdgePart& part, auto&& visit) { visit(part.from, part.to); };
-  std::vector<FacetId> facets;
-  for (std::uint32_t mirror = 0; mirror < count; ++mirror) {
-    facets.clear();
-    const auto look_at = [&](std::uint32_t body) {
-      if (body == ConeClusters::nothing || bodies[body].box.empty()) return;
-      for (std::uint32_t index = bodies[body].first; index < bodies[body].first + bodies[body].count; ++index) {
-        const WorldFacet& facet = source_.scene.facet(FacetId(index));
-        if (!facet.present || facet.body == ignored_body() || is_beside(FacetId(index), mirrors_[mirror].cone))
-          continue;
-        facets.push_back(FacetId(index));
-        finds.pairs.push_back({index, mirror});
-      }
-    };
-    boxes.for_each_in(mirrors_[mirror].cone, [&](std::size_t first) {
-      for (const std::uint32_t body : boxes.items().subspan(first, simd_lanes)) look_at(body);
-    });
-    find_lit_parts(mirror, facets, whole, finds);
-  }
-}
-
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/halves/beam_finder_bodies.hpp"
+#endif

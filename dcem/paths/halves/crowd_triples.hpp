@@ -12,8 +12,8 @@
 
 #include "dcem/paths/halves/crowd_beams.hpp"
 #include "dcem/paths/halves/crowd_gates.hpp"
+#include "dcem/paths/halves/double_images.hpp"
 #include "dcem/paths/halves/half_joiner.hpp"
-#include "dcem/paths/halves/window_lanes.hpp"
 
 namespace dcem {
 
@@ -21,7 +21,12 @@ template <typename Index>
 class CrowdTriples {
  public:
   CrowdTriples(CrowdGates<Index>& gates, const CrowdBeams& beams, const HalfJoiner::Orders& orders)
-      : gates_(gates), beams_(beams), scene_(gates.scene()), lanes_(gates.lanes()), orders_(orders) {}
+      : gates_(gates),
+        beams_(beams),
+        scene_(gates.scene()),
+        lanes_(gates.lanes()),
+        orders_(orders),
+        double_images_(scene_, lanes_) {}
 
   /// Calls `visit(sequence, point)`, the sequence from the receiver outwards, for every sequence of three mirrors, or
   /// of two mirrors and an edge, that a path from the transmitter to a point of the crowd may take.
@@ -172,37 +177,18 @@ class CrowdTriples {
   /// The receivers' last point is on an edge, the two before it on mirrors of the transmitter.
   template <typename Visit>
   void edge_to_two_mirrors(FacetId middle, Visit& visit) {
-    const std::span<const std::uint32_t> before = mast().mirrors_before(middle);
-    if (before.empty() || edge_numbers_.empty()) return;
-    const WorldFacet& facet = scene_.facet(middle);
-    const WindowLanes window(facet.plane, scene_.hull_m(facet), lanes_.origin_m());
-    for (std::size_t first = 0; first < before.size(); first += simd_lanes) {
-      const std::span<const std::uint32_t> eight =
-          before.subspan(first, std::min<std::size_t>(simd_lanes, before.size() - first));
-      std::array<Vec3, simd_lanes> twice_m;
-      for (std::size_t lane = 0; lane < eight.size(); ++lane) {
-        twice_m[lane] = mirrored(facet.plane, mast().mirrors()[eight[lane]].image_m + lanes_.origin_m());
-      }
-      const LanePoints images(std::span<const Vec3>(twice_m).first(eight.size()), lanes_.origin_m());
-      std::uint32_t left = window.seeing(images, edges_.boxes(), (1U << eight.size()) - 1U);
-      for (; left != 0; left &= left - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        edges_over(mast().mirrors()[eight[lane]], middle, twice_m[lane], visit);
-      }
-    }
+    if (edge_numbers_.empty() || mast().mirrors_before(middle).empty()) return;
+    double_images_.for_each(mast(), middle, edges_.boxes(), [&](const BeamMirror& mirror, const Vec3& twice_m) {
+      edges_over(mirror, middle, twice_m, visit);
+    });
   }
 
   template <typename Visit>
   void edges_over(const BeamMirror& mirror, FacetId middle, const Vec3& twice_m, Visit& visit) {
-    const WorldFacet& facet = scene_.facet(middle);
     const Vec3 twice = twice_m - lanes_.origin_m();
-    window_.clear();
-    window_.add(lanes_.origin_m(), twice_m, facet.plane, scene_.hull_m(facet));
-    cone_.assign(window_[0].begin(), window_[0].end());
-    const double slack_m = 1e-3 + 1e-6 * (glm::length(twice) + lanes_.reach_m());
-    add_mirrored(mirror.cone.first(mirror.cone.size() - 1), facet.plane, lanes_.origin_m(), slack_m, cone_);
+    const std::span<const HalfSpace> cone = double_images_.cone(mirror, middle, twice_m);
     const float error_m = gates_.error_with(2.0 * glm::length(twice) + lanes_.reach_m());
-    edges_.template for_each_in<true>(cone_, twice, gates_.radius_m(), [&](std::uint32_t number) {
+    edges_.template for_each_in<true>(cone, twice, gates_.radius_m(), [&](std::uint32_t number) {
       const WedgeId edge(edge_numbers_[number]);
       const WorldWedge& wedge = scene_.wedge(edge);
       if (wedge.facets[0] == middle || wedge.facets[1] == middle) return;  // that is in the wedge's own terms
@@ -264,9 +250,9 @@ class CrowdTriples {
   const LaneScene& lanes_;
   HalfJoiner::Orders orders_;
   std::vector<Images> images_;  ///< by the place of the mirror
+  DoubleImages double_images_;
   EdgeClusters edges_;
   std::vector<std::uint32_t> edge_numbers_;
-  ConeList window_;
   std::vector<HalfSpace> cone_;
   std::vector<Vec3> beside_m_;
   // Of the two mirrors that are looked over.

@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
-#include "dcem/paths/halves/hull_filling.hpp"
 #include "dcem/paths/halves/hull_sides.hpp"
 #include "dcem/scene/scene.hpp"
 
@@ -38,41 +35,10 @@ class FacetOutlines {
     std::uint32_t first = 0, count = 0;
   };
 
-  explicit FacetOutlines(const Scene& scene) : outlines_(scene.facets().size()) {
-    std::uint32_t sides = 0;
-    for (std::uint32_t index = 0; index < outlines_.size(); ++index) {
-      outlines_[index].first_side = std::exchange(sides, sides + scene.facets()[index].hull_point_count);
-    }
-    sides_.resize(sides);
-    for (std::uint32_t index = 0; index < outlines_.size(); ++index) {
-      place(scene, index);
-      measure(scene, index);
-    }
-    const std::uint32_t scenery = end_of_body(scene, 0);
-    for (std::uint32_t index = 0; index < scenery; ++index) {
-      if (!outlines_[index].box.empty()) items_.push_back(index);
-    }
-    if (!items_.empty()) {
-      grow(0, static_cast<std::uint32_t>(items_.size()));
-      middle_m_ = glm::round(nodes_.front().box.center());
-      lay_out_planes(scene);
-    }
-    for (std::uint32_t body = 1; body < scene.bodies().size(); ++body) {
-      const std::uint32_t first = end_of_body(scene, body - 1);
-      bodies_.push_back({{}, first, end_of_body(scene, body) - first});
-      fit(bodies_.back());
-    }
-  }
+  explicit FacetOutlines(const Scene& scene);
 
   /// Follows bodies that have moved, come or gone.
-  void update(const Scene& scene, std::span<const BodyId> moved) {
-    for (const BodyId body : moved) {
-      if (body.value == 0) continue;  // the scenery stands
-      BodyFacets& facets = bodies_[body.value - 1];
-      for (std::uint32_t index = facets.first; index < facets.first + facets.count; ++index) place(scene, index);
-      fit(facets);
-    }
-  }
+  void update(const Scene& scene, std::span<const BodyId> moved);
 
   const FacetOutline& of(FacetId facet) const { return outlines_[facet.value]; }
   /// In the middle of the scenery: from here the exact search counts in single precision.
@@ -166,99 +132,15 @@ class FacetOutlines {
     return glm::dot(way_m, way_m);
   }
 
-  static std::uint32_t end_of_body(const Scene& scene, std::uint32_t body) {
-    const bool last = body + 1 == scene.bodies().size();
-    return last ? static_cast<std::uint32_t>(scene.facets().size()) : scene.world().first(BodyId(body + 1)).facet;
-  }
-
+  static std::uint32_t end_of_body(const Scene& scene, std::uint32_t body);
   /// Works out where a facet lies now.
-  void place(const Scene& scene, std::uint32_t index) {
-    const WorldFacet& facet = scene.facets()[index];
-    FacetOutline& outline = outlines_[index];
-    const std::span<const Vec3> hull_m = scene.hull_m(facet);
-    outline.side_count = facet.hull_point_count;
-    outline.box = {};
-    Vec3 centre_m(0.0);
-    for (const Vec3& corner : hull_m) {
-      if (facet.present) outline.box.extend(corner);
-      centre_m += corner / static_cast<double>(hull_m.size());
-    }
-    for (std::size_t corner = 0; corner < hull_m.size(); ++corner) {
-      const Vec3 &from = hull_m[corner], &to = hull_m[(corner + 1) % hull_m.size()];
-      const Vec3 across = glm::cross(facet.plane.normal, to - from);
-      const double length = glm::length(across);
-      HullSide& side = sides_[outline.first_side + corner];
-      side = {};
-      if (!(length > 1e-9)) continue;  // too short to say: everything is inside
-      side.normal = (glm::dot(across, centre_m - from) < 0.0 ? -across : across) / length;
-      side.offset_m = glm::dot(side.normal, from);
-    }
-  }
-
+  void place(const Scene& scene, std::uint32_t index);
   /// Works out what does not change when the facet moves.
-  void measure(const Scene& scene, std::uint32_t index) {
-    const WorldFacet& facet = scene.facets()[index];
-    FacetOutline& outline = outlines_[index];
-    const std::span<const Vec3> hull_m = scene.hull_m(facet);
-    std::vector<std::array<Vec3, 3>> triangles_m;
-    for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-      triangles_m.push_back(scene.corners_m(facet.first_triangle + triangle));
-      for (const Vec3& corner : triangles_m.back()) {
-        outline.stray_m = std::max(outline.stray_m, std::abs(signed_distance_m(facet.plane, corner)));
-      }
-    }
-    outline.fills_hull = fills_hull(triangles_m, hull_m);
-    // A leg ignores what lies along its mirror within the weld tolerance, and the mirror's own triangles wherever they
-    // are.
-    outline.lift_m = 2.0 * scene.settings().weld_tolerance_m + 1.01 * outline.stray_m;
-  }
-
-  void lay_out_planes(const Scene& scene) {
-    planes_.resize((items_.size() + simd_lanes - 1) / simd_lanes);
-    for (std::size_t at = 0; at < items_.size(); ++at) {
-      PlaneLanes& eight = planes_[at / simd_lanes];
-      const std::size_t lane = at % simd_lanes;
-      const Plane& plane = scene.facets()[items_[at]].plane;
-      const FacetOutline& outline = outlines_[items_[at]];
-      eight.x[lane] = static_cast<float>(plane.normal.x);
-      eight.y[lane] = static_cast<float>(plane.normal.y);
-      eight.z[lane] = static_cast<float>(plane.normal.z);
-      eight.offset[lane] = static_cast<float>(glm::dot(plane.normal, plane.point_m - middle_m_));
-      eight.lift[lane] = static_cast<float>(outline.lift_m);
-      const Vec3 farthest = glm::max(glm::abs(outline.box.min - middle_m_), glm::abs(outline.box.max - middle_m_));
-      eight.reach[lane] = static_cast<float>(glm::length(farthest));
-    }
-  }
-
-  void fit(BodyFacets& facets) const {
-    facets.box = {};
-    for (std::uint32_t index = facets.first; index < facets.first + facets.count; ++index) {
-      facets.box.extend(outlines_[index].box);
-    }
-  }
-
+  void measure(const Scene& scene, std::uint32_t index);
+  void lay_out_planes(const Scene& scene);
+  void fit(BodyFacets& facets) const;
   /// Halves items along the longest side of the box of their centres; a node stands before its children.
-  void grow(std::uint32_t first, std::uint32_t count) {
-    const std::size_t number = nodes_.size();
-    nodes_.push_back({{}, first, count, 0});
-    Aabb<double> centres;
-    for (std::uint32_t index = first; index < first + count; ++index) {
-      nodes_[number].box.extend(outlines_[items_[index]].box);
-      centres.extend(outlines_[items_[index]].box.center());
-    }
-    if (count <= leaf_size) return;
-    const Vec3 size = centres.extent();
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto begin = items_.begin() + first;
-    std::nth_element(begin, begin + count / 2, begin + count, [&](std::uint32_t one, std::uint32_t other) {
-      const double a = outlines_[one].box.center()[axis], b = outlines_[other].box.center()[axis];
-      return a != b ? a < b : one < other;
-    });
-    nodes_[number].count = 0;
-    grow(first, count / 2);
-    nodes_[number].right = static_cast<std::uint32_t>(nodes_.size());
-    grow(first + count / 2, count - count / 2);
-  }
+  void grow(std::uint32_t first, std::uint32_t count);
 
   std::vector<FacetOutline> outlines_;
   std::vector<HullSide> sides_;
@@ -270,3 +152,7 @@ class FacetOutlines {
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/halves/facet_outlines_bodies.hpp"
+#endif

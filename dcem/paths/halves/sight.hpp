@@ -24,6 +24,9 @@ inline bool may_face(const Wedge& wedge, const Vec3& away_m) {
   return azimuth <= wedge.exterior_angle_rad + 1e-6 || azimuth >= 2.0 * pi - 1e-6;
 }
 
+/// The edges of some facets, ascending, each once.
+void collect_edges(const Scene& scene, std::span<const FacetId> facets, std::vector<WedgeId>& edges);
+
 /// What is the same for all halves.
 struct HalfSettings {
   bool edges = true;         ///< look for edges, too
@@ -154,4 +157,6 @@ class Sight {
 
 }  // namespace dcem
 
-#include "dcem/paths/halves/detail/sight_search.hpp"
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/halves/sight_bodies.hpp"
+#endif

@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "dcem/paths/halves/beam_lists.hpp"
+#include "dcem/paths/halves/double_images.hpp"
 #include "dcem/paths/halves/half_joiner.hpp"
 #include "dcem/paths/halves/join_gates.hpp"
-#include "dcem/paths/halves/window_lanes.hpp"
 #include "dcem/paths/sequence.hpp"
 
 namespace dcem {
@@ -28,7 +28,7 @@ class TripleJoiner {
  public:
   TripleJoiner(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes,
                const HalfJoiner::Orders& orders)
-      : gates_(scene, outlines), lanes_(lanes), orders_(orders) {}
+      : gates_(scene, outlines), lanes_(lanes), orders_(orders), images_(scene, lanes) {}
 
   /// Calls `visit(sequence)`, from the receiver outwards, for each sequence of three elements; seldom twice for one.
   template <typename Visit>
@@ -106,40 +106,24 @@ class TripleJoiner {
   template <typename Visit>
   void two_mirrors_to_edge(const Ends& ends, const BeamLists& over, const BeamLists& beside, FacetId middle,
                            bool turned, Visit& visit) {
-    const std::span<const std::uint32_t> before = over.mirrors_before(middle);
-    if (before.empty() || beside.parts().empty()) return;
-    const WorldFacet& facet = scene().facet(middle);
-    const WindowLanes window(facet.plane, scene().hull_m(facet), lanes_.origin_m());
-    for (std::size_t first = 0; first < before.size(); first += simd_lanes) {
-      const std::span<const std::uint32_t> eight =
-          before.subspan(first, std::min<std::size_t>(simd_lanes, before.size() - first));
-      std::array<Vec3, simd_lanes> images_m;
-      for (std::size_t lane = 0; lane < eight.size(); ++lane) {
-        images_m[lane] = mirrored(facet.plane, image_m(over.mirrors()[eight[lane]]));
-      }
-      const LanePoints images(std::span<const Vec3>(images_m).first(eight.size()), lanes_.origin_m());
-      std::uint32_t left = window.seeing(images, beside.boxes_of_parts(), (1U << eight.size()) - 1U);
-      for (; left != 0; left &= left - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-        const BeamMirror& mirror = over.mirrors()[eight[lane]];
-        const auto visit_edge = [&](WedgeId edge, const Vec3& edge_m, const Vec3& mirror_m) {
-          if (turned) {
-            offer(ends, {edge, middle, mirror.facet}, edge_m, mirror_m, visit);
-          } else {
-            offer(ends, {mirror.facet, middle, edge}, mirror_m, edge_m, visit);
-          }
-        };
-        edges_over(mirror, middle, images_m[lane], beside, visit_edge);
-      }
-    }
+    if (over.mirrors_before(middle).empty() || beside.parts().empty()) return;
+    images_.for_each(over, middle, beside.boxes_of_parts(), [&](const BeamMirror& mirror, const Vec3& twice_m) {
+      edges_over(mirror, middle, twice_m, beside, [&](WedgeId edge, const Vec3& edge_m, const Vec3& mirror_m) {
+        if (turned) {
+          offer(ends, {edge, middle, mirror.facet}, edge_m, mirror_m, visit);
+        } else {
+          offer(ends, {mirror.facet, middle, edge}, mirror_m, edge_m, visit);
+        }
+      });
+    });
   }
 
   /// Calls `visit(edge, point on it, point on the mirror)` for edges that `beside` sees, over two mirrors.
   template <typename Visit>
   void edges_over(const BeamMirror& mirror, FacetId middle, const Vec3& twice_m, const BeamLists& beside,
                   Visit&& visit) {
-    cone_over(mirror, middle, twice_m);
-    beside.for_each_part_in(cone_, twice_m - lanes_.origin_m(), 0.0F, [&](std::uint32_t number) {
+    const std::span<const HalfSpace> cone = images_.cone(mirror, middle, twice_m);
+    beside.for_each_part_in(cone, twice_m - lanes_.origin_m(), 0.0F, [&](std::uint32_t number) {
       const WedgeId edge(beside.parts()[number].edge);
       const WorldWedge& wedge = scene().wedge(edge);
       if (wedge.facets[0] == middle || wedge.facets[1] == middle) return;  // that is in the wedge's own terms
@@ -150,17 +134,6 @@ class TripleJoiner {
       const auto mirror_m = gates_.crossing(mirror.facet, image_m(mirror), *middle_m);
       if (mirror_m) visit(edge, *edge_m, *mirror_m);
     });
-  }
-
-  /// What an image in two mirrors may see: through the second one, and through the first one mirrored in it.
-  void cone_over(const BeamMirror& mirror, FacetId middle, const Vec3& twice_m) {
-    const WorldFacet& facet = scene().facet(middle);
-    window_.clear();
-    window_.add(lanes_.origin_m(), twice_m, facet.plane, scene().hull_m(facet));
-    cone_.assign(window_[0].begin(), window_[0].end());
-    const double offset_m = glm::dot(facet.plane.normal, facet.plane.point_m - lanes_.origin_m());
-    const double slack_m = 1e-3 + 1e-6 * (glm::length(twice_m - lanes_.origin_m()) + std::abs(offset_m));
-    add_mirrored(mirror.cone.first(mirror.cone.size() - 1), facet.plane, lanes_.origin_m(), slack_m, cone_);
   }
 
   template <typename Visit>
@@ -185,8 +158,7 @@ class TripleJoiner {
   JoinGates gates_;
   const LaneScene& lanes_;
   HalfJoiner::Orders orders_;
-  ConeList window_;
-  std::vector<HalfSpace> cone_;
+  DoubleImages images_;
   Sequence sequence_;
 };
 

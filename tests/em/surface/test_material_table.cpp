@@ -7,6 +7,7 @@
 
 #include "dcem/core/units.hpp"
 #include "dcem/em/diffraction/wedge_diffraction.hpp"
+#include "dcem/em/surface/itu_p2040.hpp"
 #include "dcem/em/surface/material_table.hpp"
 
 using namespace dcem;

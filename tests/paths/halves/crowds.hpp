@@ -58,6 +58,15 @@ inline std::vector<Vec3> points_beside(Draw& draw, const Vec3& middle_m, const V
   return points_m;
 }
 
+/// 1 to 16 points in a box of up to `most_m`, flat or half as high, somewhere in a region.
+inline std::vector<Vec3> some_crowd(Draw& draw, double most_m, const Vec3& low_m, const Vec3& high_m) {
+  const double size_m = draw.between(0.1, most_m);
+  const Vec3 middle_m = draw.inside(low_m, high_m);
+  const double height_m = draw.below(2) == 0 ? 0.0 : 0.5 * size_m;
+  const std::size_t count = 1 + draw.below(16);
+  return points_beside(draw, middle_m, Vec3(size_m, size_m, height_m), count);
+}
+
 /// Checks what a crowd finds against each of its points by itself; returns how many paths there are.
 inline std::size_t check_crowd(TracedScene<>& traced, const LinkEnd& from, const std::vector<Vec3>& points_m,
                                const Asked& asked, int pixels) {

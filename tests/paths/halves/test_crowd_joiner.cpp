@@ -17,10 +17,7 @@ TEST_CASE("a crowd finds every path of each of its points, and the same bits") {
     TracedScene<> traced(small_town(draw));
     const LinkEnd from = somewhere(traced, draw);
     const Asked asked{static_cast<int>(draw.below(3))};
-    const double size_m = draw.between(0.1, 8.0);
-    const std::vector<Vec3> points_m =
-        points_beside(draw, draw.inside(Vec3(-20, -20, 0.3), Vec3(20, 20, 14)),
-                      Vec3(size_m, size_m, draw.below(2) == 0 ? 0.0 : 0.5 * size_m), 1 + draw.below(16));
+    const std::vector<Vec3> points_m = some_crowd(draw, 8.0, Vec3(-20, -20, 0.3), Vec3(20, 20, 14));
     CAPTURE(seed);
     found += check_crowd(traced, from, points_m, asked, draw.below(2) == 0 ? 256 : 64);
   }

@@ -18,10 +18,7 @@ TEST_CASE("a crowd finds every path of three interactions of each of its points,
     TracedScene<> traced(small_street(draw));
     const LinkEnd from = traced.end(draw.inside(Vec3(-8, -3, 0.3), Vec3(8, 3, 9)));
     const Asked asked{static_cast<int>(draw.below(3)), 3, 1, 3};
-    const double size_m = draw.between(0.1, 6.0);
-    const std::vector<Vec3> points_m =
-        points_beside(draw, draw.inside(Vec3(-8, -3, 0.3), Vec3(8, 3, 9)),
-                      Vec3(size_m, size_m, draw.below(2) == 0 ? 0.0 : 0.5 * size_m), 1 + draw.below(16));
+    const std::vector<Vec3> points_m = some_crowd(draw, 6.0, Vec3(-8, -3, 0.3), Vec3(8, 3, 9));
     CAPTURE(seed);
     found += check_crowd(traced, from, points_m, asked, draw.below(2) == 0 ? 256 : 64);
   }

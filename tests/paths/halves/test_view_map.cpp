@@ -173,11 +173,34 @@ TEST_CASE("no ray from any point of a crowd meets a facet that the crowd calls h
 
 namespace {
 
-/// How many facets rays from some images through a triangle of their mirror meet, and how many of these are not among
-/// what is `seen`.
+/// What rays from images through triangles of their mirror meet, in heaps of boxes.
 struct RaysThrough {
-  std::size_t met = 0, lost = 0;
+  std::size_t met = 0, lost = 0;  ///< facets, and of these those that are called hidden
+  std::size_t hidden = 0;
 
+  /// `look(draw, sight, traced, outlines, mirror)` has the sight look through the mirror and returns the images; none:
+  /// there is nothing to be seen.
+  template <typename Look>
+  RaysThrough(std::uint64_t seed, Look&& look) {
+    Draw draw(seed);
+    for (int round = 0; round < 8; ++round) {
+      TracedScene<> traced(scene_of(heap_of_boxes(draw, 25)));
+      const FacetOutlines outlines(traced.scene);
+      Sight sight(round % 2 == 0 ? 64 : 128);
+      std::vector<FacetId> seen;
+      for (std::uint32_t triangle = 0; triangle < traced.scene.triangles().size(); triangle += 2) {
+        const FacetId mirror = traced.scene.facet_of_triangle(triangle);
+        const std::vector<Vec3> images_m = look(draw, sight, traced, outlines, mirror);
+        if (images_m.empty()) continue;
+        sight.find_facets(traced.scene, outlines, {}, true, seen);
+        hidden += outlines.size() - seen.size();
+        shoot(traced, draw, triangle, images_m, seen);
+      }
+    }
+    MESSAGE(met << " hits, " << hidden << " facets hidden");
+  }
+
+ private:
   void shoot(const TracedScene<>& traced, Draw& draw, std::uint32_t triangle, std::span<const Vec3> images_m,
              std::span<const FacetId> seen) {
     const auto corners_m = traced.scene.corners_m(triangle);
@@ -197,58 +220,33 @@ struct RaysThrough {
 }  // namespace
 
 TEST_CASE("no ray from an image through its mirror meets a facet that the view through the mirror calls hidden") {
-  Draw draw(17);
-  std::size_t hidden = 0;
-  RaysThrough rays;
-  for (int round = 0; round < 8; ++round) {
-    TracedScene<> traced(scene_of(heap_of_boxes(draw, 25)));
-    const FacetOutlines outlines(traced.scene);
-    Sight sight(round % 2 == 0 ? 64 : 128);
-    std::vector<FacetId> seen;
-    for (std::uint32_t triangle = 0; triangle < traced.scene.triangles().size(); triangle += 2) {
-      const Vec3 end_m = draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20));
-      const FacetId mirror = traced.scene.facet_of_triangle(triangle);
-      const Vec3 image_m = mirrored(traced.scene.facet(mirror).plane, end_m);
-      sight.look_through(traced.scene, outlines, mirror, image_m, std::nullopt);
-      sight.find_facets(traced.scene, outlines, {}, true, seen);
-      hidden += outlines.size() - seen.size();
-      rays.shoot(traced, draw, triangle, {&image_m, 1}, seen);
-    }
-  }
-  MESSAGE(rays.met << " hits, " << hidden << " facets hidden");
+  const RaysThrough rays(
+      17, [](Draw& draw, Sight& sight, const TracedScene<>& traced, const FacetOutlines& outlines, FacetId mirror) {
+        const Vec3 end_m = draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20));
+        const Vec3 image_m = mirrored(traced.scene.facet(mirror).plane, end_m);
+        sight.look_through(traced.scene, outlines, mirror, image_m, std::nullopt);
+        return std::vector{image_m};
+      });
   CHECK(rays.lost == 0);
   CHECK(rays.met > 500'000);
-  CHECK(hidden > 100'000);
+  CHECK(rays.hidden > 100'000);
 }
 
 TEST_CASE("nor does a ray from any image of several points side by side") {
-  Draw draw(18);
-  std::size_t hidden = 0;
-  RaysThrough rays;
-  for (int round = 0; round < 8; ++round) {
-    TracedScene<> traced(scene_of(heap_of_boxes(draw, 25)));
-    const FacetOutlines outlines(traced.scene);
-    Sight sight(round % 2 == 0 ? 64 : 128);
-    std::vector<FacetId> seen;
-    for (std::uint32_t triangle = 0; triangle < traced.scene.triangles().size(); triangle += 2) {
-      const FacetId mirror = traced.scene.facet_of_triangle(triangle);
-      const Plane& plane = traced.scene.facet(mirror).plane;
-      const Vec3 middle_m = draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20));
-      const double side = signed_distance_m(plane, middle_m) > 0.0 ? 1.0 : -1.0, size_m = draw.between(0.1, 6.0);
-      std::vector<Vec3> images_m;
-      for (std::size_t point = 0; point < 16; ++point) {
-        const Vec3 point_m = middle_m + draw.inside(Vec3(-0.5 * size_m), Vec3(0.5 * size_m));
-        if (side * signed_distance_m(plane, point_m) > in_plane_guard_m) images_m.push_back(mirrored(plane, point_m));
-      }
-      if (images_m.empty()) continue;
-      sight.look_through(traced.scene, outlines, mirror, images_m);
-      sight.find_facets(traced.scene, outlines, {}, true, seen);
-      hidden += outlines.size() - seen.size();
-      rays.shoot(traced, draw, triangle, images_m, seen);
-    }
-  }
-  MESSAGE(rays.met << " hits, " << hidden << " facets hidden");
+  const RaysThrough rays(
+      18, [](Draw& draw, Sight& sight, const TracedScene<>& traced, const FacetOutlines& outlines, FacetId mirror) {
+        const Plane& plane = traced.scene.facet(mirror).plane;
+        const Vec3 middle_m = draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20));
+        const double side = signed_distance_m(plane, middle_m) > 0.0 ? 1.0 : -1.0, size_m = draw.between(0.1, 6.0);
+        std::vector<Vec3> images_m;
+        for (std::size_t point = 0; point < 16; ++point) {
+          const Vec3 point_m = middle_m + draw.inside(Vec3(-0.5 * size_m), Vec3(0.5 * size_m));
+          if (side * signed_distance_m(plane, point_m) > in_plane_guard_m) images_m.push_back(mirrored(plane, point_m));
+        }
+        if (!images_m.empty()) sight.look_through(traced.scene, outlines, mirror, images_m);
+        return images_m;
+      });
   CHECK(rays.lost == 0);
   CHECK(rays.met > 500'000);
-  CHECK(hidden > 50'000);
+  CHECK(rays.hidden > 50'000);
 }

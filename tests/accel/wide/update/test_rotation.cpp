@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "dcem/accel/wide/update/rotation.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_traffic.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Builds parts of a `WideBvh` anew in place; included by wide_bvh.hpp.
+/// Bodies of wide_bvh.hpp: builds parts of a `WideBvh` anew in place.
 ///
 /// The leaves of its level (wide/levels.hpp) stay what they are: their boxes are known, and nothing in them is written.
 /// So the price is that of the nodes alone.
@@ -10,10 +10,11 @@
 /// before anything changes. Where they do not fit below the node, the node above is rebuilt_in_place instead; at the
 /// level's root they always fit, because the binner makes no more.
 #include "dcem/accel/wide_bvh.hpp"
+#include "dcem/core/build_mode.hpp"
 
 namespace dcem {
 
-inline std::size_t WideBvh::rebuild_subtree(std::uint32_t node, double wanted_share) {
+DCEM_INLINE std::size_t WideBvh::rebuild_subtree(std::uint32_t node, double wanted_share) {
   if (!detail::is_used_node(arrays_, node)) throw std::invalid_argument("node " + std::to_string(node) + " of none");
   detail::WidePlan& plan = plan_;
   plan.make(arrays_, node, settings_.threads, settings_.divide_by_size);
@@ -42,14 +43,14 @@ inline std::size_t WideBvh::rebuild_subtree(std::uint32_t node, double wanted_sh
 }
 
 /// Differences keep the sum, and their roundings add up; here it is right again.
-inline void WideBvh::sum_anew() {
+DCEM_INLINE void WideBvh::sum_anew() {
   double sum_m2 = 0.0;
   for (const WideNode& node : arrays_.nodes) sum_m2 += detail::weighted_area(arrays_, node);
   arrays_.weighted_area_m2 = arrays_.largest_area_m2 = sum_m2;
 }
 
 /// Empties a node; the nodes of its level below it become free.
-inline void WideBvh::release_below(std::uint32_t node) {
+DCEM_INLINE void WideBvh::release_below(std::uint32_t node) {
   const auto first_freed = static_cast<std::ptrdiff_t>(arrays_.free_nodes.size());
   const auto empty_below = [&](std::uint32_t from, const auto& self) -> void {
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
@@ -68,7 +69,7 @@ inline void WideBvh::release_below(std::uint32_t node) {
 }
 
 /// Fills an empty node. Returns how many nodes that made, itself counted.
-inline std::size_t WideBvh::build_planned(std::uint32_t node, const detail::WidePlan& plan, std::uint32_t slot) {
+DCEM_INLINE std::size_t WideBvh::build_planned(std::uint32_t node, const detail::WidePlan& plan, std::uint32_t slot) {
   std::array<std::uint32_t, simd_lanes> entries;
   const std::size_t count = plan.entries(slot, entries);
   std::size_t made = 1;
@@ -79,7 +80,7 @@ inline std::size_t WideBvh::build_planned(std::uint32_t node, const detail::Wide
 }
 
 /// Fills an empty lane. Returns how many nodes that made.
-inline std::size_t WideBvh::attach_planned(NodeLane place, const detail::WidePlan& plan, std::uint32_t slot) {
+DCEM_INLINE std::size_t WideBvh::attach_planned(NodeLane place, const detail::WidePlan& plan, std::uint32_t slot) {
   if (plan.is_leaf(slot)) {
     arrays_.attach(plan.leaf(slot).child, place, plan.leaf(slot).box);
     return 0;
@@ -91,7 +92,7 @@ inline std::size_t WideBvh::attach_planned(NodeLane place, const detail::WidePla
 }
 
 /// Notes for the objects that are children of a node how large it is now.
-inline void WideBvh::remember_inserted(std::uint32_t node) {
+DCEM_INLINE void WideBvh::remember_inserted(std::uint32_t node) {
   const WideNode& held = arrays_.nodes[node];
   const float area_m2 = held.box().half_area();
   for (const WideChild child : held.child) {

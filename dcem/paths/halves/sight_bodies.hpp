@@ -1,14 +1,24 @@
 #pragma once
-/// How a `Sight` finds what may be seen, and what hides it; included by sight.hpp.
+/// Bodies of sight.hpp: how a `Sight` finds what may be seen, and what hides it.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/sight.hpp"
 
 namespace dcem {
 
-inline void Sight::look_from(const LinkEnd& end) {
+DCEM_INLINE void collect_edges(const Scene& scene, std::span<const FacetId> facets, std::vector<WedgeId>& edges) {
+  edges.clear();
+  for (const FacetId facet : facets) {
+    for (const WedgeId id : scene.wedges_of_facet(facet)) edges.push_back(id);
+  }
+  std::ranges::sort(edges);
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+}
+
+DCEM_INLINE void Sight::look_from(const LinkEnd& end) {
   map_.look_from(end.position_m);
   points_m_.assign(1, end.position_m);
   radius_m_ = 0.0;
@@ -17,7 +27,7 @@ inline void Sight::look_from(const LinkEnd& end) {
   beam_.reset();
 }
 
-inline void Sight::look_from(std::span<const Vec3> points_m) {
+DCEM_INLINE void Sight::look_from(std::span<const Vec3> points_m) {
   Aabb<double> box;
   for (const Vec3& point_m : points_m) box.extend(point_m);
   take_points(points_m, points_m.size() == 1 ? points_m[0] : box.center());
@@ -26,7 +36,7 @@ inline void Sight::look_from(std::span<const Vec3> points_m) {
 }
 
 /// Notes points and where they are from their middle.
-inline void Sight::take_points(std::span<const Vec3> points_m, const Vec3& middle_m) {
+DCEM_INLINE void Sight::take_points(std::span<const Vec3> points_m, const Vec3& middle_m) {
   middle_m_ = middle_m;
   offsets_m_.clear();
   radius_m_ = 0.0;
@@ -40,8 +50,8 @@ inline void Sight::take_points(std::span<const Vec3> points_m, const Vec3& middl
   mounted_on_.clear();
 }
 
-inline void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, const Vec3& image_m,
-                                const std::optional<BodyId>& ignored_body) {
+DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror,
+                                     const Vec3& image_m, const std::optional<BodyId>& ignored_body) {
   const WorldFacet& facet = scene.facet(mirror);
   const std::span<const Vec3> window_m = scene.hull_m(facet);
   points_m_.assign(1, image_m);
@@ -52,8 +62,8 @@ inline void Sight::look_through(const Scene& scene, const FacetOutlines& outline
   map_.look_through(image_m, window_m, MirrorBeam::room_m, beam_->inwards());
 }
 
-inline void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror,
-                                std::span<const Vec3> images_m) {
+DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror,
+                                     std::span<const Vec3> images_m) {
   const WorldFacet& facet = scene.facet(mirror);
   Vec3 middle_m(0.0);  // not that of a box around them, which may be on the other side of the mirror
   for (const Vec3& image_m : images_m) middle_m += image_m / static_cast<double>(images_m.size());
@@ -62,8 +72,8 @@ inline void Sight::look_through(const Scene& scene, const FacetOutlines& outline
   map_.look_through(middle_m_, scene.hull_m(facet), MirrorBeam::room_m, beam_->inwards(), offsets_m_);
 }
 
-inline void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                                   std::vector<FacetId>& seen) {
+DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                                        std::vector<FacetId>& seen) {
   seen_.assign(outlines.size(), 0);
   const auto look_at = [&](FacetId id) {
     if (seen_[id.value] != 0 || !may_see(scene, outlines, id)) return;
@@ -78,7 +88,7 @@ inline void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outl
   });
 }
 
-inline void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& outlines, std::vector<FacetId>& seen) {
+DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& outlines, std::vector<FacetId>& seen) {
   for (const FacetOutlines::BodyFacets& body : outlines.bodies()) {
     if (body.box.empty()) continue;
     const bool is_hidden = is_beside(body.box) || map_.hides(body.box, longest_lift_m);
@@ -90,28 +100,28 @@ inline void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& outli
   }
 }
 
-inline void Sight::find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                                SeenLayer& layer) {
+DCEM_INLINE void Sight::find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                                     SeenLayer& layer) {
   layer.mirrors.clear();
   look_at_scenery(scene, outlines, settings, layer.mirrors);
   finish(scene, outlines, settings, layer);
 }
 
-inline void Sight::find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                               SeenLayer& layer) {
+DCEM_INLINE void Sight::find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                                    SeenLayer& layer) {
   layer.mirrors.clear();
   look_at_bodies(scene, outlines, layer.mirrors);
   finish(scene, outlines, settings, layer);
 }
 
-inline void Sight::find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                               bool bodies, std::vector<FacetId>& seen) {
+DCEM_INLINE void Sight::find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                                    bool bodies, std::vector<FacetId>& seen) {
   seen.clear();
   look_at_scenery(scene, outlines, settings, seen);
   if (bodies) look_at_bodies(scene, outlines, seen);
 }
 
-inline bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) {
+DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) {
   const WorldFacet& facet = scene.facet(id);
   if (!facet.present || facet.body == ignored_body_) return false;
   if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, id));
@@ -123,13 +133,14 @@ inline bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, Fa
 }
 
 /// Notes the part of an outline that is beyond the mirror, where one is looked through.
-inline void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane) {
+DCEM_INLINE void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane) {
   if (!beam_) return map_.cover(corners_m, plane);
   detail::InsetOutline beyond;
   if (beyond.assign(corners_m) && beam_->cut_to_occluder(beyond)) map_.cover(beyond.corners(), plane);
 }
 
-inline void Sight::cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings) {
+DCEM_INLINE void Sight::cover(const Scene& scene, const FacetOutlines& outlines, FacetId id,
+                              const HalfSettings& settings) {
   const WorldFacet& facet = scene.facet(id);
   const FacetOutline& outline = outlines.of(id);
   if (facet.transmits && !settings.sheets_hide) return;
@@ -144,7 +155,7 @@ inline void Sight::cover(const Scene& scene, const FacetOutlines& outlines, Face
   }
 }
 
-inline void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet) {
+DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet) {
   for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
     const std::array<Vec3, 3> corners_m = scene.corners_m(facet.first_triangle + triangle);
     const Vec3 normal = glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]);
@@ -157,23 +168,17 @@ inline void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet) 
 
 /// Adds the edges. Where a point of an edge is seen from its exterior, so is one of its faces beside it: but for a
 /// third facet that touches it there, and then nothing diffracts.
-inline void Sight::finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                          SeenLayer& layer) {
+DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                               SeenLayer& layer) {
   const auto out_of_reach = [&](WedgeId id) {
     const WorldWedge& wedge = scene.wedge(id);
     if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules) || is_inside(wedge.edge)) return true;
     return !map_.shows(wedge.edge.start_m, wedge.edge.end_m, nearer_on(scene, outlines, id));
   };
   std::ranges::sort(layer.mirrors);
-  layer.edges.clear();
-  if (settings.edges) {
-    for (const FacetId face : layer.mirrors) {
-      for (const WedgeId id : scene.wedges_of_facet(face)) layer.edges.push_back(id);
-    }
-    std::ranges::sort(layer.edges);
-    layer.edges.erase(std::unique(layer.edges.begin(), layer.edges.end()), layer.edges.end());
-    std::erase_if(layer.edges, out_of_reach);
-  }
+  collect_edges(scene, settings.edges ? std::span<const FacetId>(layer.mirrors) : std::span<const FacetId>(),
+                layer.edges);
+  std::erase_if(layer.edges, out_of_reach);
   std::erase_if(layer.mirrors, [&](FacetId id) {
     return std::ranges::binary_search(mounted_on_, id) || is_along(scene.facet(id).plane);
   });

@@ -1,10 +1,13 @@
 #pragma once
-/// How a `WideBvh` is built and follows motion; included by wide_bvh.hpp.
+/// Bodies of wide_bvh.hpp: how a `WideBvh` is built and follows motion.
+#include "dcem/accel/wide/build/builder.hpp"
+#include "dcem/accel/wide/build/quads.hpp"
 #include "dcem/accel/wide_bvh.hpp"
+#include "dcem/core/build_mode.hpp"
 
 namespace dcem {
 
-inline void WideBvh::require_input(const TriangleView& mesh, Boxes boxes) {
+DCEM_INLINE void WideBvh::require_input(const TriangleView& mesh, Boxes boxes) {
   if (mesh.size() != boxes.size()) throw std::invalid_argument("one box per triangle is needed");
   require_valid_boxes(boxes);
   std::uint32_t highest = 0;
@@ -13,7 +16,7 @@ inline void WideBvh::require_input(const TriangleView& mesh, Boxes boxes) {
   for (std::uint32_t triangle = 0; triangle < mesh.size(); ++triangle) require_corners(mesh, triangle);
 }
 
-inline void WideBvh::require_corners(const TriangleView& mesh, std::uint32_t triangle) {
+DCEM_INLINE void WideBvh::require_corners(const TriangleView& mesh, std::uint32_t triangle) {
   for (const std::uint32_t vertex : mesh.triangles[triangle]) {
     if (vertex >= mesh.vertices_m.size()) {
       throw std::invalid_argument("triangle " + std::to_string(triangle) + " has a corner that is no vertex");
@@ -21,8 +24,9 @@ inline void WideBvh::require_corners(const TriangleView& mesh, std::uint32_t tri
   }
 }
 
-inline void WideBvh::build_objects(const TriangleView& mesh, Boxes boxes, std::span<const std::uint32_t> object_first,
-                                   const WideBuildSettings& settings) {
+DCEM_INLINE void WideBvh::build_objects(const TriangleView& mesh, Boxes boxes,
+                                        std::span<const std::uint32_t> object_first,
+                                        const WideBuildSettings& settings) {
   require_input(mesh, boxes);
   require_valid_objects(object_first, boxes.size());
   dcem::validate(settings);
@@ -40,7 +44,7 @@ inline void WideBvh::build_objects(const TriangleView& mesh, Boxes boxes, std::s
   build_all(mesh, boxes);
 }
 
-inline void WideBvh::rebuild(const TriangleView& mesh, Boxes boxes) {
+DCEM_INLINE void WideBvh::rebuild(const TriangleView& mesh, Boxes boxes) {
   require_input(mesh, boxes);
   if (boxes.size() != primitive_count()) throw std::invalid_argument("one box per triangle of the tree is needed");
   // The pairs of the last build name vertices.
@@ -48,7 +52,7 @@ inline void WideBvh::rebuild(const TriangleView& mesh, Boxes boxes) {
   build_all(mesh, boxes);
 }
 
-inline void WideBvh::build_all(const TriangleView& mesh, Boxes boxes) {
+DCEM_INLINE void WideBvh::build_all(const TriangleView& mesh, Boxes boxes) {
   arrays_.clear_for(settings_.huge_pages);
   arrays_.costs = settings_.costs;
   arrays_.fetch_ahead = settings_.fetch_ahead;
@@ -78,7 +82,8 @@ inline void WideBvh::build_all(const TriangleView& mesh, Boxes boxes) {
   degradation_.renew(arrays_);
 }
 
-inline WideRefitReport WideBvh::refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes) {
+DCEM_INLINE WideRefitReport WideBvh::refit(std::span<const std::uint32_t> moved, const TriangleView& mesh,
+                                           Boxes boxes) {
   if (mesh.size() != primitive_count() || boxes.size() != primitive_count()) {
     throw std::invalid_argument("one box per triangle of the tree is needed");
   }
@@ -113,7 +118,7 @@ inline WideRefitReport WideBvh::refit(std::span<const std::uint32_t> moved, cons
 }
 
 /// Which of the triangles are there now. `is_there_now_` is empty when all are: then nothing is noted one by one.
-inline void WideBvh::look_at_boxes(std::span<const std::uint32_t> moved, Boxes boxes) {
+DCEM_INLINE void WideBvh::look_at_boxes(std::span<const std::uint32_t> moved, Boxes boxes) {
   is_there_now_.clear();
   detail::PlainBoxes plain;
   for (const std::uint32_t triangle : moved) {
@@ -128,7 +133,7 @@ inline void WideBvh::look_at_boxes(std::span<const std::uint32_t> moved, Boxes b
 }
 
 /// Notes the leaves in which triangles have moved, each once.
-inline void WideBvh::mark_dirty(std::span<const std::uint32_t> moved) {
+DCEM_INLINE void WideBvh::mark_dirty(std::span<const std::uint32_t> moved) {
   for (std::size_t index = 0; index < moved.size(); ++index) {
     arrays_.is_there[moved[index]] = is_there_now_.empty() ? char{1} : is_there_now_[index];
     const std::uint32_t leaf = arrays_.quad_of_triangle[moved[index]] / simd_lanes;
@@ -138,13 +143,13 @@ inline void WideBvh::mark_dirty(std::span<const std::uint32_t> moved) {
   }
 }
 
-inline void WideBvh::note_moved_object(std::uint32_t object) {
+DCEM_INLINE void WideBvh::note_moved_object(std::uint32_t object) {
   if (arrays_.object_root[object].is_none() || object_is_moved_[object] != 0) return;
   object_is_moved_[object] = 1;
   moved_objects_.push_back(object);
 }
 
-inline std::size_t WideBvh::reinsert_moved(double growth_limit, std::uint32_t turn_length) {
+DCEM_INLINE std::size_t WideBvh::reinsert_moved(double growth_limit, std::uint32_t turn_length) {
   const auto has_grown = [&](std::uint32_t object) {
     const std::uint32_t node = arrays_.place_of(arrays_.object_root[object]).node();
     const NodeLane above = arrays_.lane_of_node[node];
@@ -163,7 +168,7 @@ inline std::size_t WideBvh::reinsert_moved(double growth_limit, std::uint32_t tu
   return count;
 }
 
-inline bool WideBvh::reinsert(std::uint32_t object) {
+DCEM_INLINE bool WideBvh::reinsert(std::uint32_t object) {
   const WideChild root = arrays_.object_root[object];
   const NodeLane place = arrays_.place_of(root);
   const Aabb<float> box = arrays_.box_at(place);
@@ -175,7 +180,7 @@ inline bool WideBvh::reinsert(std::uint32_t object) {
 }
 
 /// Empties a lane. A node that is left with one entry gives its place to that entry.
-inline void WideBvh::detach(NodeLane place) {
+DCEM_INLINE void WideBvh::detach(NodeLane place) {
   arrays_.attach({}, place, {});
   const std::uint32_t node = place.node();
   if (node == 0 || arrays_.nodes[node].child_count() > 1) {
@@ -199,7 +204,7 @@ inline void WideBvh::detach(NodeLane place) {
 /// Offers the lanes of one node: a free one, or an entry that is not divided further, to be joined under a new node, as
 /// far down as new nodes are made. Free lanes may lie between others. There is always a spot above that: a node without
 /// one has eight inner nodes below it, and so have they, which no tree can afford for long.
-inline void WideBvh::offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best) {
+DCEM_INLINE void WideBvh::offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best) {
   const auto& [cost_m2, node, depth] = branch;
   const WideNode& held = arrays_.nodes[node];
   const detail::BoxLanes boxes(held);
@@ -223,7 +228,7 @@ inline void WideBvh::offer_spots(const Branch& branch, const Aabb<float>& box, S
   }
 }
 
-inline WideBvh::Spot WideBvh::cheapest_spot(const Aabb<float>& box) {
+DCEM_INLINE WideBvh::Spot WideBvh::cheapest_spot(const Aabb<float>& box) {
   Spot best;
   branches_.clear();
   branches_.push_back({0.0, 0, 1});
@@ -238,7 +243,7 @@ inline WideBvh::Spot WideBvh::cheapest_spot(const Aabb<float>& box) {
   return best;
 }
 
-inline void WideBvh::attach_at(WideChild child, const Aabb<float>& box, const Spot& spot) {
+DCEM_INLINE void WideBvh::attach_at(WideChild child, const Aabb<float>& box, const Spot& spot) {
   NodeLane place = NodeLane::at(spot.node, spot.lane);
   if (spot.joins) {
     const WideChild beside = arrays_.child_at(place);
@@ -257,7 +262,7 @@ inline void WideBvh::attach_at(WideChild child, const Aabb<float>& box, const Sp
   arrays_.tighten_above(spot.node);
 }
 
-inline std::string WideBvh::validate(Boxes boxes) const {
+DCEM_INLINE std::string WideBvh::validate(Boxes boxes) const {
   return detail::find_wide_defect(arrays_, boxes);
 }
 

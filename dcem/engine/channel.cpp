@@ -1,0 +1,2 @@
+// What is made of paths.
+#include "dcem/channel/cell_average_bodies.hpp"
