@@ -207,6 +207,17 @@ namespace simd {
   one.lanes.with(other.lanes, [](auto& part, const auto& by) { part = part > by ? part : by; });
   return one;
 }
+/// `one` in the lanes where the mask holds, `other` in the rest.
+[[gnu::always_inline]] inline Float8 select(const Mask8& mask, Float8 one, const Float8& other) {
+  Mask8 chosen = mask;
+  chosen.lanes.with(one.lanes, [](auto& bits, const auto& part) { bits &= std::bit_cast<detail::IntPart>(part); });
+  Mask8 rest = mask;
+  rest.lanes.with(other.lanes,
+                  [](auto& bits, const auto& part) { bits = ~bits & std::bit_cast<detail::IntPart>(part); });
+  chosen = chosen | rest;
+  one.lanes.with(chosen.lanes, [](auto& part, const auto& bits) { part = std::bit_cast<detail::FloatPart>(bits); });
+  return one;
+}
 [[gnu::always_inline]] inline Float8 absolute(Float8 value) {
   value.lanes.each([](auto& part) {
     part = std::bit_cast<detail::FloatPart>(std::bit_cast<detail::IntPart>(part) & std::int32_t{0x7fffffff});

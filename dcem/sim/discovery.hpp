@@ -24,7 +24,7 @@ SearchPlan plan_search(const PropagationSettings& propagation, const Scene& scen
 /// Exact or sampled: whether a simulation with these settings finds every path. Throws as `plan_search` does.
 Discovery resolve_discovery(const PropagationSettings& propagation, const Scene& scene);
 
-/// Reflections and diffractions together up to which all paths are found, one diffraction among them.
+/// Reflections and diffractions together up to which all paths are found: one diffraction among them, or two alone.
 int exactly_searched_interactions(const PropagationSettings& propagation, const SearchPlan& plan);
 
 /// Whether all paths of a path's kind are found, not only those that rays come by. `exact_interactions` as above.

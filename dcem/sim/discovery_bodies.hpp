@@ -52,8 +52,8 @@ inline int most_interactions_that_end(PropagationSettings propagation, const Sce
 
 [[noreturn]] inline void refuse_many_facets(std::size_t facets) {
   throw std::invalid_argument("discovery exact: not in this version for " + std::to_string(facets) +
-                              " facets, except for at most three interactions, at most one of them a diffraction; "
-                              "expected max_interactions 3 and max_diffractions 1, or at most " +
+                              " facets, except for at most three interactions, one of them a diffraction, or two; "
+                              "expected max_interactions 3 and max_diffractions 1, max_interactions 2, or at most " +
                               std::to_string(exact_discovery_facet_limit) + " facets");
 }
 

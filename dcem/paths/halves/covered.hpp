@@ -7,12 +7,12 @@
 
 namespace dcem {
 
-/// Three mirrors and edges at most, one edge among them.
-inline constexpr int most_joined_interactions = 3, most_joined_diffractions = 1;
+/// Three mirrors and edges at most: one edge among three elements, two where there is nothing else.
+inline constexpr int most_joined_interactions = 3, most_joined_edges = 2;
 
 /// Whether all sequences within some orders are covered, where at most `joined` elements are joined. 0: none are.
 inline bool halves_cover(int joined, int diffractions, int interactions) {
-  return joined > 0 && diffractions <= most_joined_diffractions && interactions <= joined;
+  return joined > 0 && interactions <= joined && (diffractions <= 1 || interactions <= most_joined_edges);
 }
 inline bool halves_cover(int joined, const Sequence& sequence) {
   return halves_cover(joined, static_cast<int>(edge_count(sequence)), static_cast<int>(sequence.size()));

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "dcem/paths/halves/crowd_gates.hpp"
+#include "dcem/paths/halves/edge_pairs.hpp"
 #include "dcem/paths/halves/half_joiner.hpp"
 
 namespace dcem {
@@ -14,7 +16,11 @@ template <typename Index>
 class CrowdJoiner {
  public:
   CrowdJoiner(CrowdGates<Index>& gates, const HalfJoiner::Orders& orders)
-      : gates_(gates), scene_(gates.scene()), lanes_(gates.lanes()), orders_(orders) {}
+      : gates_(gates),
+        scene_(gates.scene()),
+        lanes_(gates.lanes()),
+        orders_(orders),
+        pairs_(scene_, gates.outlines()) {}
 
   /// Calls `visit(sequence, point)`, the sequence from the receiver outwards, for every sequence of one or two mirrors
   /// and edges that a path from the transmitter to a point of the crowd may take.
@@ -22,7 +28,10 @@ class CrowdJoiner {
   void for_each_sequence(Visit&& visit) {
     const bool mirrors = orders_.reflections >= 1 && orders_.interactions >= 1;
     const bool edges = orders_.diffractions >= 1 && orders_.interactions >= 1;
+    const bool pairs = orders_.diffractions >= 2 && orders_.interactions >= 2;
+    if (pairs) pairs_.aim(mast().half().position_m(), mast().parts());
     for (const SeenLayer& layer : crowd().layers()) {
+      if (pairs) edge_pairs(layer, visit);
       if (mirrors) single_mirrors(layer, visit);
       if (edges) single_edges(layer, visit);
       if (orders_.interactions < 2) continue;
@@ -145,6 +154,19 @@ class CrowdJoiner {
     }
   }
 
+  /// Each point by itself: what takes time are pairs that no other point has.
+  template <typename Visit>
+  void edge_pairs(const SeenLayer& layer, Visit& visit) {
+    const Sight& sight = crowd().sight();
+    for (std::size_t point = 0; point < crowd().points_m().size(); ++point) {
+      pairs_.for_each(crowd().points_m()[point], layer.edges, [&](const EdgePair& pair) {
+        if (sight.map().hides(pair.near_m, sight.nearer_on(scene_, gates_.outlines(), pair.near))) return;
+        sequence_.assign({pair.near, pair.far});
+        visit(std::as_const(sequence_), point);
+      });
+    }
+  }
+
   CrowdGates<Index>& gates_;
   const Scene& scene_;
   const LaneScene& lanes_;
@@ -152,6 +174,8 @@ class CrowdJoiner {
   std::vector<LanePoints> images_;
   std::vector<std::uint32_t> beside_;  ///< the lanes of each pack on the side of the mirror that is looked at
   std::vector<HalfSpace> cone_;
+  EdgePairs pairs_;
+  Sequence sequence_;
 };
 
 }  // namespace dcem

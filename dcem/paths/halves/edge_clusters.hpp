@@ -51,10 +51,11 @@ inline void cut_to_cone(EdgePart& part, const Wedge& edge, const Vec3& origin_m,
 /// How far the point that diffracts may move along an edge while the other end moves by `moved_m`: with the places z₁,
 /// z₂ and distances d₁, d₂ of both ends it is at z₁ + (z₂ − z₁) d₁/(d₁ + d₂), of which the derivative by z₂ and d₂ has
 /// the size d₁/(d₁ + d₂) √(1 + ((z₂ − z₁)/(d₁ + d₂))²).
-inline Float8 edge_point_reach_m(const Float8& own_distance, const Float8& sum, const Float8& between, float moved_m) {
+inline Float8 edge_point_reach_m(const Float8& own_distance, const Float8& sum, const Float8& between,
+                                 const Float8& moved_m) {
   const Float8 least = simd::maximum(sum - moved_m, Float8(1e-3F));
   const Float8 slope = (simd::absolute(between) + moved_m) / least;
-  return Float8(moved_m) * own_distance / least * simd::square_root(Float8(1.0F) + slope * slope);
+  return moved_m * own_distance / least * simd::square_root(Float8(1.0F) + slope * slope);
 }
 
 /// How far the point may be off because the end that sees the edge is far away.

@@ -4,13 +4,16 @@
 /// With R₁ the image of the receiver in its mirror and T₂ that of the transmitter in its own, both points of a path
 /// over two mirrors lie on the straight line from R₁ to T₂: so T₂ is in the cone of R₁ through the receiver's mirror.
 /// Over a mirror and an edge the point on the edge is in that cone, and follows from the image and the other end in
-/// closed form. What is left is looked up in both maps, each point at the end that must see it. The solver decides.
+/// closed form. Over two edges: edge_pairs.hpp. What is left is looked up in both maps, each point at the end that must
+/// see it. The solver decides.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "dcem/paths/halves/beam_lists.hpp"
+#include "dcem/paths/halves/edge_pairs.hpp"
 #include "dcem/paths/halves/join_gates.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 #include "dcem/paths/sequence.hpp"
@@ -25,7 +28,7 @@ class HalfJoiner {
   };
 
   HalfJoiner(const Scene& scene, const FacetOutlines& outlines, const Orders& orders)
-      : gates_(scene, outlines), orders_(orders) {}
+      : gates_(scene, outlines), orders_(orders), pairs_(scene, outlines) {}
 
   /// Calls `visit(sequence)`, from the receiver outwards, for each; seldom twice for one. With what the transmitter
   /// reaches, where that is known, ways over its mirrors need not be looked for.
@@ -42,6 +45,7 @@ class HalfJoiner {
       if (edges) single_edges(own, other, visit);
     }
     if (orders_.interactions < 2) return;
+    if (orders_.diffractions >= 2) edge_pairs(receiver, transmitter, reached, visit);
     for (std::size_t own = 0; own < receiver.layers().size(); ++own) {
       const Side near{receiver, receiver.layers()[own]};
       const bool listed = reached != nullptr && (own == 0 || reached->has_bodies());
@@ -196,8 +200,29 @@ class HalfJoiner {
     }
   }
 
+  /// An edge of each end.
+  template <typename Visit>
+  void edge_pairs(const PathHalf& receiver, const PathHalf& transmitter, const BeamLists* reached, Visit& visit) {
+    parts_.clear();
+    if (reached != nullptr) parts_.assign(reached->parts().begin(), reached->parts().end());
+    for (std::size_t layer = 0; layer < transmitter.layers().size(); ++layer) {
+      if (reached != nullptr && (layer == 0 || reached->has_bodies())) continue;
+      for (const WedgeId edge : transmitter.layers()[layer].edges) {
+        parts_.push_back(whole_edge(edge.value, gates_.scene().wedge(edge).edge, transmitter.position_m()));
+      }
+    }
+    pairs_.aim(transmitter.position_m(), parts_);
+    for (const HalfLayer& layer : receiver.layers()) {
+      pairs_.for_each(receiver.position_m(), layer.edges, [&](const EdgePair& pair) {
+        offer({receiver, pair.near, pair.near_m}, {transmitter, pair.far, pair.far_m}, false, visit);
+      });
+    }
+  }
+
   JoinGates gates_;
   Orders orders_;
+  EdgePairs pairs_;
+  std::vector<EdgePart> parts_;
   Sequence sequence_;
 };
 

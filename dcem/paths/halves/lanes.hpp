@@ -59,7 +59,51 @@ struct LaneEdge {
   std::array<float, 3> start, direction, first_normal, last_normal;
   bool both_faces = false;  ///< in the interior is what is behind both faces; otherwise the gate does not ask
 
-  Float8 place(const LanePoints& from_start) const { return dot(from_start, direction[0], direction[1], direction[2]); }
+  LanePoints from_start(const LanePoints& points) const {
+    return {points.x - start[0], points.y - start[1], points.z - start[2]};
+  }
+  /// What is across the edge of points, counted from its start, that are at a place along it.
+  LanePoints across(const LanePoints& away, const Float8& place) const {
+    return {away.x - place * direction[0], away.y - place * direction[1], away.z - place * direction[2]};
+  }
+  Float8 place(const LanePoints& away) const { return dot(away, direction[0], direction[1], direction[2]); }
+  /// The lanes of points, counted from the start, that surely are behind both faces.
+  std::uint32_t behind(const LanePoints& away, float error_m) const {
+    if (!both_faces) return 0;
+    const Float8 slack(-(error_m + 1e-3F));
+    return ((dot(away, first_normal[0], first_normal[1], first_normal[2]) < slack) &
+            (dot(away, last_normal[0], last_normal[1], last_normal[2]) < slack))
+        .bits();
+  }
+};
+
+inline LaneEdge lane_edge(const Wedge& wedge, const Vec3& origin_m) {
+  const double angle_rad = wedge.exterior_angle_rad;
+  const Vec3 last = std::sin(angle_rad) * wedge.tangent - std::cos(angle_rad) * wedge.normal;
+  const auto floats = [](const Vec3& of) {
+    return std::array{static_cast<float>(of.x), static_cast<float>(of.y), static_cast<float>(of.z)};
+  };
+  return {floats(wedge.start_m - origin_m), floats(edge_direction(wedge)), floats(wedge.normal), floats(last),
+          angle_rad > pi};
+}
+
+/// Where along an edge the shortest ways from points to the end that sees it at `own_place_m`, `own_distance_m` away,
+/// meet it.
+struct LaneMeeting {
+  Float8 place_m, beside_m;  ///< and how far that may be off
+  Float8 between_m, sum_m;   ///< of both ends, along the edge and across it
+
+  /// The points count from the edge's start; `error_m`: how far they may be off.
+  LaneMeeting(const LaneEdge& edge, float own_place_m, float own_distance_m, const LanePoints& away, float error_m)
+      : place_m(0.0F), beside_m(0.0F), between_m(0.0F), sum_m(0.0F) {
+    const Float8 place = edge.place(away);
+    const LanePoints across = edge.across(away, place);
+    sum_m = simd::square_root(across.x * across.x + across.y * across.y + across.z * across.z) + own_distance_m;
+    between_m = place - own_place_m;
+    const Float8 inverse = Float8(1.0F) / sum_m;
+    place_m = Float8(own_place_m) + between_m * (Float8(own_distance_m) * inverse);
+    beside_m = Float8(4.0F * error_m) * (Float8(1.0F) + simd::absolute(between_m) * inverse);
+  }
 };
 
 /// All facets and edges of a scene in single precision.
@@ -131,16 +175,7 @@ class LaneScene {
     for (const HullSide& of : outlines.sides(id)) sides_[side++] = half_space(of.normal, of.offset_m);
     for (const Vec3& corner_m : scene.hull_m(facet)) reach_m_ = std::max(reach_m_, glm::length(corner_m - origin_m_));
   }
-  void place(const Scene& scene, WedgeId id) { edges_[id.value] = lane_edge(scene.wedge(id).edge); }
-  LaneEdge lane_edge(const Wedge& wedge) const {
-    const Vec3 start = wedge.start_m - origin_m_, direction = edge_direction(wedge);
-    const double angle_rad = wedge.exterior_angle_rad;
-    const Vec3 last = std::sin(angle_rad) * wedge.tangent - std::cos(angle_rad) * wedge.normal;
-    const auto floats = [](const Vec3& of) {
-      return std::array{static_cast<float>(of.x), static_cast<float>(of.y), static_cast<float>(of.z)};
-    };
-    return {floats(start), floats(direction), floats(wedge.normal), floats(last), angle_rad > pi};
-  }
+  void place(const Scene& scene, WedgeId id) { edges_[id.value] = lane_edge(scene.wedge(id).edge, origin_m_); }
 
   Vec3 origin_m_;
   double reach_m_ = 1.0;
@@ -203,22 +238,12 @@ inline LaneGate LaneScene::inside(const HalfSpace& plane, std::span<const HalfSp
 inline LaneGate LaneScene::meet(const EdgePart& part, const LanePoints& from, float error_m,
                                 std::uint32_t lanes) const {
   const LaneEdge& edge = edges_[part.edge];
-  const LanePoints away{from.x - edge.start[0], from.y - edge.start[1], from.z - edge.start[2]};
-  if (edge.both_faces) {
-    const Float8 slack(-(error_m + beside_m));
-    const Mask8 behind = (dot(away, edge.first_normal[0], edge.first_normal[1], edge.first_normal[2]) < slack) &
-                         (dot(away, edge.last_normal[0], edge.last_normal[1], edge.last_normal[2]) < slack);
-    lanes &= ~behind.bits();
-  }
-  LaneGate gate{from, Float8(0.0F), lanes};
-  if (lanes == 0) return gate;
-  const Float8 place = edge.place(away);
-  const LanePoints across{away.x - place * edge.direction[0], away.y - place * edge.direction[1],
-                          away.z - place * edge.direction[2]};
-  const Float8 distance = simd::square_root(across.x * across.x + across.y * across.y + across.z * across.z);
-  const Float8 inverse = Float8(1.0F) / (distance + part.distance), between = place - part.place;
-  const Float8 point = Float8(part.place) + between * (Float8(part.distance) * inverse);
-  gate.beside_m = Float8(4.0F * error_m) * (Float8(1.0F) + simd::absolute(between) * inverse);
+  const LanePoints away = edge.from_start(from);
+  LaneGate gate{from, Float8(0.0F), lanes & ~edge.behind(away, error_m)};
+  if (gate.lanes == 0) return gate;
+  const LaneMeeting meeting(edge, part.place, part.distance, away, error_m);
+  const Float8 point = meeting.place_m;
+  gate.beside_m = meeting.beside_m;
   const Float8 room = gate.beside_m + beside_m;
   gate.lanes &= ~((point + room < Float8(part.from)) | (Float8(part.to) + room < point)).bits();
   gate.points = {point * edge.direction[0] + edge.start[0], point * edge.direction[1] + edge.start[1],

@@ -1,5 +1,7 @@
 #pragma once
 /// Random towns, and their paths by trying every sequence: what the search from halves is held against.
+#include <doctest/doctest.h>
+
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -99,6 +101,16 @@ inline bool same_paths(const std::vector<Path>& one, const std::vector<Path>& ot
     }
   }
   return true;
+}
+
+/// Checks both searches against each other; returns how many paths there are.
+inline std::size_t check_joined(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
+                                int pixels = 256) {
+  const std::vector<Path> expected = all_sequences(traced, from, to, asked);
+  for (const Listed listed : {Listed::nothing, Listed::scenery, Listed::all}) {
+    CHECK(same_paths(joined(traced, from, to, asked, pixels, listed), expected));
+  }
+  return expected.size();
 }
 
 inline LinkEnd somewhere(TracedScene<>& traced, Draw& draw) {

@@ -11,20 +11,6 @@
 using namespace dcem;
 using namespace dcem::test;
 
-namespace {
-
-/// Checks both searches against each other; returns how many paths there are.
-std::size_t check_joined(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
-                         int pixels = 256) {
-  const std::vector<Path> expected = all_sequences(traced, from, to, asked);
-  for (const Listed listed : {Listed::nothing, Listed::scenery, Listed::all}) {
-    CHECK(same_paths(joined(traced, from, to, asked, pixels, listed), expected));
-  }
-  return expected.size();
-}
-
-}  // namespace
-
 TEST_CASE("joined halves find every path of two interactions, and the same bits") {
   std::size_t found = 0;
   for (std::uint64_t seed = 0; seed < 150; ++seed) {

@@ -92,7 +92,7 @@ nlohmann::ordered_json settings_json(const RunFacts& facts) {
           {"propagation", propagation_json(facts)},
           {"defaults_of_this_version",
            {{"cache", "seed with sampled discovery, else off"},
-            {"discovery", "exact up to three interactions, one of them a diffraction, and up to " +
+            {"discovery", "exact up to three interactions, one of them a diffraction, or two diffractions, and up to " +
                               std::to_string(exact_limit) + " facets; else sampled beyond"}}}};
 }
 
