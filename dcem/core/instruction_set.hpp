@@ -5,6 +5,7 @@
 
 /// Code in whose types or functions the width of registers shows stands in `namespace dcem { inline namespace
 /// DCEM_ISA`: compiled for several processors in one program it has other names each time, and none replaces another.
+/// What merely holds eight lanes (core/simd.hpp) has the same size and alignment for all of them.
 #if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
 #define DCEM_ISA isa_avx512
 #elif defined(__AVX2__)

@@ -49,9 +49,10 @@ using FloatPart = float __attribute__((vector_size(16)));
 using IntPart = std::int32_t __attribute__((vector_size(16)));
 using UintPart = std::uint32_t __attribute__((vector_size(16)));
 
-/// Lanes in two registers: a vector wider than a register is taken apart lane by lane by g++.
+/// Lanes in two registers: a vector wider than a register is taken apart lane by lane by g++. They lie where one wide
+/// register would: what holds lanes looks the same to code that is compiled for other processors.
 template <typename Part>
-struct SimdLanes {
+struct alignas(2 * sizeof(Part)) SimdLanes {
   Part low, high;
 
   template <typename Operation>

@@ -31,6 +31,8 @@ inline bool is_used_node(const WideArrays& arrays, std::uint32_t node) {
   return node < arrays.nodes.size() && (node == 0 || !arrays.lane_of_node[node].is_none());
 }
 
+inline namespace DCEM_ISA {
+
 /// Eight boxes, one in each lane.
 struct BoxLanes {
   Float8 low[3], high[3];
@@ -55,5 +57,7 @@ struct BoxLanes {
   }
   std::array<float, simd_lanes> half_areas() const { return half_areas_with({}); }
 };
+
+}  // namespace DCEM_ISA
 
 }  // namespace dcem::detail

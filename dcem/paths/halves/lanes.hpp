@@ -17,6 +17,8 @@
 
 namespace dcem {
 
+inline namespace DCEM_ISA {
+
 /// Eight points.
 struct LanePoints {
   Float8 x, y, z;
@@ -54,6 +56,8 @@ struct LaneGate {
   std::uint32_t lanes;
 };
 
+}  // namespace DCEM_ISA
+
 /// An edge in single precision, with the normals of both faces.
 struct LaneEdge {
   std::array<float, 3> start, direction, first_normal, last_normal;
@@ -87,6 +91,8 @@ inline LaneEdge lane_edge(const Wedge& wedge, const Vec3& origin_m) {
           angle_rad > pi};
 }
 
+inline namespace DCEM_ISA {
+
 /// Where along an edge the shortest ways from points to the end that sees it at `own_place_m`, `own_distance_m` away,
 /// meet it.
 struct LaneMeeting {
@@ -105,6 +111,8 @@ struct LaneMeeting {
     beside_m = Float8(4.0F * error_m) * (Float8(1.0F) + simd::absolute(between_m) * inverse);
   }
 };
+
+}  // namespace DCEM_ISA
 
 /// All facets and edges of a scene in single precision.
 class LaneScene {

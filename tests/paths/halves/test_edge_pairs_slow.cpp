@@ -63,7 +63,7 @@ std::vector<Path> over_all_pairs(TracedScene<>& traced, const LinkEnd& from, con
 }  // namespace
 
 TEST_CASE("of all pairs of edges in Munich the search misses none that carries a path") {
-  DCEM_SKIP_WITHOUT_SHARED();
+  DCEM_NEEDS_SHARED();
   TracedScene<> traced(munich());
   const LinkEnd from = traced.end(Vec3(-14.77, 118.92, 25.0)), to = traced.end(Vec3(-2.77, 123.92, 1.5));
   const std::vector<Path> all = over_all_pairs(traced, from, to);

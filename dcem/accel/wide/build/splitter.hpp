@@ -16,6 +16,8 @@ namespace dcem {
 
 namespace detail {
 
+inline namespace DCEM_ISA {
+
 /// The same as one number in eight: the lower bounds, and the upper ones below zero, so that all are minima.
 struct BinBox {
   Float8 bounds = std::numeric_limits<float>::infinity();
@@ -26,6 +28,8 @@ struct BinBox {
   /// Meaningless where it is empty.
   float half_area() const { return half_area_of(-bounds.last_four() - bounds.first_four()); }
 };
+
+}  // namespace DCEM_ISA
 
 }  // namespace detail
 

@@ -10,6 +10,8 @@
 
 namespace dcem::detail {
 
+inline namespace DCEM_ISA {
+
 /// Double-precision lanes in one register.
 using DoublePart = double __attribute__((vector_size(sizeof(FloatPart))));
 using LongPart = std::int64_t __attribute__((vector_size(sizeof(FloatPart))));
@@ -95,5 +97,7 @@ struct VectorPart {
   result = std::bit_cast<DoublePart>(0x5fe6eb50c7b537a9 - (std::bit_cast<LongPart>(value) >> 1));
   for (int step = 0; step < steps; ++step) result = result * (1.5 - 0.5 * value * result * result);
 }
+
+}  // namespace DCEM_ISA
 
 }  // namespace dcem::detail

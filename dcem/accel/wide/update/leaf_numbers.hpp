@@ -25,6 +25,8 @@ struct LeafQuads {
   std::array<Quad, simd_lanes> halves;  ///< what is left of pairs that are there in part
 };
 
+inline namespace DCEM_ISA {
+
 /// The numbers of a leaf, from the quads in it.
 class LeafNumbers {
  public:
@@ -253,5 +255,7 @@ class LeafNumbers {
   Row difference_squared_;
   DoublePart bend_m_, diameter_m_;  ///< the largest of the lanes so far
 };
+
+}  // namespace DCEM_ISA
 
 }  // namespace dcem::detail
