@@ -93,11 +93,13 @@ inline namespace DCEM_ISA {
 struct Mask8 {
   detail::SimdLanes<detail::IntPart> lanes;
 
-  [[gnu::always_inline]] friend Mask8 operator&(Mask8 one, const Mask8& other) {
+  [[gnu::always_inline]] friend Mask8 operator&(const Mask8& first, const Mask8& other) {
+    Mask8 one = first;
     one.lanes.with(other.lanes, [](auto& part, const auto& by) { part &= by; });
     return one;
   }
-  [[gnu::always_inline]] friend Mask8 operator|(Mask8 one, const Mask8& other) {
+  [[gnu::always_inline]] friend Mask8 operator|(const Mask8& first, const Mask8& other) {
+    Mask8 one = first;
     one.lanes.with(other.lanes, [](auto& part, const auto& by) { part |= by; });
     return one;
   }
@@ -112,7 +114,8 @@ struct Mask8 {
   }
 };
 
-/// Eight single-precision numbers. A plain number stands for eight times itself.
+/// Eight single-precision numbers. A plain number stands for eight times itself. Functions take them by reference:
+/// where one is passed by value, g++ notes that its version 4.6 has changed how.
 struct Float8 {
   detail::SimdLanes<detail::FloatPart> lanes;
 
@@ -161,31 +164,38 @@ struct Float8 {
     return numbers[lane];
   }
 
-  [[gnu::always_inline]] friend Float8 operator+(Float8 one, const Float8& other) {
+  [[gnu::always_inline]] friend Float8 operator+(const Float8& first, const Float8& other) {
+    Float8 one = first;
     one.lanes.with(other.lanes, [](auto& part, const auto& by) { part += by; });
     return one;
   }
-  [[gnu::always_inline]] friend Float8 operator-(Float8 one, const Float8& other) {
+  [[gnu::always_inline]] friend Float8 operator-(const Float8& first, const Float8& other) {
+    Float8 one = first;
     one.lanes.with(other.lanes, [](auto& part, const auto& by) { part -= by; });
     return one;
   }
-  [[gnu::always_inline]] friend Float8 operator*(Float8 one, const Float8& other) {
+  [[gnu::always_inline]] friend Float8 operator*(const Float8& first, const Float8& other) {
+    Float8 one = first;
     one.lanes.with(other.lanes, [](auto& part, const auto& by) { part *= by; });
     return one;
   }
-  [[gnu::always_inline]] friend Float8 operator/(Float8 one, const Float8& other) {
+  [[gnu::always_inline]] friend Float8 operator/(const Float8& first, const Float8& other) {
+    Float8 one = first;
     one.lanes.with(other.lanes, [](auto& part, const auto& by) { part /= by; });
     return one;
   }
-  [[gnu::always_inline]] friend Float8 operator-(Float8 one) {
+  [[gnu::always_inline]] friend Float8 operator-(const Float8& first) {
+    Float8 one = first;
     one.lanes.each([](auto& part) { part = -part; });
     return one;
   }
-  [[gnu::always_inline]] friend Mask8 operator<(Float8 one, const Float8& other) {
+  [[gnu::always_inline]] friend Mask8 operator<(const Float8& first, const Float8& other) {
+    Float8 one = first;
     one.lanes.with(other.lanes, [](auto& part, const auto& by) { part = std::bit_cast<detail::FloatPart>(part < by); });
     return std::bit_cast<Mask8>(one.lanes);
   }
-  [[gnu::always_inline]] friend Mask8 operator<=(Float8 one, const Float8& other) {
+  [[gnu::always_inline]] friend Mask8 operator<=(const Float8& first, const Float8& other) {
+    Float8 one = first;
     one.lanes.with(other.lanes,
                    [](auto& part, const auto& by) { part = std::bit_cast<detail::FloatPart>(part <= by); });
     return std::bit_cast<Mask8>(one.lanes);
@@ -199,17 +209,20 @@ struct Float8 {
 namespace simd {
 
 /// The smaller one in each lane; that of `other` where one of them is NaN.
-[[gnu::always_inline]] inline Float8 minimum(Float8 one, const Float8& other) {
+[[gnu::always_inline]] inline Float8 minimum(const Float8& first, const Float8& other) {
+  Float8 one = first;
   one.lanes.with(other.lanes, [](auto& part, const auto& by) { part = part < by ? part : by; });
   return one;
 }
 /// The larger one in each lane; that of `other` where one of them is NaN.
-[[gnu::always_inline]] inline Float8 maximum(Float8 one, const Float8& other) {
+[[gnu::always_inline]] inline Float8 maximum(const Float8& first, const Float8& other) {
+  Float8 one = first;
   one.lanes.with(other.lanes, [](auto& part, const auto& by) { part = part > by ? part : by; });
   return one;
 }
-/// `one` in the lanes where the mask holds, `other` in the rest.
-[[gnu::always_inline]] inline Float8 select(const Mask8& mask, Float8 one, const Float8& other) {
+/// `first` in the lanes where the mask holds, `other` in the rest.
+[[gnu::always_inline]] inline Float8 select(const Mask8& mask, const Float8& first, const Float8& other) {
+  Float8 one = first;
   Mask8 chosen = mask;
   chosen.lanes.with(one.lanes, [](auto& bits, const auto& part) { bits &= std::bit_cast<detail::IntPart>(part); });
   Mask8 rest = mask;
@@ -219,7 +232,8 @@ namespace simd {
   one.lanes.with(chosen.lanes, [](auto& part, const auto& bits) { part = std::bit_cast<detail::FloatPart>(bits); });
   return one;
 }
-[[gnu::always_inline]] inline Float8 absolute(Float8 value) {
+[[gnu::always_inline]] inline Float8 absolute(const Float8& of) {
+  Float8 value = of;
   value.lanes.each([](auto& part) {
     part = std::bit_cast<detail::FloatPart>(std::bit_cast<detail::IntPart>(part) & std::int32_t{0x7fffffff});
   });
@@ -235,7 +249,8 @@ inline constexpr bool compares_integers = false;
 #endif
 
 /// The larger one in each lane; of two below zero, either.
-[[gnu::always_inline]] inline Float8 later(Float8 one, const Float8& other) {
+[[gnu::always_inline]] inline Float8 later(const Float8& first, const Float8& other) {
+  Float8 one = first;
   if constexpr (!compares_integers) return maximum(one, other);
   one.lanes.with(other.lanes, [](auto& part, const auto& by) {
     const auto bits = std::bit_cast<detail::IntPart>(part), other_bits = std::bit_cast<detail::IntPart>(by);
@@ -244,7 +259,8 @@ inline constexpr bool compares_integers = false;
   return one;
 }
 /// The smaller one in each lane; where one is below zero, one that is.
-[[gnu::always_inline]] inline Float8 earlier(Float8 one, const Float8& other) {
+[[gnu::always_inline]] inline Float8 earlier(const Float8& first, const Float8& other) {
+  Float8 one = first;
   if constexpr (!compares_integers) return minimum(one, other);
   one.lanes.with(other.lanes, [](auto& part, const auto& by) {
     const auto bits = std::bit_cast<detail::IntPart>(part), other_bits = std::bit_cast<detail::IntPart>(by);
@@ -252,26 +268,29 @@ inline constexpr bool compares_integers = false;
   });
   return one;
 }
-/// Whether `one`, from zero on, is larger than `other`, which may be anything. A zero with a sign counts as below zero.
-[[gnu::always_inline]] inline Mask8 is_later(Float8 one, const Float8& other) {
+/// Whether `first`, from zero on, is larger than `other`, which may be anything. A zero with a sign counts as below
+/// zero.
+[[gnu::always_inline]] inline Mask8 is_later(const Float8& first, const Float8& other) {
+  Float8 one = first;
   one.lanes.with(other.lanes, [](auto& part, const auto& by) {
     part = std::bit_cast<detail::FloatPart>(std::bit_cast<detail::IntPart>(part) > std::bit_cast<detail::IntPart>(by));
   });
   return std::bit_cast<Mask8>(one.lanes);
 }
 /// Rounded as everywhere: each lane has the bits of std::sqrt.
-[[gnu::always_inline]] inline Float8 square_root(Float8 of) {
+[[gnu::always_inline]] inline Float8 square_root(const Float8& of) {
+  Float8 root = of;
 #if defined(__AVX__)
-  of.lanes.low = __builtin_ia32_sqrtps256(of.lanes.low);
+  root.lanes.low = __builtin_ia32_sqrtps256(root.lanes.low);
 #elif defined(__SSE2__)
-  of.lanes.low = __builtin_ia32_sqrtps(of.lanes.low);
-  of.lanes.high = __builtin_ia32_sqrtps(of.lanes.high);
+  root.lanes.low = __builtin_ia32_sqrtps(root.lanes.low);
+  root.lanes.high = __builtin_ia32_sqrtps(root.lanes.high);
 #else
-  of.lanes.each([](auto& part) {
+  root.lanes.each([](auto& part) {
     for (std::size_t lane = 0; lane < detail::simd_part_lanes; ++lane) part[lane] = std::sqrt(part[lane]);
   });
 #endif
-  return of;
+  return root;
 }
 
 }  // namespace simd
