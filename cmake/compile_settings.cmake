@@ -15,6 +15,13 @@ function(dcem_enable_warnings target)
   endif()
 endfunction()
 
+# Sources share what they include and instantiate. Names in them must not clash: a test file has a namespace of its own.
+function(dcem_join_sources target)
+  if(DCEM_JOIN_SOURCES)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+  endif()
+endfunction()
+
 # One program from one or more sources, in ${CMAKE_BINARY_DIR}/bin.
 function(dcem_add_program target)
   add_executable(${target} ${ARGN})

@@ -5,6 +5,8 @@
 #include "dcem/accel/brute_force.hpp"
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_brute_force {
+
 using namespace dcem;
 using Primitives = std::vector<std::uint32_t>;
 
@@ -71,3 +73,5 @@ TEST_CASE("the oracle follows motion and notices what it was not told") {
   CHECK_THROWS_AS(tree.refit_all(moved), std::invalid_argument);
   CHECK_THROWS_AS(tree.build(moved), std::invalid_argument);
 }
+
+}  // namespace test_brute_force

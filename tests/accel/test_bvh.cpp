@@ -10,6 +10,8 @@
 #include "dcem/core/thread_pool.hpp"
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_bvh {
+
 using namespace dcem;
 using dcem_test::Boxes;
 using dcem_test::nearest_square;
@@ -450,3 +452,5 @@ TEST_CASE("queries on several threads give what one thread gives") {
   };
   CHECK(answers(1) == answers(4));
 }
+
+}  // namespace test_bvh

@@ -10,6 +10,8 @@
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
 
+namespace test_convex_region {
+
 using namespace dcem;
 
 namespace {
@@ -116,3 +118,5 @@ TEST_CASE("a box that touches a plane is kept, one behind it is not; no planes k
   CHECK_FALSE(above(Aabb<double>{Vec3(-1, -1, 1e7 - 1), Vec3(1, 1, 1e7 - 1e-8)}));
   CHECK(ConvexRegion()(Aabb<double>{Vec3(0.0), Vec3(0.0)}));
 }
+
+}  // namespace test_convex_region

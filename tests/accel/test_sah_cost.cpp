@@ -4,6 +4,8 @@
 
 #include "dcem/accel/sah_cost.hpp"
 
+namespace test_sah_cost {
+
 using namespace dcem;
 
 TEST_CASE("the SAH cost of a tree of three nodes, by hand") {
@@ -27,3 +29,5 @@ TEST_CASE("trees without surface cost nothing and are as good as new") {
   CHECK(BvhQuality{}.ratio() == 1.0);
   CHECK(BvhQuality{6.0, 4.0}.ratio() == 1.5);
 }
+
+}  // namespace test_sah_cost

@@ -10,6 +10,8 @@
 #include "dcem/accel/wide_index.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
 
+namespace test_spatial_index {
+
 using namespace dcem;
 using dcem_test::any_ray;
 using dcem_test::exact_hits;
@@ -190,3 +192,5 @@ TEST_CASE_TEMPLATE("bad input is refused, and what was there stays", Index, Wide
   RandomStream random(46);
   check_rays(index, heap, 50, random);
 }
+
+}  // namespace test_spatial_index

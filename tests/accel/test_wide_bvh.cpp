@@ -12,6 +12,8 @@
 #include "tests/accel/wide/wide_scenes.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_wide_bvh {
+
 using namespace dcem;
 using dcem_test::any_ray;
 using dcem_test::exact_hits;
@@ -566,3 +568,5 @@ TEST_CASE("what only touches the border of a region is found in the middle of a 
   const auto ends_beyond_middle = [](const Aabb<double>& box) { return box.max.x >= 4096.0; };
   CHECK(reported([&](auto leaf) { mirrored.tree.visit(ends_beyond_middle, leaf); }).size() == mesh.triangles.size());
 }
+
+}  // namespace test_wide_bvh

@@ -10,6 +10,8 @@
 #include "dcem/channel/frequency_response.hpp"
 #include "tests/channel/channel_draws.hpp"
 
+namespace test_band_limited_profile {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -246,3 +248,5 @@ TEST_CASE("bins without sense are refused") {
     CHECK_THROWS_AS(band_limited_profile(paths, {}, width_s), std::invalid_argument);
   }
 }
+
+}  // namespace test_band_limited_profile

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace test_cell_average {
+
 using namespace dcem;
 
 namespace {
@@ -153,3 +155,5 @@ TEST_CASE("cells come from the map of their samples and from no other") {
   fine.points.pop_back();
   CHECK_THROWS_AS(cell_averages(grid, fine), std::invalid_argument);
 }
+
+}  // namespace test_cell_average

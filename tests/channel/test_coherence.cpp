@@ -9,6 +9,8 @@
 
 #include "tests/channel/channel_draws.hpp"
 
+namespace test_coherence {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -203,3 +205,5 @@ TEST_CASE("drawn channels: the level is met there, nowhere before, and not befor
   CHECK(found > 30);
   CHECK(absent > 10);
 }
+
+}  // namespace test_coherence

@@ -8,6 +8,8 @@
 
 #include "tests/channel/channel_draws.hpp"
 
+namespace test_doppler_spectrum {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -94,3 +96,5 @@ TEST_CASE("widths without sense are refused") {
   }
   CHECK_THROWS_AS(doppler_spectrum(std::vector{shifted(5e3)}, 1e-13), std::invalid_argument);
 }
+
+}  // namespace test_doppler_spectrum

@@ -9,6 +9,8 @@
 
 #include "tests/channel/channel_draws.hpp"
 
+namespace test_frequency_response {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -162,3 +164,5 @@ TEST_CASE("a link with dual ports has no single response, and a grid needs a poi
     CHECK_THROWS_AS(port_frequency_response(dual, grid), std::invalid_argument);
   }
 }
+
+}  // namespace test_frequency_response

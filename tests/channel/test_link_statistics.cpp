@@ -5,6 +5,8 @@
 
 #include <vector>
 
+namespace test_link_statistics {
+
 using namespace dcem;
 
 namespace {
@@ -208,3 +210,5 @@ TEST_CASE("dual ports: fields add port by port, powers are summed over receive a
   CHECK(s.power_los_dbm == close(-100.0));
   CHECK(s.k_factor_db == close(-4.771212547196624));
 }
+
+}  // namespace test_link_statistics

@@ -7,6 +7,8 @@
 
 #include "dcem/channel/thermal_noise.hpp"
 
+namespace test_map_combination {
+
 using namespace dcem;
 
 namespace {
@@ -88,3 +90,5 @@ TEST_CASE("obstructed points stay obstructed, and maps of different grids do not
   CHECK_THROWS_AS(combine_maps(maps), std::invalid_argument);
   CHECK_THROWS_AS(combine_maps({}), std::invalid_argument);
 }
+
+}  // namespace test_map_combination

@@ -7,6 +7,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_power_delay_profile {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -92,3 +94,5 @@ TEST_CASE("incoherent bins hold all the power there is, whatever their width; fi
   for (const PdpTap& one : power_delay_profile(paths, 1e-13, PdpMode::coherent)) sum += one.power_ratio;
   CHECK(sum == doctest::Approx(total).epsilon(1e-13));
 }
+
+}  // namespace test_power_delay_profile

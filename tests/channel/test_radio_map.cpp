@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_radio_map {
+
 using namespace dcem;
 
 TEST_CASE("field strength at an isotropic receiver") {
@@ -31,3 +33,5 @@ TEST_CASE("a new map point knows nothing") {
   CHECK_FALSE(point.statistics.power_dbm.has_value());
   CHECK(point.strongest_kinds.empty());
 }
+
+}  // namespace test_radio_map

@@ -4,6 +4,8 @@
 
 #include "dcem/core/constants.hpp"
 
+namespace test_constants {
+
 using namespace dcem;
 
 TEST_CASE("the constants of the vacuum belong together") {
@@ -16,3 +18,5 @@ TEST_CASE("the constants of the vacuum belong together") {
         doctest::Approx(free_space_impedance_ohm).epsilon(1e-10));
   CHECK(pi == std::acos(-1.0));
 }
+
+}  // namespace test_constants

@@ -4,6 +4,8 @@
 
 #include "dcem/core/error.hpp"
 
+namespace test_error {
+
 using namespace dcem;
 
 TEST_CASE("a broken invariant throws and says where and what") {
@@ -31,3 +33,5 @@ TEST_CASE("an invariant is one expression: it may stand in an if without braces"
     other = true;
   CHECK_FALSE(other);
 }
+
+}  // namespace test_error

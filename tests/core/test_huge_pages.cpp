@@ -7,6 +7,8 @@
 
 #include "dcem/core/huge_pages.hpp"
 
+namespace test_huge_pages {
+
 using namespace dcem;
 
 namespace {
@@ -77,3 +79,5 @@ TEST_CASE("memory that no system has is refused as any allocator refuses it") {
   CHECK_THROWS_AS(HugePageAllocator<Line>().allocate(std::size_t{1} << 58), std::bad_alloc);  // 2⁶⁴ bytes
   CHECK(list.empty());
 }
+
+}  // namespace test_huge_pages

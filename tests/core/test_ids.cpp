@@ -5,6 +5,8 @@
 
 #include "dcem/core/ids.hpp"
 
+namespace test_ids {
+
 using namespace dcem;
 
 static_assert(!std::is_convertible_v<FacetId, BodyId>, "a facet is no body");
@@ -20,3 +22,5 @@ TEST_CASE("ids compare and hash as their numbers do") {
   for (std::size_t index = 0; index < 100; ++index) ids.insert(BodyId(index % 10));
   CHECK(ids.size() == 10);
 }
+
+}  // namespace test_ids

@@ -9,6 +9,8 @@
 #include "dcem/core/lane_keys.hpp"
 #include "dcem/core/random.hpp"
 
+namespace test_lane_keys {
+
 using namespace dcem;
 
 namespace {
@@ -91,3 +93,5 @@ TEST_CASE("later and earlier agree with the numbers, from zero on and in what is
     }
   }
 }
+
+}  // namespace test_lane_keys

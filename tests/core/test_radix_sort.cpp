@@ -6,6 +6,8 @@
 #include "dcem/core/radix_sort.hpp"
 #include "dcem/core/random.hpp"
 
+namespace test_radix_sort {
+
 using namespace dcem;
 
 namespace {
@@ -46,3 +48,5 @@ TEST_CASE("bits above those that are asked for count for nothing, but for the re
   CHECK(order.entries[2].index == 1);
   CHECK(order.entries[3].index == 3);
 }
+
+}  // namespace test_radix_sort

@@ -8,6 +8,8 @@
 
 #include "dcem/core/random.hpp"
 
+namespace test_random {
+
 using namespace dcem;
 
 // The published test vectors of FNV-1a, 64 bit (draft-eastlake-fnv, appendix C).
@@ -66,3 +68,5 @@ TEST_CASE("the value of several values depends on each and on their order") {
   }
   CHECK(seen.size() == 8000);
 }
+
+}  // namespace test_random

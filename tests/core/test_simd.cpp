@@ -8,6 +8,8 @@
 
 #include "dcem/core/simd.hpp"
 
+namespace test_simd {
+
 using namespace dcem;
 
 TEST_CASE("vector operations are those of their lanes") {
@@ -56,3 +58,5 @@ TEST_CASE("numbers from zero on are ordered as their integers") {
     if (first[lane] >= 0.0F) CHECK((is_later >> lane & 1U) == (first[lane] > second[lane] ? 1U : 0U));
   }
 }
+
+}  // namespace test_simd

@@ -4,6 +4,8 @@
 
 #include "dcem/core/statistics.hpp"
 
+namespace test_statistics {
+
 using namespace dcem;
 
 TEST_CASE("nearest rank: the textbook's five and ten values") {
@@ -48,3 +50,5 @@ TEST_CASE("the mean is the sum over the count") {
   CHECK(mean({1.0, 2.0, 6.0}) == 3.0);
   CHECK(mean({-5.0}) == -5.0);
 }
+
+}  // namespace test_statistics

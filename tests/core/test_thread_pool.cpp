@@ -10,6 +10,8 @@
 
 #include "dcem/core/thread_pool.hpp"
 
+namespace test_thread_pool {
+
 using namespace dcem;
 
 TEST_CASE("every index is called exactly once, by a worker that exists") {
@@ -128,3 +130,5 @@ TEST_CASE("a loop within a loop of the same pool ends, and so do loops that seve
   for (std::thread& asker : askers) asker.join();
   CHECK(calls == 4 * 50 * 13);
 }
+
+}  // namespace test_thread_pool

@@ -4,6 +4,8 @@
 
 #include "dcem/core/units.hpp"
 
+namespace test_units {
+
 using namespace dcem;
 
 // Two or three roundings in log10 and pow, a few units in the last place each.
@@ -43,3 +45,5 @@ TEST_CASE("half a turn is 180 degrees") {
   CHECK(degrees_to_radians(-90.0) == -pi / 2);
   CHECK(radians_to_degrees(pi / 6) == near(30.0));
 }
+
+}  // namespace test_units

@@ -7,6 +7,8 @@
 
 #include "dcem/debug/write_obj.hpp"
 
+namespace test_write_obj {
+
 using namespace dcem;
 
 namespace {
@@ -117,3 +119,5 @@ TEST_CASE("a town's coordinates keep their millimetres") {
   CHECK(glm::distance(drawing.vertices_m[0], Vec3(12345.678, -9876.543, 1.25)) < 1e-3);
   CHECK(glm::distance(drawing.vertices_m[1], Vec3(0.001, 500123.456, 10)) < 1e-3);
 }
+
+}  // namespace test_write_obj

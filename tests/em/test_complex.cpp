@@ -4,6 +4,8 @@
 
 #include "dcem/em/complex.hpp"
 
+namespace test_complex {
+
 using namespace dcem;
 
 namespace {
@@ -57,3 +59,5 @@ TEST_CASE("a field along a direction has its whole amplitude there and none acro
   CHECK(is_finite(Complex(1, 2)));
   CHECK_FALSE(is_finite(Complex(1, std::numeric_limits<double>::quiet_NaN())));
 }
+
+}  // namespace test_complex

@@ -6,6 +6,8 @@
 #include "dcem/em/dyad.hpp"
 #include "dcem/em/surface/slab.hpp"
 
+namespace test_dyad {
+
 using namespace dcem;
 
 namespace {
@@ -176,3 +178,5 @@ TEST_CASE("reciprocity: the reversed bounce has the transposed transfer in outgo
           bound(bounce) + rounding / off_pole);
   }
 }
+
+}  // namespace test_dyad

@@ -9,6 +9,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/field/field_evaluator.hpp"
 
+namespace test_array_channel {
+
 using namespace dcem;
 
 namespace {
@@ -137,3 +139,5 @@ TEST_CASE("the gain of a link is the sum of both antennas' gains towards each ot
   const double gain_db = 10.0 * std::log10(link.power_ratio / plain.power_ratio);
   CHECK(gain_db == doctest::Approx(16.0 - 12.0 * (900.0 + 400.0) / 4225.0).epsilon(1e-12));
 }
+
+}  // namespace test_array_channel

@@ -10,6 +10,8 @@
 #include "dcem/paths/path_finder.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_field_evaluator {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -304,3 +306,5 @@ TEST_CASE("Doppler is the rate at which the path shortens, whatever moves and tu
   CHECK(now.size() >= 3);
   CHECK(on_plate > 0);
 }
+
+}  // namespace test_field_evaluator

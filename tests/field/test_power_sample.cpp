@@ -8,6 +8,8 @@
 #include "dcem/channel/link_statistics.hpp"
 #include "tests/channel/channel_draws.hpp"
 
+namespace test_power_sample {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -194,3 +196,5 @@ TEST_CASE("the statistics of a link are these moments, to the last bit") {
     CHECK(statistics.azimuth_spread_arrival_rad == moments.azimuth_spread_arrival_rad);
   }
 }
+
+}  // namespace test_power_sample

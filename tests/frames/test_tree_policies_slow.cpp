@@ -12,6 +12,8 @@
 #include "dcem/accel/binary/updater.hpp"
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_tree_policies_slow {
+
 using namespace dcem;
 using dcem_test::between;
 using dcem_test::nearest_square;
@@ -304,3 +306,5 @@ TEST_CASE("tiny boxes: surfaces below the smallest number, ratios beyond the lar
     }
   }
 }
+
+}  // namespace test_tree_policies_slow

@@ -4,6 +4,8 @@
 
 #include "dcem/geometry/aabb.hpp"
 
+namespace test_aabb {
+
 using namespace dcem;
 
 TEST_CASE_TEMPLATE("a new box holds nothing and is the neutral element of growing", Scalar, float, double) {
@@ -77,3 +79,5 @@ TEST_CASE("an inflated box is larger by the margin on every side; an empty one s
   CHECK(inflated(Aabb<double>{Vec3(0), Vec3(1)}, 0.5) == Aabb<double>{Vec3(-0.5), Vec3(1.5)});
   CHECK(inflated(Aabb<double>{}, 1e9).empty());
 }
+
+}  // namespace test_aabb

@@ -5,6 +5,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/plane.hpp"
 
+namespace test_plane {
+
 using namespace dcem;
 
 namespace {
@@ -64,3 +66,5 @@ TEST_CASE("a plane's basis is orthonormal and right-handed for every normal, als
     CHECK(glm::distance(glm::cross(basis.u, basis.v), normal) < 1e-15);
   }
 }
+
+}  // namespace test_plane

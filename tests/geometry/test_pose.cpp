@@ -6,6 +6,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/pose.hpp"
 
+namespace test_pose {
+
 using namespace dcem;
 
 namespace {
@@ -113,3 +115,5 @@ TEST_CASE("a point of a turning body moves with v + ω × r") {
   CHECK(velocity_at(velocity, Vec3(100, 100, 0), Vec3(103, 100, 5)) == Vec3(10, 6, 0));
   CHECK(velocity_at(velocity, Vec3(100, 100, 0), Vec3(100, 101, 5)) == Vec3(8, 0, 0));
 }
+
+}  // namespace test_pose

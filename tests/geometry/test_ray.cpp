@@ -4,6 +4,8 @@
 
 #include "dcem/geometry/ray.hpp"
 
+namespace test_ray {
+
 using namespace dcem;
 
 TEST_CASE_TEMPLATE("a segment runs from one end at 0 to the other at 1", Scalar, float, double) {
@@ -22,3 +24,5 @@ TEST_CASE("a ray has no end, and t counts in lengths of its direction") {
   CHECK(ray.t_max == std::numeric_limits<double>::infinity());
   CHECK(ray.at(3.0) == Vec3(1, 6, 0));
 }
+
+}  // namespace test_ray

@@ -13,6 +13,8 @@
 #include "dcem/geometry/triangle.hpp"
 #include "dcem/geometry/triangle_mesh.hpp"
 
+namespace test_triangle {
+
 using namespace dcem;
 
 namespace {
@@ -448,3 +450,5 @@ TEST_CASE("a triangle without area is as far as its longest edge, and the distan
   CHECK(distance_to_triangle_m({Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(4, 0, 0)}, Vec3(4, 3, 4)) == 5.0);
   CHECK(distance_to_triangle_m({Vec3(1), Vec3(1), Vec3(1)}, Vec3(1, 4, 5)) == 5.0);
 }
+
+}  // namespace test_triangle

@@ -7,6 +7,8 @@
 
 #include "dcem/geometry/triangle_mesh.hpp"
 
+namespace test_triangle_mesh {
+
 using namespace dcem;
 
 namespace {
@@ -72,3 +74,5 @@ TEST_CASE("a box stands on z = 0 over the origin, is closed, and looks outwards"
   }
   CHECK(box.material_names == std::vector<std::string>{"metal"});
 }
+
+}  // namespace test_triangle_mesh

@@ -6,6 +6,8 @@
 
 #include "dcem/geometry/vector.hpp"
 
+namespace test_vector {
+
 using namespace dcem;
 
 TEST_CASE("a vector is finite where all of its parts are") {
@@ -27,3 +29,5 @@ TEST_CASE("lexicographic order looks at x, then y, then z, and is strict") {
   CHECK_FALSE(lexicographic_less(Vec3(0.0), Vec3(-0.0)));
   CHECK_FALSE(lexicographic_less(Vec3(-0.0), Vec3(0.0)));
 }
+
+}  // namespace test_vector

@@ -2,6 +2,8 @@
 
 #include "dcem/geometry/wedge.hpp"
 
+namespace test_wedge {
+
 using namespace dcem;
 
 TEST_CASE("azimuths stay below a full turn, and along the edge there is none") {
@@ -27,3 +29,5 @@ TEST_CASE("the direction runs from start to end, and a wedge without a second fa
   CHECK(edge_length_m(wedge) == 0.5);
   CHECK(wedge.start_m + edge_length_m(wedge) * edge_direction(wedge) == wedge.end_m);
 }
+
+}  // namespace test_wedge

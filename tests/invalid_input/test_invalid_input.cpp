@@ -11,6 +11,8 @@
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/scenario.hpp"
 
+namespace test_invalid_input {
+
 using namespace dcem;
 
 namespace {
@@ -90,3 +92,5 @@ TEST_CASE("the scenarios that the cases are made from are good") {
   CHECK_NOTHROW(io::load_scenario(folder / "good_traffic/scenario.json"));
   CHECK_NOTHROW(io::load_scenario(folder / "good_antenna/scenario.json"));
 }
+
+}  // namespace test_invalid_input

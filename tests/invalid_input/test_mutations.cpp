@@ -13,6 +13,8 @@
 #include "dcem/io/scenario.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_mutations {
+
 using namespace dcem;
 
 namespace {
@@ -127,3 +129,5 @@ TEST_CASE("damaged antennas never do worse than an InputError") {
     CHECK(outcomes.refused > 300);
   }
 }
+
+}  // namespace test_mutations

@@ -18,6 +18,8 @@
 #include "dcem/io/input_error.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_antenna_files {
+
 using namespace dcem;
 
 namespace {
@@ -435,3 +437,5 @@ TEST_CASE("the pattern that is shipped is that of its description") {
   // The formula radiates 1.005 of what it is fed; steps of 15 degrees cut off the bends, which are hollow in dB.
   CHECK(radiated_share(TabulatedPattern{table}) == doctest::Approx(1.0).epsilon(0.03));
 }
+
+}  // namespace test_antenna_files

@@ -12,6 +12,8 @@
 
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_atomic_file {
+
 using dcem::io::AtomicFile;
 using dcem::io::OutputError;
 using dcem::io::OutputFolder;
@@ -255,3 +257,5 @@ TEST_CASE("names of a folder's files are plain and differ") {
     CHECK_THROWS_AS(folder.open(name), std::invalid_argument);
   }
 }
+
+}  // namespace test_atomic_file

@@ -25,6 +25,8 @@
 
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_channel_files {
+
 using dcem::test::file_bytes;
 using dcem::test::TemporaryFolder;
 using Json = nlohmann::json;
@@ -1118,3 +1120,5 @@ TEST_CASE("a receiver that sees nothing has lines with empty fields, and none in
     for (const auto& row : Csv(run.bytes(name)).rows) CHECK(row.at("rx") == "ue");
   }
 }
+
+}  // namespace test_channel_files

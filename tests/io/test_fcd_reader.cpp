@@ -11,6 +11,8 @@
 #include "tests/io/trace_files.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_fcd_reader {
+
 using namespace dcem;
 using test::holds;
 using test::step;
@@ -218,3 +220,5 @@ TEST_CASE("the reference trace: every row of every step") {
   CHECK(first_s == 600.0);
   CHECK(last_s == 659.9);
 }
+
+}  // namespace test_fcd_reader

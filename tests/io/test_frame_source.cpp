@@ -11,6 +11,8 @@
 #include "tests/io/traffic_case.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_frame_source {
+
 using namespace dcem;
 using test::holds;
 using test::step;
@@ -431,3 +433,5 @@ TEST_CASE("the reference trace drives: slots for those at a time, boxes where th
   }
   CHECK(rows == 114'086);
 }
+
+}  // namespace test_frame_source

@@ -14,6 +14,8 @@
 #include "tests/io/png_reader.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_heat_map {
+
 using namespace dcem::io;
 using dcem::test::Png;
 using dcem::test::TemporaryFolder;
@@ -479,3 +481,5 @@ TEST_CASE("axes that have nothing in common each fill the picture, and are named
   CHECK(named.height == plain.height);
   CHECK(named.pixels != plain.pixels);
 }
+
+}  // namespace test_heat_map

@@ -11,10 +11,10 @@
 #include <string>
 
 #include "dcem/core/error.hpp"
+#include "tests/io/png_reader.hpp"
 #include "tests/io/temporary_folder.hpp"
 
-#define STB_IMAGE_IMPLEMENTATION
-#include "tests/io/png_reader.hpp"
+namespace test_image {
 
 using namespace dcem::io;
 using dcem::test::Png;
@@ -215,3 +215,5 @@ TEST_CASE("characters that the font lacks become question marks, one each") {
   CHECK(text_length_px("\xE2\x82\xAC", 2) == text_length_px("?", 2));  // euro sign
   CHECK(text_length_px("", 2) == 0);
 }
+
+}  // namespace test_image

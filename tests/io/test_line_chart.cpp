@@ -11,6 +11,8 @@
 
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_line_chart {
+
 using dcem::io::ChartScale;
 using dcem::io::line_chart_svg;
 using dcem::io::LineChart;
@@ -236,3 +238,5 @@ TEST_CASE("line chart: what cannot be drawn is refused") {
   refused(logarithmic);
   CHECK_THROWS_AS(line_chart_svg(std::vector<LineChart>{}), std::invalid_argument);
 }
+
+}  // namespace test_line_chart

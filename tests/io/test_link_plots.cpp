@@ -13,6 +13,8 @@
 #include "tests/io/png_reader.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_link_plots {
+
 using namespace dcem;
 using dcem::test::file_bytes;
 using dcem::test::TemporaryFolder;
@@ -324,3 +326,5 @@ TEST_CASE("taps more than 70 dB below the strongest neither show in the profile 
   CHECK(std::count_if(map.values.begin(), map.values.end(), [](double value) { return !std::isnan(value); }) == 4);
   CHECK(map.origin_y_m + map.spacing_y_m * static_cast<double>(map.rows) < 100.0);  // ns
 }
+
+}  // namespace test_link_plots

@@ -10,6 +10,8 @@
 #include "dcem/io/input_error.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_map_comparison {
+
 using namespace dcem;
 
 namespace {
@@ -84,3 +86,5 @@ TEST_CASE("a file that cannot be compared is refused with its line") {
   CHECK(refusal("x_m,y_m,p_dbm\n0,0,1\n0.0,0,2\n").find(":3: a second row") != std::string::npos);
   CHECK(refusal("x_m,y_m,p\n", "p").find("; expected a power whose name ends with _dbm or _db") != std::string::npos);
 }
+
+}  // namespace test_map_comparison

@@ -17,6 +17,8 @@
 #include "dcem/io/map_writer.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_map_files {
+
 using namespace dcem;
 
 namespace {
@@ -251,3 +253,5 @@ TEST_CASE("more distributions than a chart has colours are spread over several")
   CHECK(io::line_chart_svg(charts).size() > 1000);
   CHECK(io::distribution_charts({"title", "power", "dBm"}, std::span(parts).last(1)).empty());
 }
+
+}  // namespace test_map_files

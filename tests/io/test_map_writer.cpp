@@ -12,6 +12,8 @@
 #include "dcem/io/inspection.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_map_writer {
+
 using namespace dcem;
 
 namespace {
@@ -154,3 +156,5 @@ TEST_CASE("facets on top of each other are counted, neighbours and steps are not
   quad(mesh, 5, 12, 0.0005, "c");  // half a millimetre above two others
   CHECK(pairs(mesh) == 2);
 }
+
+}  // namespace test_map_writer

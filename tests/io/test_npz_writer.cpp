@@ -16,6 +16,8 @@
 
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_npz_writer {
+
 using namespace dcem::io;
 using dcem::test::file_bytes;
 using dcem::test::TemporaryFolder;
@@ -307,3 +309,5 @@ TEST_CASE("a disk that takes no more is an error with the file's name, and nothi
   CHECK(message.find("; expected ") != std::string::npos);
   CHECK(folder.names().empty());
 }
+
+}  // namespace test_npz_writer

@@ -10,6 +10,8 @@
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_obj_reader {
+
 using namespace dcem;
 
 namespace {
@@ -222,3 +224,5 @@ TEST_CASE("Munich is read whole") {
   CHECK(file.materials.size() == 5);
   CHECK(io::material_from_mtl("metal", &file.materials.at("metal"))->model == MaterialModel(PerfectConductor{}));
 }
+
+}  // namespace test_obj_reader

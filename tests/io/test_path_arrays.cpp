@@ -15,6 +15,8 @@
 #include "dcem/sim/simulator.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_path_arrays {
+
 using namespace dcem;
 using dcem::test::TemporaryFolder;
 
@@ -350,3 +352,5 @@ TEST_CASE("arrays beyond 16 GB are refused with what they would need, before and
   CHECK(message_of(16'000'000, frame) == "output.npz: the paths of this run need 30" + expectation);
   CHECK_FALSE(std::filesystem::exists(folder / "out"));
 }
+
+}  // namespace test_path_arrays

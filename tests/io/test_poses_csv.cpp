@@ -9,6 +9,8 @@
 #include "tests/io/temporary_folder.hpp"
 #include "tests/io/trace_files.hpp"
 
+namespace test_poses_csv {
+
 using namespace dcem;
 using test::holds;
 
@@ -128,3 +130,5 @@ TEST_CASE("every row moves something, and everything has a row") {
   files.box_motion = R"({"poses_csv": "pose.csv"})";
   CHECK(holds(files.error(), "motion.poses_csv: 'pose.csv' is not there"));
 }
+
+}  // namespace test_poses_csv

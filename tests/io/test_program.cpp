@@ -12,6 +12,8 @@
 
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_program {
+
 using dcem::test::file_bytes;
 using dcem::test::TemporaryFolder;
 
@@ -471,3 +473,5 @@ TEST_CASE("version and help are no errors") {
   CHECK(version.output.starts_with("dcem "));
   CHECK(dcem_program(folder, "map --help").exit_code == 0);
 }
+
+}  // namespace test_program

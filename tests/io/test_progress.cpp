@@ -11,6 +11,8 @@
 
 #include "dcem/io/text_table.hpp"
 
+namespace test_progress {
+
 using dcem::io::format_duration;
 using dcem::io::progress_line;
 using dcem::io::ProgressBar;
@@ -103,3 +105,5 @@ TEST_CASE("many threads: every piece counts, and the line is drawn at most ten t
   // One at the start, one per tenth of a second, one at the end.
   CHECK(static_cast<double>(std::count(text.begin(), text.end(), '\r')) <= 10.0 * elapsed_s + 2.0);
 }
+
+}  // namespace test_progress

@@ -16,6 +16,8 @@
 #include "dcem/io/summary.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_result_writer {
+
 using namespace dcem;
 
 namespace {
@@ -255,3 +257,5 @@ TEST_CASE("the summary counts, and says which discovery was used") {
     CHECK(table.find(part) != std::string::npos);
   }
 }
+
+}  // namespace test_result_writer

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <tuple>
 
+namespace test_scatter_chart {
+
 using namespace dcem::io;
 
 namespace {
@@ -88,3 +90,5 @@ TEST_CASE("odd charts give a picture, and what cannot be drawn is refused") {
   CHECK_THROWS_AS(draw_scatter_chart(chart_of({{0.0, none, 0.0, 0}})), std::invalid_argument);
   CHECK_THROWS_AS(draw_scatter_chart(chart_of({{0.0, 0.0, 1e101, 0}})), std::invalid_argument);
 }
+
+}  // namespace test_scatter_chart

@@ -9,6 +9,8 @@
 #include "dcem/io/input_error.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_scenario {
+
 using namespace dcem;
 
 namespace {
@@ -381,3 +383,5 @@ TEST_CASE("numbers that no whole number holds are refused") {
     CHECK(contains(files.error(), "propagation.seed: found"));
   }
 }
+
+}  // namespace test_scenario

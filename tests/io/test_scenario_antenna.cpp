@@ -9,6 +9,8 @@
 #include "dcem/io/scenario.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_scenario_antenna {
+
 using namespace dcem;
 
 namespace {
@@ -86,3 +88,5 @@ TEST_CASE("plane waves over an array may be asked for by name") {
   files.propagation = R"({"antenna_array": null})";
   CHECK_NOTHROW(files.load());
 }
+
+}  // namespace test_scenario_antenna

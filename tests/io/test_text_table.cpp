@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+namespace test_text_table {
+
 using dcem::io::character_count;
 using dcem::io::format_fixed;
 using dcem::io::TextTable;
@@ -58,3 +60,5 @@ TEST_CASE("numbers have a point in every locale, no minus zero and no nan") {
   CHECK(format_fixed(1.5, 1) == "1.5");
   std::setlocale(LC_NUMERIC, old_locale.c_str());
 }
+
+}  // namespace test_text_table

@@ -8,6 +8,8 @@
 #include "tests/io/trace_files.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_vehicle_types {
+
 using namespace dcem;
 using test::holds;
 
@@ -109,3 +111,5 @@ TEST_CASE("the types of the reference trace") {
   CHECK(size_m(types, "bus") == Vec3(12.0, 2.5, 3.4));
   CHECK(size_m(types, "motorcycle") == Vec3(2.2, 0.9, 1.5));
 }
+
+}  // namespace test_vehicle_types

@@ -11,6 +11,8 @@
 
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_viewer_writer {
+
 using namespace dcem;
 using test::file_bytes;
 using test::TemporaryFolder;
@@ -262,3 +264,5 @@ TEST_CASE("a build without three.js refuses to make a page") {
   io::OutputFolder output(folder.path());
   CHECK_THROWS_AS(io::ViewerWriter(output, scene, {"drive", 28e9, 0, 1, 0}, {}), std::invalid_argument);
 }
+
+}  // namespace test_viewer_writer

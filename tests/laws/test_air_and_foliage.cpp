@@ -13,6 +13,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_air_and_foliage {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -616,3 +618,5 @@ TEST_CASE("how many threads work changes no bit, and a map holds what a receiver
     CHECK(map.points[link].statistics.power_diffuse_dbm == alone.links[link].statistics.power_diffuse_dbm);
   }
 }
+
+}  // namespace test_air_and_foliage

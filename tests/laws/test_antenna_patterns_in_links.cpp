@@ -12,6 +12,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_antenna_patterns_in_links {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -411,3 +413,5 @@ TEST_CASE("patterns in links: rolling a circular antenna about the line of sight
     }
   }
 }
+
+}  // namespace test_antenna_patterns_in_links

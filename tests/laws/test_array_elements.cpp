@@ -13,6 +13,8 @@
 #include "dcem/sim/verify/verifier.hpp"
 #include "tests/support/law_scenes.hpp"
 
+namespace test_array_elements {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -652,3 +654,5 @@ TEST_CASE("elements of an array on a wall are mounted on it as its centre is, al
     for (std::size_t element = 0; element < 8; ++element) CHECK(channel(0, element) != Complex{});
   }
 }
+
+}  // namespace test_array_elements

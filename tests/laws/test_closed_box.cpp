@@ -8,6 +8,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_closed_box {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -93,3 +95,5 @@ TEST_CASE("every order limit up to 10 gives exactly the paths up to that order")
     CHECK(paths_between(scene, Vec3(1.2, 3.2, 1.4), Vec3(5.7, 0.9, 2.6), law_settings(limit, 0)).size() == expected);
   }
 }
+
+}  // namespace test_closed_box

@@ -10,6 +10,8 @@
 
 #include "tests/laws/independent_tracer.hpp"
 
+namespace test_completeness {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -117,3 +119,5 @@ TEST_CASE("exact discovery finds all paths and no other: furnished storeys with 
   }
   report(count, 4000);
 }
+
+}  // namespace test_completeness

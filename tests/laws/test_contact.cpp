@@ -9,6 +9,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_contact {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -338,3 +340,5 @@ TEST_CASE(
     }
   }
 }
+
+}  // namespace test_contact

@@ -9,6 +9,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_corner_reflectors {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -139,3 +141,5 @@ TEST_CASE("mirrors that meet at 180°/n show 2n − 1 images") {
     for (std::size_t i = 0; i < found.size(); ++i) CHECK(found[i] == doctest::Approx(expected[i]).epsilon(1e-13));
   }
 }
+
+}  // namespace test_corner_reflectors

@@ -9,9 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "dcem/accel/box_index.hpp"
-#include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/verify/brute_force_simulator.hpp"
 #include "tests/support/law_scenes.hpp"
+
+namespace test_determinism {
 
 using namespace dcem;
 using namespace dcem::test;
@@ -187,3 +188,5 @@ TEST_CASE("determinism: the tree changes the work and nothing else") {
     CHECK(run<BinaryIndex>(ordered_scene(), way, 1, all_frames) == expected);
   }
 }
+
+}  // namespace test_determinism

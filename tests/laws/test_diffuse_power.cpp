@@ -20,6 +20,8 @@
 #include "dcem/sim/simulator.hpp"
 #include "tests/support/quadrature.hpp"
 
+namespace test_diffuse_power {
+
 using namespace dcem;
 using dcem::test::gauss_nodes, dcem::test::QuadratureNode;
 
@@ -1271,3 +1273,5 @@ TEST_CASE("diffuse power: between two ports at an end seeded tiles add in power,
     CHECK(*result.statistics.power_dbm == doctest::Approx(db(specular + result.diffuse.power_ratio)).epsilon(1e-12));
   }
 }
+
+}  // namespace test_diffuse_power

@@ -17,6 +17,8 @@
 #include "dcem/sim/simulator.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_diffuse_power_slow {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -185,3 +187,5 @@ TEST_CASE("diffuse power of a wall behind a bus: what has converged is within it
     if (power.converged) CHECK(std::abs(10.0 * std::log10(power.power_ratio / even)) < 0.1 + 0.03);
   }
 }
+
+}  // namespace test_diffuse_power_slow

@@ -12,6 +12,8 @@
 #include "dcem/io/scenario.hpp"
 #include "tests/support/law_scenes.hpp"
 
+namespace test_doppler {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -205,3 +207,5 @@ TEST_CASE("Doppler: two edges in a row, of two boxes that move") {
          "receivers": [{"id": "low", "position_m": [18, -3, 1.2], "velocity_mps": [-17, 3, -0.1]}])";
   check_times(scenario(street(), objects, devices, R"("max_reflections": 0, "max_diffractions": 2)"), 100, 100, 200);
 }
+
+}  // namespace test_doppler

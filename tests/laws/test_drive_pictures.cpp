@@ -11,6 +11,8 @@
 #include "dcem/io/link_plots.hpp"
 #include "tests/support/law_scenes.hpp"
 
+namespace test_drive_pictures {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -205,3 +207,5 @@ TEST_CASE("around the corner the direct path vanishes where the corner hides the
   CHECK(hidden_frames > 20);
   CHECK(hidden_frames < drive.times_s.size() - 20);
 }
+
+}  // namespace test_drive_pictures

@@ -11,6 +11,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_edge_chains_slow {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -360,3 +362,5 @@ TEST_CASE("a moving box takes its edges along, and its paths keep their names") 
   CHECK(on_car > 100);
   CHECK(kept > on_car / 2);
 }
+
+}  // namespace test_edge_chains_slow

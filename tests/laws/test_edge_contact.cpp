@@ -9,6 +9,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_edge_contact {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -365,3 +367,5 @@ TEST_CASE("a leg to or from an edge is blocked by a wall and crosses sheets, eac
   CHECK(kinds_and_materials({across(3, "pec")}, 3).empty());
   CHECK(kinds_and_materials({across(3, "glass")}, 0).empty());
 }
+
+}  // namespace test_edge_contact

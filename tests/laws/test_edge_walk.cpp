@@ -13,6 +13,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_edge_walk {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -260,3 +262,5 @@ TEST_CASE("a corner of panes behind another pane: what paths may not cross is no
   const auto field = fields(edge, 10e9, boundary.transmitter_m, walked);
   for (const std::size_t polarization : {0U, 1U}) CHECK(step_ratio(field, polarization, polarization) <= 2.0);
 }
+
+}  // namespace test_edge_walk

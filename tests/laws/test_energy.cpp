@@ -7,6 +7,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_energy {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -133,3 +135,5 @@ TEST_CASE("no reflection path gains power: every path of a random room stays bel
     }
   }
 }
+
+}  // namespace test_energy

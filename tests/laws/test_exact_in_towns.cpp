@@ -19,6 +19,8 @@
 #include "tests/support/law_scenes.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_exact_in_towns {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -214,3 +216,5 @@ TEST_CASE("a simulator that is moved between two frames goes on with what it has
   CHECK(numbers == numbers_of(second.advance(scene.frame_at(0.0, 1))));
   CHECK(numbers.size() > 100);
 }
+
+}  // namespace test_exact_in_towns

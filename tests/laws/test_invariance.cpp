@@ -12,6 +12,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_invariance {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -230,3 +232,5 @@ TEST_CASE("invariance: units and the axis that points up") {
       paths_between(std::move(scene), room.transmitter_m, room.receiver_m, settings()),
       [](const Vec3& point) { return point; }, no_more_checks);
 }
+
+}  // namespace test_invariance

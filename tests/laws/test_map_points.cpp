@@ -15,6 +15,8 @@
 #include "dcem/sim/simulator.hpp"
 #include "tests/io/temporary_folder.hpp"
 
+namespace test_map_points {
+
 using namespace dcem;
 
 namespace {
@@ -237,3 +239,5 @@ TEST_CASE("a list of points has the values of a run there, whatever neighbours s
     if (interactions == 2) CHECK(work[0].sequences_solved < work[1].sequences_solved);
   }
 }
+
+}  // namespace test_map_points

@@ -11,6 +11,8 @@
 #include "dcem/io/obj_reader.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_munich {
+
 namespace {
 
 using namespace dcem;
@@ -117,3 +119,5 @@ TEST_CASE("Munich, 2000 rays: every unobstructed pair has its line of sight and 
   CHECK(sights >= 20);
   CHECK(ground_reflections >= 20);
 }
+
+}  // namespace test_munich

@@ -18,6 +18,8 @@
 #include "dcem/io/obj_reader.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_nist_lists {
+
 namespace {
 
 using namespace dcem;
@@ -258,3 +260,5 @@ TEST_CASE("NIST L-Room: lengths, angles and gains of 200 frames, with a reflecti
   CHECK(largest_gain_error_db < 1e-5);
   CHECK(largest_phase_error_rad < 1e-6);
 }
+
+}  // namespace test_nist_lists

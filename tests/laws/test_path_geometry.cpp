@@ -8,6 +8,8 @@
 
 #include "tests/laws/independent_tracer.hpp"
 
+namespace test_path_geometry {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -164,3 +166,5 @@ TEST_CASE("the same holds for what rays find") {
   }
   CHECK(checked > 5000);
 }
+
+}  // namespace test_path_geometry

@@ -8,6 +8,8 @@
 
 #include "tests/laws/independent_tracer.hpp"
 
+namespace test_perfect_mirrors {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -67,3 +69,5 @@ TEST_CASE("perfect mirrors: the transfer matrix of every path is that of 2(n·E)
   // Rows and columns must be told apart by at least some of the paths.
   CHECK(largest_cross > 0.5);
 }
+
+}  // namespace test_perfect_mirrors

@@ -17,6 +17,8 @@
 #include "dcem/channel/frequency_response.hpp"
 #include "tests/support/law_scenes.hpp"
 
+namespace test_phase_and_doppler {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -665,3 +667,5 @@ TEST_CASE("a two-ray field: coherence bandwidth and time are those of two taps")
     }
   }
 }
+
+}  // namespace test_phase_and_doppler

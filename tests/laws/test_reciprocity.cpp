@@ -10,6 +10,8 @@
 
 #include "tests/support/law_scenes.hpp"
 
+namespace test_reciprocity {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -68,3 +70,5 @@ TEST_CASE("reciprocity: the transfer matrix of the reversed link is the transpos
   CHECK(compared > 5000);
   CHECK(mixed > 1000);
 }
+
+}  // namespace test_reciprocity

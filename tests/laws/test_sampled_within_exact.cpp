@@ -11,6 +11,8 @@
 #include "dcem/io/scenario.hpp"
 #include "tests/support/law_scenes.hpp"
 
+namespace test_sampled_within_exact {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -172,3 +174,5 @@ TEST_CASE("more rays find more, and the path set grows with every order limit") 
   CHECK(std::is_sorted(counts.begin(), counts.end()));
   CHECK(counts.front() < counts.back());
 }
+
+}  // namespace test_sampled_within_exact

@@ -11,6 +11,8 @@
 #include "dcem/io/scenario.hpp"
 #include "dcem/sim/verify/verifier.hpp"
 
+namespace test_seed_recall_slow {
+
 using namespace dcem;
 
 namespace {
@@ -131,3 +133,5 @@ TEST_CASE("seed recall: a walk through the office") {
   // Else the bound would prove nothing. On the crossing it does not: there the direct path has nearly all the power.
   CHECK(comparison.off_200.settled.by_power() < 0.95);
 }
+
+}  // namespace test_seed_recall_slow

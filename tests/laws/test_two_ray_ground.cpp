@@ -11,6 +11,8 @@
 #include "dcem/io/scenario.hpp"
 #include "tests/support/law_scenes.hpp"
 
+namespace test_two_ray_ground {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -130,3 +132,5 @@ TEST_CASE("two-ray ground: ITU concrete, V–V and H–H, through the nulls") {
     }
   }
 }
+
+}  // namespace test_two_ray_ground

@@ -8,6 +8,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_path {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -74,3 +76,5 @@ TEST_CASE("two paths are the same when kinds and facets are, whatever their poin
   CHECK(kinds(longer) == "RTT");
   CHECK(kinds(Path{}).empty());
 }
+
+}  // namespace test_path

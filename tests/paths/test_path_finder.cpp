@@ -9,6 +9,8 @@
 #include "dcem/paths/path_id.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_path_finder {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -138,3 +140,5 @@ TEST_CASE("a line of sight is one even where a grazing reflection is no longer t
   }
   CHECK(without == 0);
 }
+
+}  // namespace test_path_finder

@@ -10,6 +10,8 @@
 #include "dcem/paths/path_finder.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_path_id {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -97,3 +99,5 @@ TEST_CASE("the order of triangles in a file does not rename a path") {
   CHECK(names_in(room(false)).size() == 25);  // 1 + 6 + 18 in a closed box
   CHECK(names_in(room(false)) == names_in(room(true)));
 }
+
+}  // namespace test_path_id

@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
+namespace test_sequence {
+
 using namespace dcem;
 
 namespace {
@@ -72,3 +74,5 @@ TEST_CASE("sequences of a scene spread over all hash values") {
   CHECK(hashes.size() == 32896);
   CHECK(static_cast<double>(buckets.size()) / 65536.0 == doctest::Approx(0.3947).epsilon(0.02));
 }
+
+}  // namespace test_sequence

@@ -9,6 +9,8 @@
 
 #include "dcem/scene/scene.hpp"
 
+namespace test_body_pool {
+
 using namespace dcem;
 
 namespace {
@@ -277,3 +279,5 @@ TEST_CASE("a pose that comes back brings back the same bits, whoever stands ther
   const std::vector<Vec3> again(street.scene.vertices_m().begin(), street.scene.vertices_m().end());
   CHECK(first == again);
 }
+
+}  // namespace test_body_pool

@@ -4,6 +4,8 @@
 
 #include "dcem/scene/device.hpp"
 
+namespace test_device {
+
 using namespace dcem;
 
 TEST_CASE("a device at a place stands there for all times") {
@@ -45,3 +47,5 @@ TEST_CASE("points of a large grid are computed, not summed: the millionth is whe
   grid.spacing_m = {0.1, 0.1};
   CHECK(grid_point_m(grid, 0, 1'000'000).x == 1'000'000 * 0.1);
 }
+
+}  // namespace test_device

@@ -3,6 +3,8 @@
 
 #include "dcem/scene/scene.hpp"
 
+namespace test_device_rotation {
+
 using namespace dcem;
 
 namespace {
@@ -84,3 +86,5 @@ TEST_CASE("an antenna whose values are no numbers is refused with its device") {
   CHECK_THROWS_AS(scene.add_receiver(device), std::invalid_argument);
   CHECK(scene.receivers().empty());
 }
+
+}  // namespace test_device_rotation

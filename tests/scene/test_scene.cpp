@@ -12,6 +12,8 @@
 #include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/scene/scene.hpp"
 
+namespace test_scene {
+
 using namespace dcem;
 
 namespace {
@@ -410,3 +412,5 @@ TEST_CASE("a material that a mesh lists but does not use need not be defined") {
   mesh.material_names.push_back("never used");
   CHECK_NOTHROW(scene.add_object("box", mesh, LinearMotion{}));
 }
+
+}  // namespace test_scene

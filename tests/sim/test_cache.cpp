@@ -10,11 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "dcem/accel/box_index.hpp"
 #include "dcem/paths/path_id.hpp"
-#include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/simulator.hpp"
+#include "dcem/sim/verify/brute_force_simulator.hpp"
 #include "tests/paths/small_scenes.hpp"
+
+namespace test_cache {
 
 using namespace dcem;
 using namespace dcem::test;
@@ -98,7 +99,7 @@ std::map<std::string, std::string> bits(const Scene& scene, const FrameResult& r
 
 /// The scene solved path by path, with every triangle asked in turn.
 struct Oracle {
-  BasicSimulator<MaterialTable, BruteForceIndex> simulator;
+  BruteForceSimulator simulator;
 
   Oracle(const Scene& scene, SimulationSettings settings) : simulator(scene, without_cache(settings)) {}
   static SimulationSettings without_cache(SimulationSettings settings) {
@@ -468,3 +469,5 @@ TEST_CASE("a frame that is refused leaves the simulation as it was") {
     CHECK(simulator.index().tree().validate(simulator.scene().triangle_boxes()) == "");
   }
 }
+
+}  // namespace test_cache

@@ -7,6 +7,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_discovery {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -107,3 +109,5 @@ TEST_CASE("what is asked for by name is done, or refused with a reason") {
 TEST_CASE("an empty scene is solved exactly") {
   CHECK(resolved(Discovery::automatic, 10, 0) == Discovery::exact);
 }
+
+}  // namespace test_discovery

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_frame_result {
+
 using namespace dcem;
 
 TEST_CASE("each counter is added to itself") {
@@ -37,3 +39,5 @@ TEST_CASE("each counter is added to itself") {
   CHECK(sum.nodes_visited == 800'000'008);
   CHECK(sum.primitives_tested == 9'000'000'009);
 }
+
+}  // namespace test_frame_result

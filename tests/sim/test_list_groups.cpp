@@ -8,6 +8,8 @@
 
 #include "dcem/core/random.hpp"
 
+namespace test_list_groups {
+
 using namespace dcem;
 
 namespace {
@@ -55,3 +57,5 @@ TEST_CASE("a route is cut into stretches, and without free steps every point loo
   CHECK(detail::list_groups(route_m, open, [](std::size_t, std::size_t) { return false; }).size() == 64);
   CHECK(detail::list_groups({}, {}, [](std::size_t, std::size_t) { return true; }).empty());
 }
+
+}  // namespace test_list_groups

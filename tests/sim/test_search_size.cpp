@@ -10,6 +10,8 @@
 #include "dcem/sim/simulator.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_search_size {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -121,3 +123,5 @@ TEST_CASE("durations are told in units that a person counts in") {
   CHECK(rough_duration(3.4 * 86'400.0) == "3.4 days");
   CHECK(rough_duration(1e12) == "3.2e+04 years");
 }
+
+}  // namespace test_search_size

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+namespace test_settings {
+
 using namespace dcem;
 
 namespace {
@@ -93,3 +95,5 @@ TEST_CASE("the order in force is the smaller of the two bounds") {
     CHECK(reflection_order(propagation) == order);
   }
 }
+
+}  // namespace test_settings

@@ -1,7 +1,6 @@
 /// The whole line in memory: who is linked with whom, and what settings do to a link.
-#include "dcem/accel/box_index.hpp"
-#include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/simulator.hpp"
+#include "dcem/sim/verify/brute_force_simulator.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,6 +11,8 @@
 
 #include "dcem/paths/path_id.hpp"
 #include "tests/paths/small_scenes.hpp"
+
+namespace test_simulator {
 
 using namespace dcem;
 using namespace dcem::test;
@@ -156,8 +157,7 @@ TEST_CASE("the tree and its brute-force twin find the same paths, frame after fr
     return all;
   };
   const auto tree = run([](Scene scene) { return Simulator(std::move(scene), settings_for(2, 2)); });
-  const auto brute = run(
-      [](Scene scene) { return BasicSimulator<MaterialTable, BruteForceIndex>(std::move(scene), settings_for(2, 2)); });
+  const auto brute = run([](Scene scene) { return BruteForceSimulator(std::move(scene), settings_for(2, 2)); });
   CHECK(tree.size() > 2000);
   CHECK(tree == brute);
 }
@@ -445,3 +445,5 @@ TEST_CASE("a progress callback's exception reaches the caller") {
   CHECK_THROWS_AS(simulator.radio_maps(grid, [](std::size_t) { throw std::runtime_error("stop"); }),
                   std::runtime_error);
 }
+
+}  // namespace test_simulator

@@ -11,6 +11,8 @@
 #include "dcem/sim/verify/verifier.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_turned_antennas {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -155,3 +157,5 @@ TEST_CASE("a path in the null of a pattern stays a path without power, and nothi
   CHECK_FALSE(link.statistics.power_dbm.has_value());
   CHECK_FALSE(link.statistics.mean_delay_s.has_value());
 }
+
+}  // namespace test_turned_antennas

@@ -12,6 +12,8 @@
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/simulator.hpp"
 
+namespace test_user_models {
+
 using namespace dcem;
 
 namespace {
@@ -159,3 +161,5 @@ TEST_CASE("a surface model for all materials must fit them, and must scatter whe
   diffuse.propagation.diffuse.enabled = true;
   CHECK(says(refusal([&] { BasicSimulator<Mirror>(scene, diffuse, Mirror{}); }), "does not scatter"));
 }
+
+}  // namespace test_user_models

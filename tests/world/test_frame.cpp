@@ -2,6 +2,8 @@
 
 #include "dcem/world/frame.hpp"
 
+namespace test_frame {
+
 using namespace dcem;
 
 TEST_CASE("a body is there unless it is said to be away") {
@@ -18,3 +20,5 @@ TEST_CASE("two states are equal only where presence, pose and velocity are") {
   faster.placement.velocity.angular_rad_per_s.z = 1.0;
   for (const BodyState& other : {away, elsewhere, faster}) CHECK_FALSE(BodyState{} == other);
 }
+
+}  // namespace test_frame

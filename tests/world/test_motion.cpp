@@ -7,6 +7,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/world/motion.hpp"
 
+namespace test_motion {
+
 using namespace dcem;
 
 namespace {
@@ -189,3 +191,5 @@ TEST_CASE("motions with numbers that are none, without waypoints, or with times 
   motion.waypoints[3].pose.roll_rad = not_a_number;
   refused(motion, "waypoint 3");
 }
+
+}  // namespace test_motion

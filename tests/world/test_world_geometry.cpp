@@ -6,6 +6,8 @@
 #include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/world/world_geometry.hpp"
 
+namespace test_world_geometry {
+
 using namespace dcem;
 
 namespace {
@@ -124,3 +126,5 @@ TEST_CASE("the edges of a body turn with it: their ends, and the frame from whic
     CHECK(glm::distance(edge_length_m(edge) * edge_direction(edge), edge.end_m - edge.start_m) < 1e-14);
   }
 }
+
+}  // namespace test_world_geometry

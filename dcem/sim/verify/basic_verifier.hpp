@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/accel/box_index.hpp"
 #include "dcem/paths/path_id.hpp"
 #include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/verify/brute_force_simulator.hpp"
 #include "dcem/sim/verify/same_bits.hpp"
 #include "dcem/sim/verify/verification_report.hpp"
 
@@ -179,7 +179,3 @@ void BasicVerifier<Surface>::note(const FrameResult& frame, const LinkResult& li
 }
 
 }  // namespace dcem
-
-#if defined(DCEM_ENGINE)
-extern template class dcem::BasicSimulator<dcem::MaterialTable, dcem::BruteForceIndex>;
-#endif

@@ -2,6 +2,8 @@
 
 #include "dcem/accel/binary/arrays.hpp"
 
+namespace test_arrays {
+
 using namespace dcem;
 
 TEST_CASE("pairs of slots start even, and freed pairs are used again, lowest first") {
@@ -38,3 +40,5 @@ TEST_CASE("arrays of nothing have no root") {
   CHECK(arrays.empty());
   CHECK(arrays.nodes.empty());
 }
+
+}  // namespace test_arrays

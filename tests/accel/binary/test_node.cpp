@@ -4,6 +4,8 @@
 
 #include "dcem/accel/binary/node.hpp"
 
+namespace test_node {
+
 using namespace dcem;
 
 namespace {
@@ -49,3 +51,5 @@ TEST_CASE("a walk in a circle is stopped by the bound of the stack") {
   nodes[1] = {{}, 1, 0};
   CHECK_THROWS_AS(for_each_node<float>(nodes, 0, [](std::uint32_t, std::uint32_t) {}), InvariantError);
 }
+
+}  // namespace test_node

@@ -5,6 +5,8 @@
 
 #include "dcem/accel/binary/refit.hpp"
 
+namespace test_refit {
+
 using namespace dcem;
 
 namespace {
@@ -106,3 +108,5 @@ TEST_CASE("one changed child is enough to recompute the parent") {
   CHECK(two.recomputed == Slots{4, 2, 7, 0});
   CHECK(two.report == RefitReport{5, 4, 3});
 }
+
+}  // namespace test_refit

@@ -8,6 +8,8 @@
 #include "dcem/accel/sah_cost.hpp"
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_sah_builder {
+
 using namespace dcem;
 
 namespace {
@@ -152,3 +154,5 @@ TEST_CASE("no items, no nodes; one item, one leaf") {
   REQUIRE(tree.nodes.size() == 1);
   CHECK(tree.nodes[0].count == 1);
 }
+
+}  // namespace test_sah_builder

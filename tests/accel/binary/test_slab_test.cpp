@@ -6,6 +6,8 @@
 #include "dcem/accel/binary/slab_test.hpp"
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_slab_test {
+
 using namespace dcem;
 
 namespace {
@@ -149,3 +151,5 @@ TEST_CASE_TEMPLATE("a larger box is met whenever a box inside it is", Scalar, fl
     if (slab.meets(inner, ray.t_max) && !slab.meets(outer, ray.t_max)) FAIL("the outer box was refused");
   }
 }
+
+}  // namespace test_slab_test

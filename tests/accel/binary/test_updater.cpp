@@ -15,6 +15,8 @@
 
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_binary_updater {
+
 using namespace dcem;
 using dcem_test::between;
 
@@ -749,3 +751,5 @@ TEST_CASE("the oracle's updater takes over the boxes and reports nothing of a sh
   CHECK(report.nodes_kept + report.nodes_refit + report.nodes_rebuilt == 0);
   CHECK(report.sah_cost == oracle.sah_cost());
 }
+
+}  // namespace test_binary_updater

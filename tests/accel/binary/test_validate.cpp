@@ -7,6 +7,8 @@
 #include "dcem/accel/bvh.hpp"
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_validate {
+
 using namespace dcem;
 
 namespace {
@@ -94,3 +96,5 @@ TEST_CASE("a tree that was not told of a motion is defective") {
   sound.boxes.pop_back();
   CHECK_FALSE(sound.tree.validate(sound.boxes).empty());
 }
+
+}  // namespace test_validate

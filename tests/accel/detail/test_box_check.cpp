@@ -6,6 +6,8 @@
 #include "dcem/accel/detail/box_check.hpp"
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_box_check {
+
 using namespace dcem;
 
 TEST_CASE_TEMPLATE("boxes with NaN, infinity or absurd size are refused, empty ones are not", Scalar, float, double) {
@@ -50,3 +52,5 @@ TEST_CASE("a box rounded outward to float holds the box, and rounding it back ch
     CHECK(glm::length(back.extent() - box.extent()) < 4 * 0x1.0p-19);
   }
 }
+
+}  // namespace test_box_check

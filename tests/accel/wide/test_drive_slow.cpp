@@ -14,6 +14,8 @@
 #include "tests/accel/wide/wide_scenes.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_drive_slow {
+
 using namespace dcem;
 using dcem_test::any_ray;
 using dcem_test::between;
@@ -40,16 +42,18 @@ void* or_throw(void* memory) {
 
 }  // namespace
 
+}  // namespace test_drive_slow
+
 // Counts what the program allocates; the rest of the test program is served as before. Never inlined: compilers and
 // sanitizers would see free() beside an operator new.
 [[gnu::noinline]] void* operator new(std::size_t size) {
-  return or_throw(counted_allocation(size, alignof(std::max_align_t)));
+  return test_drive_slow::or_throw(test_drive_slow::counted_allocation(size, alignof(std::max_align_t)));
 }
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-  return or_throw(counted_allocation(size, static_cast<std::size_t>(alignment)));
+  return test_drive_slow::or_throw(test_drive_slow::counted_allocation(size, static_cast<std::size_t>(alignment)));
 }
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  return counted_allocation(size, alignof(std::max_align_t));
+  return test_drive_slow::counted_allocation(size, alignof(std::max_align_t));
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
@@ -66,6 +70,8 @@ void* or_throw(void* memory) {
 [[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
   std::free(memory);
 }
+
+namespace test_drive_slow {
 
 namespace {
 
@@ -359,3 +365,5 @@ TEST_CASE("a million rays at edges and corners of closed meshes, through all tre
     }
   }
 }
+
+}  // namespace test_drive_slow

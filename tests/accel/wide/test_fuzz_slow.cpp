@@ -15,6 +15,8 @@
 #include "tests/accel/wide/wide_scenes.hpp"
 #include "tests/accel/wide/wide_traffic.hpp"
 
+namespace test_fuzz_slow {
+
 using namespace dcem;
 using dcem_test::between;
 using dcem_test::infinity;
@@ -501,3 +503,5 @@ TEST_CASE("rays that begin on one axis are sorted along it") {
     }
   }
 }
+
+}  // namespace test_fuzz_slow

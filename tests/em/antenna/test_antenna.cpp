@@ -4,6 +4,8 @@
 
 #include "dcem/em/antenna/antenna.hpp"
 
+namespace test_antenna {
+
 using namespace dcem;
 
 namespace {
@@ -40,3 +42,5 @@ TEST_CASE("values that are not finite are refused") {
   CHECK_THROWS_AS(validate(Antenna{std::numeric_limits<double>::infinity(), {}}), std::invalid_argument);
   CHECK_THROWS_AS(validate(Antenna{0.0, {PolarizationKind::slant, std::nan("")}}), std::invalid_argument);
 }
+
+}  // namespace test_antenna

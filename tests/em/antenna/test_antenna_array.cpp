@@ -7,6 +7,8 @@
 
 #include "dcem/core/random.hpp"
 
+namespace test_antenna_array {
+
 using namespace dcem;
 
 namespace {
@@ -112,3 +114,5 @@ TEST_CASE("the sense of the phase: an element towards the other end is ahead") {
   CHECK(std::abs(element_phasor(array, 1, Vec3(0, -1, 0)) - Complex(0, -1)) < 1e-15);
   CHECK(std::abs(element_phasor(array, 0, Vec3(0, 1, 0)) - Complex(0, -1)) < 1e-15);
 }
+
+}  // namespace test_antenna_array

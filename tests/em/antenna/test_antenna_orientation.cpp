@@ -9,6 +9,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/em/antenna/antenna.hpp"
 
+namespace test_antenna_orientation {
+
 using namespace dcem;
 
 namespace {
@@ -207,3 +209,5 @@ TEST_CASE("an orientation that is not finite, a table that is not there and an a
   refused({0.0, {}, IsotropicPattern{}, {}, {2, 2, infinity}});
   CHECK_NOTHROW(validate(Antenna{0.0, {}, Tr38901Element{}, {1.0, 2.0, 3.0}, {64, 64, 0.7}}));
 }
+
+}  // namespace test_antenna_orientation

@@ -10,6 +10,8 @@
 
 #include "dcem/core/random.hpp"
 
+namespace test_antenna_pattern {
+
 using namespace dcem;
 
 namespace {
@@ -214,3 +216,5 @@ TEST_CASE("a gain is finite and not negative in every direction, and the same fo
     }
   }
 }
+
+}  // namespace test_antenna_pattern

@@ -8,6 +8,8 @@
 
 #include "dcem/core/random.hpp"
 
+namespace test_pattern_table {
+
 using namespace dcem;
 
 namespace {
@@ -102,3 +104,5 @@ TEST_CASE("tables that do not cover the sphere, and gains that are none, are ref
   }
   CHECK_NOTHROW(PatternTable(1, 2, {200.0, -200.0}));
 }
+
+}  // namespace test_pattern_table

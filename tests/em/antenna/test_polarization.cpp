@@ -6,6 +6,8 @@
 #include "dcem/core/constants.hpp"
 #include "dcem/em/antenna/polarization.hpp"
 
+namespace test_polarization {
+
 using namespace dcem;
 
 namespace {
@@ -160,3 +162,5 @@ TEST_CASE("Jones vectors have unit length, and dual has none") {
   CHECK(jones_vector({PolarizationKind::slant, 0.3}) == JonesVector{std::cos(0.3), std::sin(0.3)});
   CHECK_FALSE(jones_vector({PolarizationKind::dual, 0.0}));
 }
+
+}  // namespace test_polarization

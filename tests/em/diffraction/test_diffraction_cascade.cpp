@@ -11,6 +11,8 @@
 #include "dcem/em/diffraction/wedge_diffraction.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_diffraction_cascade {
+
 using namespace dcem;
 
 namespace {
@@ -302,3 +304,5 @@ TEST_CASE("reciprocity: a cascade over skew lossy edges, dyadic with slopes, ord
     CHECK(difference(CascadeDistances::from_source) > 1e-3);
   }
 }
+
+}  // namespace test_diffraction_cascade

@@ -9,6 +9,8 @@
 #include "tests/reference/em_reference.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_transition_function {
+
 using namespace dcem;
 
 namespace {
@@ -118,3 +120,5 @@ TEST_CASE("transition function: the published table") {
   }
   CHECK(count == 13);
 }
+
+}  // namespace test_transition_function

@@ -12,6 +12,8 @@
 #include "dcem/em/dyad.hpp"
 #include "dcem/em/surface/slab.hpp"
 
+namespace test_wedge_continuity {
+
 using namespace dcem;
 
 // The total field of a point source at a wedge, as a vector in space: geometrical optics from em/dyad.hpp with images,
@@ -341,3 +343,5 @@ TEST_CASE("luebbers84: with the source halfway between the faces one of them, fa
   CHECK(cosine_at(WedgeFace::zero) == doctest::Approx(std::sin(0.75 * pi)).epsilon(1e-14));
   CHECK(cosine_at(WedgeFace::n) == doctest::Approx(std::sin(pi - (1.5 - 1.1) * pi)).epsilon(1e-14));
 }
+
+}  // namespace test_wedge_continuity

@@ -10,6 +10,8 @@
 #include "dcem/em/diffraction/edge_basis.hpp"
 #include "dcem/em/diffraction/wedge_diffraction.hpp"
 
+namespace test_wedge_diffraction {
+
 using namespace dcem;
 
 // Tables of tests/reference/utd_reference.py: total fields of perfectly conducting wedges from exact solutions.
@@ -432,3 +434,5 @@ TEST_CASE("at a reflection boundary the term of that face is half the root of th
   CHECK(std::abs(utd_terms(angles, wave_number_rad_per_m, distances).reflected_n) ==
         doctest::Approx(1.0).epsilon(1e-7));
 }
+
+}  // namespace test_wedge_diffraction

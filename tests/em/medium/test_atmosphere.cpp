@@ -7,6 +7,8 @@
 #include "dcem/core/units.hpp"
 #include "dcem/em/medium/atmosphere.hpp"
 
+namespace test_atmosphere {
+
 using namespace dcem;
 
 namespace {
@@ -228,3 +230,5 @@ TEST_CASE("air: two atmospheres are equal when every field is") {
   CHECK(Atmosphere{true, 288.15, 900.0} != Atmosphere{});
   CHECK(Atmosphere{true, 288.15, 1013.25, 1.0} != Atmosphere{});
 }
+
+}  // namespace test_atmosphere

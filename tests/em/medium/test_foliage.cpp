@@ -5,6 +5,8 @@
 
 #include "dcem/em/medium/foliage.hpp"
 
+namespace test_foliage {
+
 using namespace dcem;
 
 TEST_CASE("foliage: 0.79 dB/m at 1 GHz, and by hand at the frequencies of vehicles") {
@@ -27,3 +29,5 @@ TEST_CASE("foliage: the range is closed, and what is outside is refused") {
   for (const double bad_hz : {0.999e9, 100.001e9, 0.0, -1e9, std::numeric_limits<double>::infinity(), std::nan("")})
     CHECK_THROWS_AS(foliage_attenuation_db_per_m(bad_hz), std::invalid_argument);
 }
+
+}  // namespace test_foliage

@@ -9,6 +9,8 @@
 #include "tests/em/csv_rows.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_gas_attenuation {
+
 using namespace dcem;
 
 namespace {
@@ -228,3 +230,5 @@ TEST_CASE("gases: the range of frequencies is closed, and bad values are refused
     CHECK_THROWS_AS(gas_attenuation_db_per_km(30e9, {288.15, 1013.25, bad}), std::invalid_argument);
   }
 }
+
+}  // namespace test_gas_attenuation

@@ -5,6 +5,8 @@
 
 #include "dcem/em/medium/path_loss.hpp"
 
+namespace test_path_loss {
+
 using namespace dcem;
 
 namespace {
@@ -70,3 +72,5 @@ TEST_CASE("no NaN out of the models, and bad values are refused") {
     CHECK_THROWS_AS(free_space_path_loss_db(1.0, bad), std::invalid_argument);
   }
 }
+
+}  // namespace test_path_loss

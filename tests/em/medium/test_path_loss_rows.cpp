@@ -5,6 +5,8 @@
 #include "dcem/core/units.hpp"
 #include "dcem/em/medium/path_loss.hpp"
 
+namespace test_path_loss_rows {
+
 using namespace dcem;
 
 // How the rows were made (25 digits; any pocket calculator gives the first ten):
@@ -89,3 +91,5 @@ TEST_CASE("the line of sight of TR 37.885 on highways is Friis with its constant
       CHECK(std::abs(free_space_path_loss_db(length_m, frequency_ghz * 1e9) - table_db - 0.04778322) <= 1e-8);
     }
 }
+
+}  // namespace test_path_loss_rows

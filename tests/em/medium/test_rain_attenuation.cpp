@@ -9,6 +9,8 @@
 #include "tests/em/csv_rows.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_rain_attenuation {
+
 using namespace dcem;
 
 namespace {
@@ -173,3 +175,5 @@ TEST_CASE("rain: ranges are closed, and bad values are refused by name") {
   CHECK(refusal([] { rain_attenuation_db_per_km(30e9, -1.0, 0.0, 0.0); }) ==
         "rain_mm_per_h is -1; expected 0 to 1000 mm/h");
 }
+
+}  // namespace test_rain_attenuation

@@ -15,6 +15,8 @@
 #include "dcem/em/surface/material_table.hpp"
 #include "tests/support/quadrature.hpp"
 
+namespace test_effective_roughness {
+
 using namespace dcem;
 using dcem::test::gauss_nodes, dcem::test::QuadratureNode;
 
@@ -328,3 +330,5 @@ TEST_CASE("effective roughness: a surface has a height or a scattering coefficie
   const double g = 2.0 * 2.0 * pi * 30e9 / 299'792'458.0 * 1e-3 * 0.5;
   CHECK(std::abs(table.response(MaterialId(0), 0.5).reflection.tm - std::exp(-0.5 * g * g)) <= 1e-14);
 }
+
+}  // namespace test_effective_roughness

@@ -5,6 +5,8 @@
 #include "dcem/em/surface/fresnel.hpp"
 #include "tests/reference/em_reference.hpp"
 
+namespace test_fresnel {
+
 using namespace dcem;
 
 namespace {
@@ -105,3 +107,5 @@ TEST_CASE("a cosine beyond its range by rounding counts as its end") {
   CHECK(half_space_reflection(eta, 1.0 + 1e-12) == half_space_reflection(eta, 1.0));
   CHECK(half_space_reflection(eta, -1e-12) == half_space_reflection(eta, 0.0));
 }
+
+}  // namespace test_fresnel

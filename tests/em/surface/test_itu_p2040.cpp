@@ -10,6 +10,8 @@
 #include "dcem/em/surface/itu_p2040.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_itu_p2040 {
+
 using namespace dcem;
 
 namespace {
@@ -140,3 +142,5 @@ TEST_CASE("every row of the reference table, and no other") {
   }
   CHECK(row_index == itu_rows.size());
 }
+
+}  // namespace test_itu_p2040

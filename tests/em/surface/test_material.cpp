@@ -7,6 +7,8 @@
 
 #include "dcem/em/surface/material.hpp"
 
+namespace test_material {
+
 using namespace dcem;
 
 namespace {
@@ -119,3 +121,5 @@ TEST_CASE("a refusal names the material") {
     CHECK(std::string(error.what()).find("front door") != std::string::npos);
   }
 }
+
+}  // namespace test_material

@@ -10,6 +10,8 @@
 #include "dcem/em/surface/itu_p2040.hpp"
 #include "dcem/em/surface/material_table.hpp"
 
+namespace test_material_table {
+
 using namespace dcem;
 
 namespace {
@@ -243,3 +245,5 @@ TEST_CASE("bad materials, frequencies and ids do not pass") {
   CHECK_THROWS_AS(table.response(second, 0.5), InvariantError);
   CHECK_THROWS_AS(table.material(second), InvariantError);
 }
+
+}  // namespace test_material_table

@@ -7,6 +7,8 @@
 #include "dcem/em/surface/multilayer.hpp"
 #include "tests/reference/em_reference.hpp"
 
+namespace test_multilayer {
+
 using namespace dcem;
 
 namespace {
@@ -164,3 +166,5 @@ TEST_CASE("multilayer: no NaN for any finite media, thickness and angle") {
             REQUIRE(power_tm(response) <= 1.0 + 1e-13);
           }
 }
+
+}  // namespace test_multilayer

@@ -2,6 +2,8 @@
 
 #include "dcem/em/surface/roughness.hpp"
 
+namespace test_roughness {
+
 using namespace dcem;
 
 TEST_CASE("roughness: Ament and Miller-Brown at points worked out by hand") {
@@ -49,3 +51,5 @@ TEST_CASE("roughness: Rayleigh's criterion is σ = λ/(8 cos θ)") {
   CHECK(is_smooth(roughness_phase_spread_rad(2.0 * pi / wavelength_m, 0.999 * limit_m, 0.7)));
   CHECK_FALSE(is_smooth(roughness_phase_spread_rad(2.0 * pi / wavelength_m, 1.001 * limit_m, 0.7)));
 }
+
+}  // namespace test_roughness

@@ -6,6 +6,8 @@
 #include "dcem/em/surface/slab.hpp"
 #include "tests/reference/em_reference.hpp"
 
+namespace test_slab {
+
 using namespace dcem;
 
 namespace {
@@ -137,3 +139,5 @@ TEST_CASE("no NaN for any finite medium, thickness and angle") {
           REQUIRE(power_tm(response) <= 1.0 + rounding);
         }
 }
+
+}  // namespace test_slab

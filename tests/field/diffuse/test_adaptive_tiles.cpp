@@ -14,6 +14,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/field/diffuse/adaptive_tiles.hpp"
 
+namespace test_adaptive_tiles {
+
 using namespace dcem;
 
 namespace {
@@ -408,3 +410,5 @@ TEST_CASE("adaptive tiles: a triangle with equal edges is cut in the same way ho
     }
   }
 }
+
+}  // namespace test_adaptive_tiles

@@ -7,6 +7,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/surfaces/convex_hull.hpp"
 
+namespace test_convex_hull {
+
 using namespace dcem;
 
 namespace {
@@ -126,3 +128,5 @@ TEST_CASE("the hull on a plane goes around its normal and brings the corners bac
     }
   }
 }
+
+}  // namespace test_convex_hull

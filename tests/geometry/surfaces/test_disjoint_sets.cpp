@@ -7,6 +7,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/surfaces/disjoint_sets.hpp"
 
+namespace test_disjoint_sets {
+
 using namespace dcem;
 
 namespace {
@@ -61,3 +63,5 @@ TEST_CASE("a chain of a million joins, either way, is answered without deep recu
   CHECK(falling.smallest(count - 1) == 0);
   CHECK(falling.smallest(count / 2) == 0);
 }
+
+}  // namespace test_disjoint_sets

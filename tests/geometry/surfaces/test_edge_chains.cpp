@@ -8,6 +8,8 @@
 
 #include "dcem/geometry/surfaces/edge_chains.hpp"
 
+namespace test_edge_chains {
+
 using namespace dcem;
 
 namespace {
@@ -100,3 +102,5 @@ TEST_CASE("a staircase of fifty thousand steps is cut at each: a search over all
   }
   CHECK(corners(vertices_m, 1e-4) == expected);
 }
+
+}  // namespace test_edge_chains

@@ -13,6 +13,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 
+namespace test_facet_builder {
+
 using namespace dcem;
 
 namespace {
@@ -508,3 +510,5 @@ TEST_CASE("bad meshes are refused by name: vertices that are no points, indices 
   material.triangles[0].material = 1;
   check_refused(material, "triangle 0");
 }
+
+}  // namespace test_facet_builder

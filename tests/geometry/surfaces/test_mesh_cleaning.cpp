@@ -9,6 +9,8 @@
 
 #include "dcem/geometry/surfaces/mesh_cleaning.hpp"
 
+namespace test_mesh_cleaning {
+
 using namespace dcem;
 
 namespace {
@@ -97,3 +99,5 @@ TEST_CASE("the largest coordinate is 1e9 m from the origin, and what lies there 
   mesh.vertices_m[0].x = std::nextafter(1e9, 2e9);
   CHECK_THROWS_AS(clean_mesh(mesh, {}), std::invalid_argument);
 }
+
+}  // namespace test_mesh_cleaning

@@ -8,6 +8,8 @@
 
 #include "dcem/geometry/surfaces/mesh_edges.hpp"
 
+namespace test_mesh_edges {
+
 using namespace dcem;
 
 namespace {
@@ -139,3 +141,5 @@ TEST_CASE("a crowded edge lets a shell leak") {
   CHECK(box.shells.closed == 0);
   CHECK(box.shells.standing == 0);
 }
+
+}  // namespace test_mesh_edges

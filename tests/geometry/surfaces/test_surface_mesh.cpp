@@ -10,6 +10,8 @@
 #include "dcem/io/obj_reader.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_surface_mesh {
+
 using namespace dcem;
 
 namespace {
@@ -113,3 +115,5 @@ TEST_CASE("Etoile as found: its counts are those of an independent script") {
   DCEM_NEEDS_SHARED();
   check_city({"scenes/etoile.obj", 13'251, 13'098, 4'864, 3'894, 51, 183, 4'760, 1'245'130.59});
 }
+
+}  // namespace test_surface_mesh

@@ -17,6 +17,8 @@
 #include "dcem/io/obj_reader.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_wedge_builder {
+
 using namespace dcem;
 
 namespace {
@@ -780,3 +782,5 @@ TEST_CASE("the rim of a sheet that touches itself at a point ends there: no free
   }
   CHECK(ends == 4);
 }
+
+}  // namespace test_wedge_builder

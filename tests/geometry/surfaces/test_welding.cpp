@@ -9,6 +9,8 @@
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/surfaces/welding.hpp"
 
+namespace test_welding {
+
 using namespace dcem;
 
 namespace {
@@ -150,3 +152,5 @@ TEST_CASE("a large plane of vertices is welded in well under the time of n² dis
   // 180 000 vertices: n² would be 3e10 distances, beyond the time limit of any test.
   CHECK(weld(points, 1e-4).vertices_m.size() == 90'000);
 }
+
+}  // namespace test_welding

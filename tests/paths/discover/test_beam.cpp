@@ -8,6 +8,8 @@
 #include "dcem/geometry/surfaces/convex_hull.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_beam {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -218,3 +220,5 @@ TEST_CASE("a window without width still lets through what lies behind it") {
     CHECK(outside_m(inside_m, Vec3(0, 0, 1), apex_m + 2.0 * (centre_m - apex_m)) < 1e-9);
   }
 }
+
+}  // namespace test_beam

@@ -10,6 +10,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_exact_search {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -170,3 +172,5 @@ TEST_CASE("a mirror in whose plane the receiver lies, on an absent body or on th
   traced.scene.apply(frame);
   CHECK(count(traced.end(Vec3(0, 9, 1.5))) == 7);
 }
+
+}  // namespace test_exact_search

@@ -14,6 +14,8 @@
 #include "dcem/paths/path_id.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_path_cache {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -257,3 +259,5 @@ TEST_CASE("counters add up") {
   CHECK(sum == CacheCounters{11, 22, 33, 44, 55});
   CHECK(CacheCounters{} == CacheCounters{0, 0, 0, 0, 0});
 }
+
+}  // namespace test_path_cache

@@ -13,6 +13,8 @@
 #include "dcem/paths/discover/exact_search.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_ray_launcher {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -236,3 +238,5 @@ TEST_CASE("the body that the receiver rides on and the wall it is mounted on are
   CHECK(locked_in.sequences.size() == 7);  // its six faces hide the walls
   CHECK(locked_in.sequences.count(Sequence{own}) == 0);
 }
+
+}  // namespace test_ray_launcher

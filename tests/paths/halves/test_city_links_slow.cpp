@@ -17,6 +17,8 @@
 #include "tests/paths/halves/city_oracle.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_city_links_slow {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -178,3 +180,5 @@ TEST_CASE("cities: with the ends swapped the same paths are found, the other way
     }
   }
 }
+
+}  // namespace test_city_links_slow

@@ -7,6 +7,8 @@
 
 #include "tests/paths/halves/crowds.hpp"
 
+namespace test_crowd_joiner {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -60,3 +62,5 @@ TEST_CASE("a transmitter far away is joined as one nearby") {
   }
   CHECK(found > 500);
 }
+
+}  // namespace test_crowd_joiner

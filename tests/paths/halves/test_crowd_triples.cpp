@@ -8,6 +8,8 @@
 #include "tests/paths/halves/crowds.hpp"
 #include "tests/paths/halves/small_street.hpp"
 
+namespace test_crowd_triples {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -25,3 +27,5 @@ TEST_CASE("a crowd finds every path of three interactions of each of its points,
   MESSAGE(found << " paths");
   CHECK(found > 5'000);
 }
+
+}  // namespace test_crowd_triples

@@ -10,6 +10,8 @@
 #include "tests/paths/halves/crowds.hpp"
 #include "tests/paths/halves/small_town.hpp"
 
+namespace test_edge_pairs {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -99,3 +101,5 @@ TEST_CASE("an end that is far away is joined over two edges as one nearby") {
   }
   CHECK(found > 200);
 }
+
+}  // namespace test_edge_pairs

@@ -9,6 +9,8 @@
 #include "tests/paths/halves/small_town.hpp"
 #include "tests/support/shared_data.hpp"
 
+namespace test_edge_pairs_slow {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -73,3 +75,5 @@ TEST_CASE("of all pairs of edges in Munich the search misses none that carries a
     CHECK(same_paths(joined(traced, from, to, {0, 0, 2, 2}, 256, listed), all));
   }
 }
+
+}  // namespace test_edge_pairs_slow

@@ -8,6 +8,8 @@
 
 #include "tests/paths/halves/small_town.hpp"
 
+namespace test_half_joiner {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -150,3 +152,5 @@ TEST_CASE("what two triangles of a facet, one on the other, leave open is seen t
   }
   CHECK(found > 4);
 }
+
+}  // namespace test_half_joiner

@@ -7,6 +7,8 @@
 
 #include "tests/paths/halves/small_street.hpp"
 
+namespace test_triple_joiner {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -27,3 +29,5 @@ TEST_CASE("joined halves find every path of three interactions, and the same bit
                          << " RRD");
   CHECK(found.least() > 100);
 }
+
+}  // namespace test_triple_joiner

@@ -9,6 +9,8 @@
 #include "dcem/paths/halves/path_half.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_view_map {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -250,3 +252,5 @@ TEST_CASE("nor does a ray from any image of several points side by side") {
   CHECK(rays.met > 500'000);
   CHECK(rays.hidden > 50'000);
 }
+
+}  // namespace test_view_map

@@ -6,6 +6,8 @@
 #include "dcem/accel/wide_index.hpp"
 #include "dcem/geometry/triangle_mesh.hpp"
 
+namespace test_embedded_edges {
+
 using namespace dcem;
 
 namespace {
@@ -69,3 +71,5 @@ TEST_CASE("a box above the ground, or half beyond its rim, has free edges there"
   CHECK(rim.edges == 1);
   CHECK(rim.all_in_ground);
 }
+
+}  // namespace test_embedded_edges

@@ -22,6 +22,8 @@
 #include "dcem/sim/verify/verifier.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_foliage_length {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -168,7 +170,7 @@ struct LetterU {
   static double clipped_m(const Vec3& from_m, const Vec3& to_m) {
     double sum_m = 0.0;
     for (const auto& [i, k] : cells) {
-      sum_m += ::clipped_m(half_spaces(corner_m(i, 0, k), corner_m(i + 1, 1, k + 1)), from_m, to_m);
+      sum_m += test_foliage_length::clipped_m(half_spaces(corner_m(i, 0, k), corner_m(i + 1, 1, k + 1)), from_m, to_m);
     }
     return sum_m;
   }
@@ -911,3 +913,5 @@ TEST_CASE("for a device that rides in foliage, that foliage does not exist unles
   CHECK(length_m(0) == doctest::Approx(1.0));
   CHECK(length_m(1) == doctest::Approx(3.0));
 }
+
+}  // namespace test_foliage_length

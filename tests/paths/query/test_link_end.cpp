@@ -5,6 +5,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_link_end {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -33,3 +35,5 @@ TEST_CASE("the body a device rides on is not what it is mounted on") {
   CHECK(rider.ignored_body == car);
   CHECK(rider.position_m == roof_m);
 }
+
+}  // namespace test_link_end

@@ -7,6 +7,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_obstruction {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -126,3 +128,5 @@ TEST_CASE("so does one mounted where two or three of its faces meet") {
     }
   }
 }
+
+}  // namespace test_obstruction

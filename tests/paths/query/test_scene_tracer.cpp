@@ -9,6 +9,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_scene_tracer {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -333,3 +335,5 @@ TEST_CASE("by name, then by id: which of two overlapping facets stands for the o
   CHECK_FALSE(traced.tracer.precedes(alpha, alpha));
   CHECK(traced.tracer.parallel(alpha, glass_1));
 }
+
+}  // namespace test_scene_tracer

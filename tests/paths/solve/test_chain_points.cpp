@@ -12,6 +12,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_chain_points {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -156,3 +158,5 @@ TEST_CASE("four edges are one too many, and no points are left from the chain be
   CHECK(points.find(scene, Vec3(-20, 1, 2), Vec3(20, 2, 1), {}, nullptr));
   CHECK(points.points_m().empty());
 }
+
+}  // namespace test_chain_points

@@ -7,6 +7,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_image_method {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -120,3 +122,5 @@ TEST_CASE("the direct path has no points") {
   CHECK(solved.valid);
   CHECK(solved.points_m.empty());
 }
+
+}  // namespace test_image_method

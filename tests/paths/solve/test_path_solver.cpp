@@ -8,6 +8,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_path_solver {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -272,3 +274,5 @@ TEST_CASE("an end in the plane of a face, beyond the face, is at grazing: there 
   CHECK_FALSE(is_there(1e-10));
   CHECK_FALSE(is_there(0.0));
 }
+
+}  // namespace test_path_solver

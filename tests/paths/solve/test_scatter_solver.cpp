@@ -15,6 +15,8 @@
 #include "dcem/paths/solve/scatter_solver.hpp"
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_scatter_solver {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -427,3 +429,5 @@ TEST_CASE("scatter solver: in random scenes of sheets it sees what a loop over a
   CHECK(blocked > 200);
   CHECK(through > 60);
 }
+
+}  // namespace test_scatter_solver

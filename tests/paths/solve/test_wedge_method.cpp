@@ -12,6 +12,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_wedge_method {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -389,3 +391,5 @@ TEST_CASE("an edge whose middle lies on the line of its neighbour has its place 
   }
   CHECK(expected > 20);
 }
+
+}  // namespace test_wedge_method

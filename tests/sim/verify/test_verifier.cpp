@@ -17,6 +17,8 @@
 
 #include "tests/paths/small_scenes.hpp"
 
+namespace test_verifier {
+
 using namespace dcem;
 using namespace dcem::test;
 
@@ -360,3 +362,5 @@ TEST_CASE("where the scene is too large for exhaustive search, paths alone are c
   CHECK(verifier.report().recall_by_frame.empty());
   CHECK(verifier.report().paths > 2);
 }
+
+}  // namespace test_verifier

@@ -20,8 +20,8 @@ namespace dcem::io {
 
 namespace {
 
-enum Column : std::size_t { azimuth_deg, zenith_deg, gain_dbi };
-const std::string header = "azimuth_deg,zenith_deg,gain_dbi";
+enum PatternColumn : std::size_t { azimuth_deg, zenith_deg, gain_dbi };
+const std::string pattern_header = "azimuth_deg,zenith_deg,gain_dbi";
 
 /// Angles are compared in millionths of a degree: files round them.
 using MicroDegrees = std::int64_t;
@@ -41,7 +41,7 @@ struct Node {
 };
 
 Node read_node(const CsvReader& row) {
-  const auto angle = [&](Column column, const NumberRange& range) {
+  const auto angle = [&](PatternColumn column, const NumberRange& range) {
     return static_cast<MicroDegrees>(std::llround(row.number(column, range) * 1e6));
   };
   const MicroDegrees azimuth = angle(azimuth_deg, {-360.0, 360.0});
@@ -51,11 +51,11 @@ Node read_node(const CsvReader& row) {
 }
 
 std::vector<Node> read_nodes(const std::string& name, std::string_view text) {
-  CsvReader row(name, text, {{"azimuth_deg"}, {"zenith_deg"}, {"gain_dbi"}}, "a header " + header,
+  CsvReader row(name, text, {{"azimuth_deg"}, {"zenith_deg"}, {"gain_dbi"}}, "a header " + pattern_header,
                 CsvReader::OtherColumns::refused, CsvReader::EmptyLines::anywhere);
   std::vector<Node> nodes;
   while (row.next()) nodes.push_back(read_node(row));
-  if (nodes.empty()) throw InputError(name, "holds no gain; expected lines of " + header);
+  if (nodes.empty()) throw InputError(name, "holds no gain; expected lines of " + pattern_header);
   return nodes;
 }
 
@@ -155,7 +155,7 @@ PatternTable read_pattern_csv(const std::filesystem::path& file) {
 }
 
 void write_pattern_csv(const PatternTable& table, const std::filesystem::path& file) {
-  std::string text = header + '\n';
+  std::string text = pattern_header + '\n';
   for (std::size_t zenith = 0; zenith < table.zenith_count(); ++zenith) {
     for (std::size_t azimuth = 0; azimuth < table.azimuth_count(); ++azimuth) {
       const auto share = [](std::size_t index, std::size_t count, double whole_deg) {

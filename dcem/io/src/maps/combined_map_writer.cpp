@@ -9,6 +9,7 @@
 #include "dcem/io/src/maps/map_arrays.hpp"
 #include "dcem/io/src/pictures/map_picture_parts.hpp"
 #include "dcem/io/src/text/number_text.hpp"
+#include "dcem/io/src/text/sheet.hpp"
 #include "dcem/io/text_table.hpp"
 
 namespace dcem::io {
@@ -16,8 +17,6 @@ namespace {
 
 using Value = std::optional<double> CombinedMapPoint::*;
 
-constexpr std::size_t sheet_bytes = std::size_t{1} << 20;
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t longest_category = 40;
 
 void write_csv(AtomicFile& file, const CombinedMap& map, std::string_view header, Value first, Value second) {
@@ -54,7 +53,7 @@ template <typename Get>
 std::vector<double> values_of(const CombinedMap& map, Get&& get) {
   std::vector<double> values;
   values.reserve(map.points.size());
-  for (const CombinedMapPoint& point : map.points) values.push_back(get(point).value_or(no_number));
+  for (const CombinedMapPoint& point : map.points) values.push_back(get(point).value_or(no_value_db));
   return values;
 }
 

@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "dcem/io/src/text/number_text.hpp"
+#include "dcem/io/src/text/sheet.hpp"
 
 namespace dcem::io {
 namespace {
-
-constexpr std::size_t sheet_bytes = std::size_t{1} << 20;
 
 template <typename Number>
 void append_key(std::string& text, const char* key, Number value) {
@@ -20,7 +19,7 @@ void append_key(std::string& text, const char* key, Number value) {
   text += '\n';
 }
 
-std::string header(const ReceiverGrid& grid) {
+std::string grid_header(const ReceiverGrid& grid) {
   std::string text;
   append_key(text, "ncols", grid.columns());
   append_key(text, "nrows", grid.rows());
@@ -40,7 +39,7 @@ std::string header(const ReceiverGrid& grid) {
 
 void write_esri_grid(AtomicFile& file, const ReceiverGrid& grid, std::span<const double> values) {
   if (values.size() != grid.size()) throw std::invalid_argument("write_esri_grid: expected one value per grid point");
-  std::string text = header(grid);
+  std::string text = grid_header(grid);
   for (std::size_t row = grid.rows(); row-- > 0;) {
     for (std::size_t column = 0; column < grid.columns(); ++column) {
       const double value = values[row * grid.columns() + column];

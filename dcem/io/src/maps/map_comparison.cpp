@@ -29,13 +29,14 @@ Place place_of(const MapColumn::Row& row) {
   return {std::llround(row.x_m * 1e6), std::llround(row.y_m * 1e6)};
 }
 
-enum Column : std::size_t { x_m, y_m, power };
+enum ReadColumn : std::size_t { x_column, y_column, value_column };
 
 MapColumn::Row read_row(const CsvReader& row) {
   const NumberRange place_m{-farthest_place_m, farthest_place_m};
-  const double value_db = row.text(power).empty() ? std::numeric_limits<double>::quiet_NaN()
-                                                  : row.number(power, {-largest_value_db, largest_value_db});
-  return {row.number(x_m, place_m), row.number(y_m, place_m), value_db};
+  const double value_db = row.text(value_column).empty()
+                              ? std::numeric_limits<double>::quiet_NaN()
+                              : row.number(value_column, {-largest_value_db, largest_value_db});
+  return {row.number(x_column, place_m), row.number(y_column, place_m), value_db};
 }
 
 std::map<Place, double> values_by_place(const MapColumn& column) {

@@ -12,13 +12,11 @@
 #include "dcem/io/src/pictures/map_picture_parts.hpp"
 #include "dcem/io/src/text/file_name.hpp"
 #include "dcem/io/src/text/number_text.hpp"
+#include "dcem/io/src/text/sheet.hpp"
 #include "dcem/io/text_table.hpp"
 
 namespace dcem::io {
 namespace {
-
-constexpr std::size_t sheet_bytes = std::size_t{1} << 20;
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 std::optional<double> field_dbuv_per_m(const RadioMapPoint& point, double frequency_hz) {
   const std::optional<double>& power_dbm = point.statistics.power_dbm;
@@ -101,7 +99,7 @@ void write_map_npz(AtomicFile& file, const RadioMap& map, double frequency_hz) {
 void write_map_asc(AtomicFile& file, const RadioMap& map) {
   std::vector<double> powers_dbm;
   powers_dbm.reserve(map.points.size());
-  for (const RadioMapPoint& point : map.points) powers_dbm.push_back(point.statistics.power_dbm.value_or(no_number));
+  for (const RadioMapPoint& point : map.points) powers_dbm.push_back(point.statistics.power_dbm.value_or(no_value_db));
   write_esri_grid(file, map.grid(), powers_dbm);
 }
 
@@ -113,7 +111,7 @@ HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame,
                                       [&](const std::string& id) { return id == map.transmitter; });
   picture.label = "incoherent received power";
   for (const RadioMapPoint& point : map.points) {
-    picture.values.push_back(point.statistics.power_incoherent_dbm.value_or(no_number));
+    picture.values.push_back(point.statistics.power_incoherent_dbm.value_or(no_value_db));
     picture.hatched.push_back(point.obstructed ? 1 : 0);
   }
   return picture;

@@ -1,20 +1,12 @@
 #include "dcem/io/inspection.hpp"
 #include "dcem/io/src/results/fact_json.hpp"
+#include "dcem/io/src/text/json_values.hpp"
 #include "dcem/io/text_table.hpp"
 
 namespace dcem::io {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json point_json(const Vec3& point) {
-  return {point.x, point.y, point.z};
-}
-
-template <typename Value>
-Json optional_json(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json response_json(const InspectedMaterial::Response& response) {
   return {{"relative_permittivity", optional_json(response.relative_permittivity)},

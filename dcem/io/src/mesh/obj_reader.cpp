@@ -23,7 +23,7 @@ namespace dcem::io {
 namespace {
 
 constexpr const char* obj_expectation = "expected a Wavefront OBJ file";
-constexpr double farthest_m = 1e9;
+constexpr double farthest_vertex_m = 1e9;
 constexpr std::size_t most_polygon_corners = 10'000;
 
 /// Material of faces that stand before the first `usemtl`.
@@ -111,7 +111,8 @@ class ObjCheck {
       if (count < 3) point[count] = *number * settings_.unit_m;
     }
     if (count < 3) fail("v: " + std::to_string(count) + " numbers; expected at least 3 coordinates");
-    if (!(glm::length(point) <= farthest_m)) fail("v: too far away; expected a point within 1e9 m of the origin");
+    if (!(glm::length(point) <= farthest_vertex_m))
+      fail("v: too far away; expected a point within 1e9 m of the origin");
     result_.vertices_m.push_back(settings_.up == UpAxis::z ? point : Vec3(point.x, -point.z, point.y));
   }
 

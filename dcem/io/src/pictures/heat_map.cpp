@@ -12,7 +12,6 @@ namespace {
 
 using namespace detail;
 
-constexpr Colour white{255, 255, 255};
 constexpr Colour ink = picture_ink;
 constexpr Colour no_value_grey{217, 217, 217};
 constexpr Colour hatch_ground{245, 245, 245};
@@ -20,7 +19,6 @@ constexpr Colour wall_colour{15, 15, 15};
 constexpr Colour marker_red{213, 47, 30};
 constexpr Hatch object_hatch{{105, 105, 105}, 6, 1};
 constexpr double marker_radius_px = 8.0;
-const int label_height_px = text_height_px(label_scale);
 
 double share_of_range(double value, const ValueRange& range) {
   return (value - range.low) / (range.high - range.low);

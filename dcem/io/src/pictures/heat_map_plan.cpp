@@ -18,7 +18,6 @@ constexpr double target_plot_px = 800.0;
 constexpr double target_upright_px = 400.0;  // of an axis that is not to the scale of the other
 constexpr double max_cell_px = 240.0;
 constexpr double max_unsampled_px = 1500.0;
-const int label_height_px = text_height_px(label_scale);
 
 // Differences of larger values could overflow.
 constexpr double largest_value = 1e100;

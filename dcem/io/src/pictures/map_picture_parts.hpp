@@ -1,5 +1,6 @@
 #pragma once
 /// What the pictures of all maps have in common. Private to dcem::io.
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,9 @@
 #include "dcem/scene/scene.hpp"
 
 namespace dcem::io {
+
+/// A point of a picture without a value.
+inline constexpr double no_value_db = std::numeric_limits<double>::quiet_NaN();
 
 /// Where and when a map was made.
 struct MapOccasion {

@@ -5,8 +5,6 @@
 namespace dcem::io::detail {
 namespace {
 
-const int label_height_px = text_height_px(label_scale);
-
 void draw_x_axis(Image& image, const PixelRect& plot, const PictureAxis& axis) {
   const int label_y = plot.bottom() + tick_px + gap_px;
   for (const Tick& tick : axis.ticks) {

@@ -9,11 +9,12 @@
 namespace dcem::io::detail {
 
 inline constexpr int title_scale = 3;
+inline const int label_height_px = text_height_px(label_scale);
 inline constexpr int margin_px = 18;
 inline constexpr int tick_px = 6;
 inline constexpr int gap_px = 8;
 
-inline constexpr Colour picture_ink{30, 30, 30};
+inline constexpr Colour picture_ink{30, 30, 30}, white{255, 255, 255};
 
 /// An axis along an edge of a plot.
 struct PictureAxis {

@@ -15,11 +15,10 @@ namespace {
 
 using namespace detail;
 
-constexpr Colour white{255, 255, 255};
 constexpr int plot_width_px = 860, plot_height_px = 480, legend_row_px = 30, legend_between_px = 28;
 constexpr double largest_radius_px = 6.0, smallest_radius_px = 1.0;
 
-struct Span {
+struct Bounds {
   double low = 0.0, high = 1.0;
 };
 
@@ -33,17 +32,17 @@ void check(const ScatterChart& chart) {
 
 // The values with a margin on both sides, so that no dot lies on the frame.
 template <typename Quantity>
-Span padded_span(const ScatterChart& chart, Quantity&& quantity) {
-  Span span{quantity(chart.dots.front()), quantity(chart.dots.front())};
+Bounds padded_bounds(const ScatterChart& chart, Quantity&& quantity) {
+  Bounds bounds{quantity(chart.dots.front()), quantity(chart.dots.front())};
   for (const ScatterChart::Dot& dot : chart.dots) {
-    span.low = std::min(span.low, quantity(dot));
-    span.high = std::max(span.high, quantity(dot));
+    bounds.low = std::min(bounds.low, quantity(dot));
+    bounds.high = std::max(bounds.high, quantity(dot));
   }
-  const double size = std::max(std::abs(span.low), std::abs(span.high));
+  const double size = std::max(std::abs(bounds.low), std::abs(bounds.high));
   // Values that differ by rounding alone count as equal.
-  const bool equal = span.high - span.low <= 1e-9 * size;
-  const double pad = equal ? (size > 0.0 ? 0.05 * size : 1.0) : 0.04 * (span.high - span.low);
-  return {span.low - pad, span.high + pad};
+  const bool equal = bounds.high - bounds.low <= 1e-9 * size;
+  const double pad = equal ? (size > 0.0 ? 0.05 * size : 1.0) : 0.04 * (bounds.high - bounds.low);
+  return {bounds.low - pad, bounds.high + pad};
 }
 
 struct ScatterPlan {
@@ -68,8 +67,8 @@ double largest_radius_for(const ScatterChart& chart) {
 
 ScatterPlan plan_of(const ScatterChart& chart) {
   ScatterPlan plan;
-  const Span x = padded_span(chart, [](const ScatterChart::Dot& dot) { return dot.x; });
-  const Span y = padded_span(chart, [](const ScatterChart::Dot& dot) { return dot.y; });
+  const Bounds x = padded_bounds(chart, [](const ScatterChart::Dot& dot) { return dot.x; });
+  const Bounds y = padded_bounds(chart, [](const ScatterChart::Dot& dot) { return dot.y; });
   plan.x = {horizontal_axis_ticks(x.low, x.high, plot_width_px), axis_name(chart.x_label, chart.x_unit), x.low,
             plot_width_px / (x.high - x.low)};
   plan.y = {axis_ticks(y.low, y.high, plot_height_px, 50), axis_name(chart.y_label, chart.y_unit), y.low,

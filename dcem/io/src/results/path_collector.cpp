@@ -5,20 +5,14 @@
 #include <limits>
 #include <stdexcept>
 
+#include "dcem/io/src/results/array_parts.hpp"
 #include "dcem/io/src/results/link_entries.hpp"
 
 namespace dcem::io {
 namespace {
 
-constexpr double most_bytes = 16e9;
 // Of one place for a path: valid, a, transfer, tau, four angles, doppler; and of one for an interaction of it.
 constexpr double bytes_per_path = 1 + 16 + 64 + 6 * 8, bytes_per_interaction = 4 + 24;
-
-std::vector<std::string> ids_of(std::span<const Device> devices) {
-  std::vector<std::string> ids;
-  for (const Device& device : devices) ids.push_back(device.id);
-  return ids;
-}
 
 std::uint32_t code_of(InteractionKind kind) {
   switch (kind) {
@@ -55,7 +49,7 @@ void PathCollector::check_memory() const {
                        static_cast<double>(receivers_.size()) * static_cast<double>(transmitters_.size());
   const double bytes = links * static_cast<double>(longest_list_) *
                        (bytes_per_path + bytes_per_interaction * static_cast<double>(most_interactions_));
-  if (bytes <= most_bytes) return;
+  if (bytes <= most_array_bytes) return;
   throw std::invalid_argument("output.npz: the paths of this run need " + std::to_string(std::llround(bytes / 1e9)) +
                               " GB as arrays; expected at most 16 GB (fewer frames, receivers or paths)");
 }

@@ -5,17 +5,10 @@
 #include <stdexcept>
 
 #include "dcem/io/npz_writer.hpp"
+#include "dcem/io/src/results/array_parts.hpp"
 
 namespace dcem::io {
 namespace {
-
-constexpr double most_bytes = 16e9;
-
-std::vector<std::string> ids_of(std::span<const Device> devices) {
-  std::vector<std::string> ids;
-  for (const Device& device : devices) ids.push_back(device.id);
-  return ids;
-}
 
 bool any_is_dual(std::span<const Device> devices) {
   return std::any_of(devices.begin(), devices.end(), [](const Device& device) { return device.antenna.is_dual(); });
@@ -34,7 +27,7 @@ ResponseCollector::ResponseCollector(OutputFolder& folder, const Scene& scene, s
                         static_cast<double>(transmitters_.size()) * static_cast<double>(grid_.points) *
                         (has_ports_ ? 4.0 : 1.0);
   const double bytes = values * static_cast<double>(sizeof(std::complex<double>));
-  if (bytes <= most_bytes) return;
+  if (bytes <= most_array_bytes) return;
   throw std::invalid_argument("output.cfr: the responses of this run need " +
                               std::to_string(std::llround(bytes / 1e9)) +
                               " GB; expected at most 16 GB (fewer frames, receivers or points)");

@@ -9,11 +9,10 @@
 #include "dcem/io/src/results/path_lines.hpp"
 #include "dcem/io/src/results/response_collector.hpp"
 #include "dcem/io/src/text/number_text.hpp"
+#include "dcem/io/src/text/sheet.hpp"
 
 namespace dcem::io {
 namespace {
-
-constexpr std::size_t sheet_bytes = std::size_t{1} << 20;
 
 AtomicFile* open_sheet(OutputFolder& folder, bool wanted, const char* name) {
   return wanted ? &folder.open(name) : nullptr;
@@ -56,8 +55,8 @@ void ResultWriter::write(const FrameResult& frame) {
   for (const LinkResult& link : frame.links) {
     if (output_.paths) lines_->append(paths_.text, frame, link);
     if (output_.links) append_link(frame, link);
-    if (output_.pdp) detail::naming("output.pdp.bin_s", [&] { append_profile(frame, link); });
-    if (output_.doppler) detail::naming("output.doppler.bin_hz", [&] { append_doppler(frame, link); });
+    if (output_.pdp) dcem::detail::naming("output.pdp.bin_s", [&] { append_profile(frame, link); });
+    if (output_.doppler) dcem::detail::naming("output.doppler.bin_hz", [&] { append_doppler(frame, link); });
     flush_all(sheet_bytes);
   }
   flush_all(1);
@@ -104,7 +103,7 @@ void ResultWriter::append_profile(const FrameResult& frame, const LinkResult& li
     if (!(tap.power_ratio > 0.0)) continue;
     CsvLine line = begin_line(profile_, frame, link);
     line.number(tap.delay_s).number(power_dbm + power_ratio_to_db(tap.power_ratio));
-    if (facts_.diffuse) line.number(detail::ratio_to_dbm(tap.diffuse_power_ratio, power_dbm));
+    if (facts_.diffuse) line.number(dcem::detail::ratio_to_dbm(tap.diffuse_power_ratio, power_dbm));
     line.end();
   }
 }

@@ -10,6 +10,7 @@
 #include "dcem/io/src/results/fact_json.hpp"
 #include "dcem/io/src/scenario/enum_words.hpp"
 #include "dcem/io/src/scenario/settings_json.hpp"
+#include "dcem/io/src/text/json_values.hpp"
 #include "dcem/io/text_table.hpp"
 #include "dcem/sim/discovery.hpp"
 
@@ -17,15 +18,6 @@ namespace dcem::io {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <typename Value>
-Json optional_json(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json point_json(const Vec3& point_m) {
-  return {point_m.x, point_m.y, point_m.z};
-}
 
 Json box_json(const Scene& scene) {
   Aabb<double> box;

@@ -7,8 +7,6 @@ namespace dcem::io {
 
 namespace {
 
-constexpr double fastest_mps = 299'792'458.0;
-
 Pose read_pose(const JsonObject& object) {
   const auto angle_rad = [&](const char* key) { return degrees_to_radians(object.number(key, 0.0, any_angle_deg)); };
   return {object.at("position_m").vector3(farthest_coordinate_m), angle_rad("yaw_deg"), angle_rad("pitch_deg"),
@@ -34,8 +32,8 @@ WaypointMotion read_waypoints(const JsonValue& value) {
 Vec3 read_velocity_mps(const JsonObject& object) {
   const auto value = object.find("velocity_mps");
   if (!value) return Vec3(0.0);
-  const Vec3 velocity_mps = value->vector3(fastest_mps);
-  if (!(glm::length(velocity_mps) < fastest_mps)) value->fail("faster than light; expected metres per second");
+  const Vec3 velocity_mps = value->vector3(speed_of_light_mps);
+  if (!(glm::length(velocity_mps) < speed_of_light_mps)) value->fail("faster than light; expected metres per second");
   return velocity_mps;
 }
 

@@ -6,6 +6,7 @@
 #include "dcem/core/instruction_set.hpp"
 #include "dcem/core/thread_pool.hpp"
 #include "dcem/io/src/scenario/enum_words.hpp"
+#include "dcem/io/src/text/json_values.hpp"
 #include "dcem/sim/discovery.hpp"
 
 namespace dcem::io {
@@ -13,11 +14,6 @@ namespace dcem::io {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <typename Value>
-Json optional_json(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json path_loss_json(const AnyPathLoss& path_loss) {
   const auto* close_in = std::get_if<CloseIn>(&path_loss.model);

@@ -4,19 +4,20 @@
 #include <cmath>
 
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
 namespace dcem::io {
 
 namespace {
 
-constexpr const char* expectation = "expected SUMO's FCD output in XML";
-constexpr double farthest_m = 1e9, largest_angle_deg = 1e6, fastest_mps = 299'792'458.0, latest_s = 1e9;
+constexpr const char* fcd_expectation = "expected SUMO's FCD output in XML";
+constexpr double largest_angle_deg = 1e6, latest_s = 1e9;
 
 }  // namespace
 
 FcdReader::FcdReader(const std::filesystem::path& file, std::size_t chunk_bytes)
-    : file_(file.string()), reader_(file, expectation, *this, chunk_bytes) {}
+    : file_(file.string()), reader_(file, fcd_expectation, *this, chunk_bytes) {}
 
 bool FcdReader::next(FcdStep& step) {
   step_ = &step;
@@ -73,11 +74,11 @@ void FcdReader::start_vehicle(const XmlAttributes& attributes) {
   read_name(attributes, "id", vehicle.id);
   vehicle_ = vehicle.id;
   read_name(attributes, "type", vehicle.type);
-  vehicle.x_m = number(attributes, "x", farthest_m);
-  vehicle.y_m = number(attributes, "y", farthest_m);
-  vehicle.z_m = number(attributes, "z", farthest_m, 0.0);
+  vehicle.x_m = number(attributes, "x", farthest_coordinate_m);
+  vehicle.y_m = number(attributes, "y", farthest_coordinate_m);
+  vehicle.z_m = number(attributes, "z", farthest_coordinate_m, 0.0);
   vehicle.angle_deg = number(attributes, "angle", largest_angle_deg);
-  vehicle.speed_mps = number(attributes, "speed", fastest_mps);
+  vehicle.speed_mps = number(attributes, "speed", speed_of_light_mps);
   vehicle.slope_deg = number(attributes, "slope", largest_angle_deg, 0.0);
 }
 

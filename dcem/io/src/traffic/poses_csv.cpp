@@ -15,13 +15,13 @@ namespace dcem::io {
 
 namespace {
 
-enum Column : std::size_t { t_s, id, x_m, y_m, z_m, yaw_deg, pitch_deg, roll_deg };
+enum PoseColumn : std::size_t { t_s, id, x_m, y_m, z_m, yaw_deg, pitch_deg, roll_deg };
 const std::vector<CsvReader::Column> columns{
     {"t_s"}, {"id"}, {"x_m"}, {"y_m"}, {"z_m"}, {"yaw_deg"}, {"pitch_deg", false}, {"roll_deg", false}};
 
 Pose read_pose(const CsvReader& row) {
   const NumberRange coordinate_m{-farthest_coordinate_m, farthest_coordinate_m};
-  const auto angle_rad = [&](Column column) { return degrees_to_radians(row.number(column, any_angle_deg)); };
+  const auto angle_rad = [&](PoseColumn column) { return degrees_to_radians(row.number(column, any_angle_deg)); };
   return {{row.number(x_m, coordinate_m), row.number(y_m, coordinate_m), row.number(z_m, coordinate_m)},
           angle_rad(yaw_deg),
           angle_rad(pitch_deg),
@@ -35,7 +35,7 @@ PosesCsv::PosesCsv(const std::filesystem::path& file) : name_(file.string()) {
   CsvReader row(name_, text, columns, "a header t_s,id,x_m,y_m,z_m,yaw_deg[,pitch_deg,roll_deg]",
                 CsvReader::OtherColumns::refused, CsvReader::EmptyLines::at_the_end);
   while (row.next()) {
-    const std::string key(row.text(Column::id));
+    const std::string key(row.text(PoseColumn::id));
     if (key.empty()) row.fail("id: empty; expected the id of an object or a device");
     const double time_s = row.number(t_s, any_instant_s);
     Track& track = tracks_[key];

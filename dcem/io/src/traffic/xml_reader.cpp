@@ -15,7 +15,7 @@ namespace dcem::io {
 namespace {
 
 /// Far beyond every file of SUMO; they bound the memory whatever stands in a file.
-constexpr std::size_t deepest_nesting = 100;
+constexpr std::size_t deepest_element = 100;
 constexpr long long longest_token_bytes = 4'000'000;
 
 void check_readable(const std::filesystem::path& file, const std::string& expectation) {
@@ -64,7 +64,7 @@ struct XmlReader::Parser {
 
   static void on_start(void* user_data, const char* name, const char** attributes) {
     guarded(user_data, [&](XmlReader& reader) {
-      if (++reader.depth_ > deepest_nesting) reader.fail("nested too deeply; " + reader.expectation_);
+      if (++reader.depth_ > deepest_element) reader.fail("nested too deeply; " + reader.expectation_);
       reader.handler_.start_element(name, XmlAttributes(attributes));
     });
   }

@@ -315,8 +315,8 @@ Json viridis_json() {
 }
 
 /// JSON that may stand in a script element: a "<" could begin its end.
-std::string script_text(const Json& json) {
-  const std::string plain = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string script_text(const Json& content) {
+  const std::string plain = content.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string text;
   for (const char character : plain) character == '<' ? text += "\\u003c" : text += character;
   return text;

@@ -10,6 +10,8 @@
 #include "dcem/core/random.hpp"
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_binner {
+
 using namespace dcem;
 
 namespace {
@@ -169,3 +171,5 @@ TEST_CASE("sixteen bins come close to the careful builder") {
   // 32 bins and full sweeps are worth a few percent; a broken choice of splits would cost tens.
   CHECK(binned < 1.1 * careful);
 }
+
+}  // namespace test_binner

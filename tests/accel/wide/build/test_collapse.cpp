@@ -10,6 +10,8 @@
 #include "dcem/accel/wide/build/collapse.hpp"
 #include "tests/accel/random_boxes.hpp"
 
+namespace test_collapse {
+
 using namespace dcem;
 
 namespace {
@@ -193,3 +195,5 @@ TEST_CASE("items by themselves never share a leaf, and what has no size still ha
     CHECK(found.size() == 100);
   }
 }
+
+}  // namespace test_collapse

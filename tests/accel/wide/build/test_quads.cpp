@@ -9,6 +9,8 @@
 #include "dcem/accel/wide/build/quads.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
 
+namespace test_quads {
+
 using namespace dcem;
 using dcem_test::WideMesh;
 
@@ -180,3 +182,5 @@ TEST_CASE("a ray that is steep to one half of a pair goes through the other half
     }
   }
 }
+
+}  // namespace test_quads

@@ -12,6 +12,8 @@
 #include "tests/accel/random_boxes.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
 
+namespace test_reinsertion_optimizer {
+
 using namespace dcem;
 using namespace dcem_test;
 
@@ -342,3 +344,5 @@ TEST_CASE("objects, absent triangles and threads: a tree of high quality keeps i
   CHECK(costs[1] == costs[0]);
   CHECK(costs[2] == costs[0]);
 }
+
+}  // namespace test_reinsertion_optimizer

@@ -11,6 +11,8 @@
 #include "dcem/core/random.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
 
+namespace test_kernels {
+
 using namespace dcem;
 
 namespace {
@@ -152,3 +154,5 @@ TEST_CASE("a level that the processor lacks is refused by name, and nothing chan
 }
 
 #endif
+
+}  // namespace test_kernels

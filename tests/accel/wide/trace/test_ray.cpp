@@ -10,6 +10,8 @@
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
 
+namespace test_ray {
+
 using namespace dcem;
 using dcem_test::between;
 using dcem_test::infinity;
@@ -347,3 +349,5 @@ TEST_CASE("a padded t is never rounded down") {
   }
   CHECK(WideRay::padded(infinity) >= 1e30F);
 }
+
+}  // namespace test_ray

@@ -10,6 +10,8 @@
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_traffic.hpp"
 
+namespace test_degradation {
+
 using namespace dcem;
 using dcem_test::nodes_of;
 using dcem_test::WideTraffic;
@@ -235,3 +237,5 @@ TEST_CASE("from nothing to something the growth is infinite, from nothing to not
     }
   }
 }
+
+}  // namespace test_degradation

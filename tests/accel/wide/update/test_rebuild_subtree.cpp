@@ -9,6 +9,8 @@
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_traffic.hpp"
 
+namespace test_rebuild_subtree {
+
 using namespace dcem;
 using dcem_test::check_answers;
 using dcem_test::depth_below;
@@ -263,3 +265,5 @@ TEST_CASE("a node that does not exist or is not in use is refused") {
   CHECK_THROWS_AS(tree.rebuild_subtree(tree.arrays().free_nodes.front()), std::invalid_argument);
   CHECK_THROWS_AS(WideBvh().rebuild_subtree(0), std::invalid_argument);
 }
+
+}  // namespace test_rebuild_subtree

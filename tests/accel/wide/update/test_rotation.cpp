@@ -9,6 +9,8 @@
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_traffic.hpp"
 
+namespace test_rotation {
+
 using namespace dcem;
 using dcem_test::check_answers;
 using dcem_test::depth_below;
@@ -246,3 +248,5 @@ TEST_CASE("objects at one point, without size, absent, or by the thousand can be
   empty.watch(touched());
   CHECK(empty.rotate_touched(1) == 0);
 }
+
+}  // namespace test_rotation

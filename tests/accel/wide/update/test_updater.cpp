@@ -10,6 +10,8 @@
 #include "tests/accel/wide/wide_scenes.hpp"
 #include "tests/accel/wide/wide_traffic.hpp"
 
+namespace test_wide_updater {
+
 using namespace dcem;
 using dcem_test::infinity;
 using dcem_test::WideMesh;
@@ -437,3 +439,5 @@ TEST_CASE("limits that are no limits are refused") {
   refuses([](WideUpdateSettings& settings) { settings.rebuild_growth_limit = 1.0; });
   refuses([](WideUpdateSettings& settings) { settings.check_interval = 0; });
 }
+
+}  // namespace test_wide_updater
