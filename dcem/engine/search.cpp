@@ -3,5 +3,6 @@
 #include "dcem/paths/halves/crowd_beams_bodies.hpp"
 #include "dcem/paths/halves/facet_outlines_bodies.hpp"
 #include "dcem/paths/halves/sight_bodies.hpp"
+#include "dcem/paths/halves/view_map_bodies.hpp"
 #include "dcem/sim/discovery_bodies.hpp"
 #include "dcem/sim/search_size_bodies.hpp"

@@ -70,7 +70,8 @@ class BasicSimulator {
                                              const Sequence& sequence) const;
 
   /// One map per transmitter over the grid, in the current frame. `progress(n)` is called from the working threads
-  /// whenever n more points are done; where cells have several samples, these are the points.
+  /// whenever n more points are done; where cells have several samples, these are the points. Points inside walls are
+  /// counted along with those that take time.
   std::vector<RadioMap> radio_maps(const ReceiverGrid& grid, const std::function<void(std::size_t)>& progress = {},
                                    WorkCounters* work = nullptr) const;
   /// The same over a list, searched as links are: each point has what `solve` finds there, and none is left empty.

@@ -9,6 +9,7 @@
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/list_groups.hpp"
 #include "dcem/sim/detail/map_groups.hpp"
+#include "dcem/sim/detail/map_progress.hpp"
 
 namespace dcem {
 
@@ -142,7 +143,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
   };
   const std::vector<std::vector<std::size_t>> groups = is_grid ? detail::map_groups(order.places.grid(), open, is_free)
                                                                : detail::list_groups(positions_m, open, is_free);
-  if (progress && is_grid) progress(static_cast<std::size_t>(std::ranges::count(open, 0)));
+  detail::MapProgress told(progress, size, is_grid ? static_cast<std::size_t>(std::ranges::count(open, 1)) : size);
   std::optional<MapShare> share;
   if (shares_views) share.emplace(*this, transmitters);
   std::vector<WorkCounters> spent(groups.size());
@@ -161,7 +162,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
       for (const LinkResult& link : solved.links) maps[link.transmitter].points[point] = map_point(link, points_m[at]);
       spent[number] += solved.work;
     }
-    if (progress) progress(group.size());
+    told.add(group.size());
   });
   if (work == nullptr) return maps;
   *work += transmitters.work;

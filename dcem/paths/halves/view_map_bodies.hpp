@@ -1,0 +1,203 @@
+#pragma once
+/// Bodies of view_map.hpp.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "dcem/core/build_mode.hpp"
+#include "dcem/paths/halves/view_map.hpp"
+
+namespace dcem {
+
+DCEM_INLINE void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane) {
+  const double distance_m = -signed_distance_m(plane, from_m_);
+  if (corners_m.size() > detail::FaceOutline::most_corners || distance_m == 0.0) return;
+  if (offsets_m_.empty()) return cover_as_it_is(corners_m, plane, distance_m);
+  normals_.clear();
+  detail::InsetOutline smaller;
+  if (!sides_moved_in(corners_m, plane, from_m_, offsets_m_, normals_)) return;
+  if (!inset_outline(corners_m, from_m_, normals_, smaller)) return;
+  if (smaller.count <= detail::FaceOutline::most_corners) cover_as_it_is(smaller.corners(), plane, distance_m);
+}
+
+DCEM_INLINE void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m) {
+  for (int face = 0; face < faces_.count(); ++face) {
+    detail::FaceOutline outline;
+    // Over the rim, so that pixels at the rim are filled, too.
+    if (outline_on(face, corners_m, 1.02, outline) && outline.size() >= 3) {
+      cover_on(face, outline, nearness_of(face, plane.normal, distance_m));
+    }
+  }
+}
+
+DCEM_INLINE void ViewMap::cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness) {
+  if (!rows_.find(outline, pixels_)) return;
+  constexpr float hair = 2e-3F;  // of a pixel
+  const auto step = static_cast<float>(nearness.by_column);
+  const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
+  int first_column = pixels_, last_column = -1;
+  for (int number = rows_.first; number <= rows_.last; ++number) {
+    const auto line = static_cast<std::size_t>(number);
+    if (rows_.crossed_to[line] < -1e8F || rows_.crossed_to[line + 1] < -1e8F) continue;
+    const float from = std::max(rows_.crossed_from[line], rows_.crossed_from[line + 1]) + hair;
+    const float to = std::min(rows_.crossed_to[line], rows_.crossed_to[line + 1]) - hair;
+    const int begin = std::max(0, static_cast<int>(std::ceil(from)));
+    const int end = std::min(pixels_, static_cast<int>(std::floor(to)));
+    if (begin >= end) continue;
+    const auto base =
+        static_cast<float>(nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column - pad);
+    float* const pixel = row(face, number);
+    for (int column = begin; column < end; ++column) {
+      const float here = (base + step * static_cast<float>(column)) * static_cast<float>(1.0 - rounding);
+      pixel[column] = pixel[column] < here ? here : pixel[column];
+    }
+    first_column = std::min(first_column, begin);
+    last_column = std::max(last_column, end - 1);
+  }
+  if (last_column >= first_column) renew_tiles(face, rows_.first, rows_.last, first_column, last_column);
+}
+
+DCEM_INLINE void ViewMap::renew_tiles(int face, int first_row, int last_row, int first_column, int last_column) {
+  for (int tile_row = first_row / tile_pixels; tile_row <= last_row / tile_pixels; ++tile_row) {
+    for (int column = first_column / tile_pixels; column <= last_column / tile_pixels; ++column) {
+      std::array<float, tile_pixels> least;
+      least.fill(std::numeric_limits<float>::infinity());
+      for (int line = 0; line < tile_pixels; ++line) {
+        const float* const pixel = row(face, tile_row * tile_pixels + line) + column * tile_pixels;
+        for (std::size_t at = 0; at < tile_pixels; ++at) least[at] = pixel[at] < least[at] ? pixel[at] : least[at];
+      }
+      tile_nearness_[static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column)] =
+          *std::min_element(least.begin(), least.end());
+    }
+  }
+}
+
+DCEM_INLINE bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer) {
+  const double distance_m = -signed_distance_m(plane, from_m_);
+  const bool says_nothing = std::abs(distance_m) < 1e-6 || nearer >= always_seen;
+  if (says_nothing || corners_m.size() > detail::FaceOutline::most_corners) return true;
+  for (int face = 0; face < faces_.count(); ++face) {
+    detail::FaceOutline outline;
+    if (outline_on(face, corners_m, 1.0 + 1e-6, outline) &&
+        shows_on(face, outline, nearness_of(face, plane.normal, distance_m), nearer)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nearer) {
+  const std::array<Vec3, 2> ends_m{from_m, to_m};
+  for (int face = 0; face < faces_.count(); ++face) {
+    detail::FaceOutline line;
+    if (!outline_on(face, ends_m, 1.0 + 1e-6, line)) continue;
+    const detail::FacePoint &first = line[0], &last = line[line.size() > 1 ? 1 : 0];
+    const double near = std::min(first.depth, last.depth), far = std::max(first.depth, last.depth);
+    if (near < 1e-3) return true;
+    // A piece is taken to be as near as its nearer end.
+    const int pieces = 1 + static_cast<int>(std::min(15.0, 8.0 * (far / near - 1.0)));
+    const auto at = [&](int number) -> detail::FacePoint {
+      const double share = static_cast<double>(number) / pieces;
+      return {first.across + share * (last.across - first.across), first.along + share * (last.along - first.along),
+              first.depth + share * (last.depth - first.depth)};
+    };
+    for (int piece = 0; piece < pieces; ++piece) {
+      detail::FaceOutline part;
+      part.add(at(piece));
+      part.add(at(piece + 1));
+      const double nearest = 1.0 / std::min(part[0].depth, part[1].depth);
+      if (shows_on(face, part, {0.0, 0.0, nearest}, nearer)) return true;
+    }
+  }
+  return false;
+}
+
+DCEM_INLINE bool ViewMap::shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness,
+                                   double nearer) {
+  if (!rows_.find(outline, pixels_)) return false;
+  constexpr float hair = 1e-3F;  // of a pixel
+  const auto step = static_cast<float>(nearness.by_column);
+  const auto grown = static_cast<float>(nearer * (1.0 + rounding));
+  const auto top = static_cast<float>(rows_.nearest);
+  const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
+  for (int number = rows_.first; number <= rows_.last; ++number) {
+    const auto line = static_cast<std::size_t>(number);
+    const int begin = std::max(0, static_cast<int>(std::floor(rows_.touched_from[line] - hair)));
+    const int end = std::min(pixels_ - 1, static_cast<int>(std::floor(rows_.touched_to[line] + hair)));
+    const auto base =
+        static_cast<float>(nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column + pad);
+    const float* const pixel = row(face, number);
+    int seen = 0;
+    for (int column = begin; column <= end; ++column) {
+      const float plane = base + step * static_cast<float>(column);
+      seen |= static_cast<int>((plane < top ? plane : top) * grown > pixel[column]);
+    }
+    if (seen != 0) return true;
+  }
+  return false;
+}
+
+DCEM_INLINE bool ViewMap::hides(const Vec3& point_m, double nearer, double beside_m) const {
+  const Vec3 offset_m = point_m - from_m_, size = glm::abs(offset_m);
+  const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+  const double depth = size[axis];
+  if (depth < 1e-3) return false;
+  // Moved by beside_m, the point moves by less than this on the face; close to a rim of it the map says nothing.
+  const double blur = 2.5 * beside_m / depth;
+  if (blur > 0.5) return false;
+  const double across = offset_m[(axis + 1) % 3] / depth, along = offset_m[(axis + 2) % 3] / depth;
+  if (beside_m > 0.0 && std::max(std::abs(across), std::abs(along)) + blur >= 1.0) return false;
+  const auto pixel = [&](double place) {
+    return std::clamp(static_cast<int>((place + 1.0) * 0.5 * pixels_), 0, pixels_ - 1);
+  };
+  const int face = 2 * axis + (offset_m[axis] < 0.0 ? 1 : 0);
+  const auto nearness = static_cast<float>(nearer * (1.0 + rounding) / (depth - beside_m));
+  const int last_row = pixel(along + blur), last_column = pixel(across + blur);
+  for (int number = pixel(along - blur); number <= last_row; ++number) {
+    for (int column = pixel(across - blur); column <= last_column; ++column) {
+      if (nearness > row(face, number)[column]) return false;
+    }
+  }
+  return true;
+}
+
+DCEM_INLINE bool ViewMap::hides(const Aabb<double>& box, double margin_m) const {
+  const Vec3 low_m = box.min - from_m_, high_m = box.max - from_m_;
+  const bool inside = low_m.x <= 0 && low_m.y <= 0 && low_m.z <= 0 && high_m.x >= 0 && high_m.y >= 0 && high_m.z >= 0;
+  if (inside) return false;
+  for (int face = 0; face < faces_.count(); ++face) {
+    const auto [low, high] = faces_.box(face, {low_m, high_m});
+    if (!hides_on(face, low, high, margin_m)) return false;
+  }
+  return true;
+}
+
+DCEM_INLINE bool ViewMap::hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high,
+                                   double margin_m) const {
+  const double far = high.depth;
+  if (far <= 0.0 || low.across > far || -high.across > far || low.along > far || -high.along > far) return true;
+  // No nearer than where the face's pyramid is wide enough to hold any of the box.
+  const double depth = std::max({low.depth, 0.0, low.across, -high.across, low.along, -high.along});
+  if (depth - margin_m < 1e-3) return false;
+  const auto first = [&](double bound) {
+    const double seen = bound / (bound >= 0.0 ? far : depth);
+    return std::max(0, static_cast<int>(std::floor((seen + 1.0) * 0.5 * tiles_ - 1e-6)));
+  };
+  const auto last = [&](double bound) {
+    const double seen = bound / (bound >= 0.0 ? depth : far);
+    return std::min(tiles_ - 1, static_cast<int>(std::floor(std::min(seen + 1.0, 3.0) * 0.5 * tiles_ + 1e-6)));
+  };
+  const auto nearness = static_cast<float>((1.0 + rounding) / (depth - margin_m));
+  for (int tile_row = first(low.along); tile_row <= last(high.along); ++tile_row) {
+    for (int column = first(low.across); column <= last(high.across); ++column) {
+      if (nearness > tile_nearness_[static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column)])
+        return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace dcem
