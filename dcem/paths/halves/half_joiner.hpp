@@ -81,12 +81,22 @@ class HalfJoiner {
   };
 
   template <typename Visit>
+  void propose(SequenceElement near, SequenceElement far, Visit& visit) {
+    sequence_.assign(1, near);
+    sequence_.push_back(far);
+    visit(std::as_const(sequence_));
+  }
+
+  template <typename Visit>
   void offer(const End& receiver, const End& transmitter, bool single, Visit& visit) {
     if (gates_.hides(receiver.half, receiver.element, receiver.point_m)) return;
     if (gates_.hides(transmitter.half, transmitter.element, transmitter.point_m)) return;
-    sequence_.assign(1, receiver.element);
-    if (!single) sequence_.push_back(transmitter.element);
-    visit(std::as_const(sequence_));
+    if (single) {
+      sequence_.assign(1, receiver.element);
+      visit(std::as_const(sequence_));
+    } else {
+      propose(receiver.element, transmitter.element, visit);
+    }
   }
 
   template <typename Visit>
@@ -154,14 +164,12 @@ class HalfJoiner {
     if (wedge.facets[0] == facet || wedge.facets[1] == facet) return;  // that is in the wedge's own terms
     const auto edge_m = gates_.edge_point(edge, beside.position_m(), image_m);
     if (!edge_m) return;
+    // Cheapest first: most edges that an image sees are hidden from the end that the path comes to.
+    if (gates_.hides(beside, edge, *edge_m)) return;
     const auto mirror_m = gates_.crossing(facet, image_m, *edge_m);
-    if (!mirror_m || !may_face(wedge.edge, *mirror_m - *edge_m)) return;
-    const End at_mirror{over, facet, *mirror_m}, at_edge{beside, edge, *edge_m};
-    if (turned) {
-      offer(at_edge, at_mirror, false, visit);
-    } else {
-      offer(at_mirror, at_edge, false, visit);
-    }
+    if (!mirror_m || gates_.hides(over, facet, *mirror_m) || !may_face(wedge.edge, *mirror_m - *edge_m)) return;
+    propose(turned ? SequenceElement(edge) : SequenceElement(facet),
+            turned ? SequenceElement(facet) : SequenceElement(edge), visit);
   }
 
   template <typename Visit>

@@ -28,19 +28,19 @@ class KeptHalf {
     const bool stands = end_ && end_->position_m == end.position_m && end_->ignored_body == end.ignored_body &&
                         end_->mounted_on == end.mounted_on;
     if (!stands) {
-      half_.find_scenery(scene, outlines, end, settings);
+      find_scenery(scene, outlines, end, settings, wanted.lanes != nullptr && wanted.at_once);
       has_lists_ = false;
       joins_ = 0;
     }
+    joins_ += wanted.receivers;
+    const bool makes_lists = wanted.lanes != nullptr && !has_lists_ && (wanted.at_once || pay(joins_));
+    if (makes_lists && !is_closer_) find_scenery(scene, outlines, end, settings, true);
     half_.find_bodies(scene, outlines, settings);
     end_ = end;
     if (wanted.lanes == nullptr) return;
-    joins_ += wanted.receivers;
     const BeamSource source{scene, outlines, *wanted.lanes, half_, settings, wanted.over_mirrors, wanted.pool};
-    if (!has_lists_ && (wanted.at_once || pay(joins_))) {
-      lists_.find_scenery(source);
-      has_lists_ = true;
-    }
+    if (makes_lists) lists_.find_scenery(source);
+    has_lists_ = has_lists_ || makes_lists;
     if (wanted.at_once && !outlines.bodies().empty()) lists_.find_bodies(source);
   }
   const PathHalf& half() const { return half_; }
@@ -52,9 +52,18 @@ class KeptHalf {
   /// by measurement in Munich. At worst both are paid.
   bool pay(std::size_t joins) const { return 16 * joins >= half_.layers()[0].mirrors.size(); }
 
+  /// `closer`: for lists, which take so long for each mirror that it pays to look twice. Others look twice where they
+  /// see very much, from above large cities.
+  void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, HalfSettings settings,
+                    bool closer) {
+    settings.closer_from = closer ? 0 : 20'000;
+    half_.find_scenery(scene, outlines, end, settings);
+    is_closer_ = closer;
+  }
+
   PathHalf half_;
   BeamLists lists_;
-  bool has_lists_ = false;
+  bool has_lists_ = false, is_closer_ = false;
   std::size_t joins_ = 0;       ///< since the device stands
   std::optional<LinkEnd> end_;  ///< whose half it is; none yet: nobody's
 };

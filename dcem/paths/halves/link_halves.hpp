@@ -12,9 +12,6 @@
 
 namespace dcem {
 
-inline HalfSettings half_settings(const PathSearchSettings& settings) {
-  return {settings.max_diffractions > 0, settings.max_transmissions == 0, settings.edges};
-}
 inline HalfJoiner::Orders joined_orders(const PathSearchSettings& settings) {
   return {settings.max_reflections, settings.max_diffractions, settings.max_interactions};
 }
@@ -22,11 +19,18 @@ inline HalfJoiner::Orders joined_orders(const PathSearchSettings& settings) {
 inline bool joins_triples(const PathSearchSettings& settings) {
   return settings.joined >= 3 && settings.max_interactions >= 3 && settings.max_reflections >= 2;
 }
+/// Of an end of links. Where three elements are joined, each of its mirrors costs so much that it pays to look twice.
+inline HalfSettings half_settings(const PathSearchSettings& settings) {
+  constexpr std::size_t many = 2'500;  // by measurement, where two are joined
+  return {settings.max_diffractions > 0, settings.max_transmissions == 0, settings.edges,
+          joins_triples(settings) ? 0 : many};
+}
 
-/// Room for a receiver's own half.
+/// Room for what a receiver sees: one per thread.
 struct ReceiverRoom {
   PathHalf half;
   BeamLists lists;
+  Sight sight{PathHalf::default_pixels};  ///< at what scatters
 };
 
 /// The halves that a search from one receiver joins.

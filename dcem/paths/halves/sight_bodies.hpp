@@ -79,13 +79,61 @@ DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines&
     if (seen_[id.value] != 0 || !may_see(scene, outlines, id)) return;
     seen_[id.value] = 1;
     seen.push_back(id);
-    cover(scene, outlines, id, settings);
+    cover(scene, outlines, id, settings, map_);
   };
   const auto hidden = [&](const Aabb<double>& box) { return is_beside(box) || map_.hides(box, longest_lift_m); };
   outlines.visit_from(position_m(), hidden, look_at);
   outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
     if (is_lifted_far(scene, outlines, id) && !is_beside(outlines.of(id).box)) look_at(id);
   });
+  if (!beam_ && seen.size() >= settings.closer_from) look_closer(scene, outlines, settings, seen);
+}
+
+/// Once more, cell by cell, with as many pixels for a crowded cell as a face has in the map: leaves what these show.
+DCEM_INLINE void Sight::look_closer(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                                    std::vector<FacetId>& seen) {
+  if (!cell_map_) cell_map_.emplace(std::min(map_.pixels(), most_cell_pixels));
+  cells_.look_from(position_m());
+  shown_.assign(seen.size(), 0);
+  for (std::uint32_t place = 0; place < seen.size(); ++place) {
+    if (!cells_.add(place, scene.hull_m(scene.facet(seen[place])))) shown_[place] = 1;
+  }
+  for (int cell = 0; cell < detail::ViewCells::count; ++cell) look_into(scene, outlines, settings, cell, seen);
+  std::size_t kept = 0;
+  for (std::size_t place = 0; place < seen.size(); ++place) {
+    if (shown_[place] != 0) seen[kept++] = seen[place];
+  }
+  seen.resize(kept);
+}
+
+/// Marks the facets that are shown in a cell.
+DCEM_INLINE void Sight::look_into(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                                  int cell, std::span<const FacetId> seen) {
+  const std::span<const std::uint32_t> places = cells_.in(cell);
+  if (places.size() < crowded) {
+    for (const std::uint32_t place : places) shown_[place] = 1;
+    return;
+  }
+  cell_map_->look_into(position_m(), cells_.corners_m(cell), offsets_m_);
+  // Nearer, what strays may stray by more than the margin of a pixel, 0.002 of it; at the corners of the cube pixels
+  // are a third as wide as in the middle of its faces.
+  const double margin_rad = 2e-3 / (3.0 * 4.0 * cell_map_->pixels());
+  const auto is_close = [&](FacetId id) {
+    const FacetOutline& outline = outlines.of(id);
+    const double away_m =
+        glm::distance(glm::clamp(position_m(), outline.box.min, outline.box.max), position_m()) - 2.0 * radius_m_;
+    return away_m * margin_rad < std::min(outline.stray_m, flat_m) || away_m < 0.1;
+  };
+  for (const std::uint32_t place : places) {
+    if (!is_close(seen[place])) cover(scene, outlines, seen[place], settings, *cell_map_);
+  }
+  for (const std::uint32_t place : places) {
+    if (shown_[place] != 0) continue;
+    const Plane& plane = scene.facet(seen[place]).plane;
+    const bool shown =
+        cell_map_->shows(scene.hull_m(scene.facet(seen[place])), plane, nearer_on(scene, outlines, seen[place]));
+    shown_[place] = shown ? 1 : 0;
+  }
 }
 
 DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& outlines, std::vector<FacetId>& seen) {
@@ -133,36 +181,36 @@ DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outline
 }
 
 /// Notes the part of an outline that is beyond the mirror, where one is looked through.
-DCEM_INLINE void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane) {
-  if (!beam_) return map_.cover(corners_m, plane);
+DCEM_INLINE void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, ViewMap& map) {
+  if (!beam_) return map.cover(corners_m, plane);
   detail::InsetOutline beyond;
-  if (beyond.assign(corners_m) && beam_->cut_to_occluder(beyond)) map_.cover(beyond.corners(), plane);
+  if (beyond.assign(corners_m) && beam_->cut_to_occluder(beyond)) map.cover(beyond.corners(), plane);
 }
 
 DCEM_INLINE void Sight::cover(const Scene& scene, const FacetOutlines& outlines, FacetId id,
-                              const HalfSettings& settings) {
+                              const HalfSettings& settings, ViewMap& map) {
   const WorldFacet& facet = scene.facet(id);
   const FacetOutline& outline = outlines.of(id);
   if (facet.transmits && !settings.sheets_hide) return;
   if (least_distance_m(facet.plane) <= 2.0 * outline.lift_m) return;  // an end that touches it looks past it
-  if (outline.stray_m > flat_m) return cover_triangles(scene, facet);
+  if (outline.stray_m > flat_m) return cover_triangles(scene, facet, map);
   const double side = signed_distance_m(facet.plane, position_m());
   Plane plane = facet.plane;
   plane.point_m -= (side > 0.0 ? 1.0 : -1.0) * outline.stray_m * plane.normal;  // where it is farthest
-  if (outline.fills_hull) return cover_beyond(scene.hull_m(facet), plane);
+  if (outline.fills_hull) return cover_beyond(scene.hull_m(facet), plane, map);
   for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    cover_beyond(scene.corners_m(facet.first_triangle + triangle), plane);
+    cover_beyond(scene.corners_m(facet.first_triangle + triangle), plane, map);
   }
 }
 
-DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet) {
+DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet, ViewMap& map) {
   for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
     const std::array<Vec3, 3> corners_m = scene.corners_m(facet.first_triangle + triangle);
     const Vec3 normal = glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]);
     const double size = glm::length(normal);
     if (!(size > 1e-6)) continue;  // a sliver's normal says little, and it hides little
     const Plane plane{corners_m[0], normal / size};
-    if (least_distance_m(plane) > 0.01) cover_beyond(corners_m, plane);
+    if (least_distance_m(plane) > 0.01) cover_beyond(corners_m, plane, map);
   }
 }
 

@@ -51,7 +51,16 @@ class ViewMap {
     faces_ = frame ? detail::ViewFaces(*frame) : detail::ViewFaces(inwards);
     clear(frame ? pixels : cube_pixels_);
   }
+  /// The same of points that look from the middle of a cube into a cell of one of its faces: all pixels are there, and
+  /// there is nothing else to be seen.
+  void look_into(const Vec3& point_m, std::span<const Vec3> cell_m, std::span<const Vec3> offsets_m = {}) {
+    from_m_ = point_m;
+    offsets_m_.assign(offsets_m.begin(), offsets_m.end());
+    faces_ = detail::ViewFaces(detail::frame_of_window(point_m, {cell_m, 0.0, 0.0, cube_pixels_}).value());
+    clear(cube_pixels_);
+  }
   const Vec3& from_m() const { return from_m_; }
+  int pixels() const { return pixels_; }
 
   /// Notes a convex polygon, corners in order around it, that nothing passes.
   void cover(std::span<const Vec3> corners_m, const Plane& plane);

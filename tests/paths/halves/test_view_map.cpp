@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "dcem/paths/halves/path_half.hpp"
@@ -171,6 +173,47 @@ TEST_CASE("no ray from any point of a crowd meets a facet that the crowd calls h
   CHECK(lost == 0);
   CHECK(met > 500'000);
   CHECK(hidden > 400);
+}
+
+TEST_CASE("no ray meets a facet that only a second look calls hidden") {
+  Draw draw(23);
+  std::size_t met = 0, taken_away = 0, lost = 0;
+  HalfSettings twice;
+  twice.closer_from = 0;
+  for (int round = 0; round < 6; ++round) {
+    TracedScene<> traced(scene_of(heap_of_boxes(draw, 200)));
+    const FacetOutlines outlines(traced.scene);
+    for (int place = 0; place < 6; ++place) {
+      // From beside the heap, where many facets are in few cells; every other time from several points.
+      const double azimuth_rad = draw.between(0.0, 2.0 * pi), away_m = draw.between(20.0, 120.0);
+      const Vec3 middle_m(away_m * std::cos(azimuth_rad), away_m * std::sin(azimuth_rad), draw.between(1.0, 40.0));
+      std::vector<Vec3> points_m{middle_m};
+      for (int point = 0; place % 2 == 1 && point < 7; ++point) {
+        points_m.push_back(middle_m + draw.inside(Vec3(-1.0), Vec3(1.0)));
+      }
+      Sight sight(place < 3 ? 64 : 128);
+      SeenLayer once, seen;
+      sight.look_from(points_m);
+      sight.find_scenery(traced.scene, outlines, {}, once);
+      sight.look_from(points_m);
+      sight.find_scenery(traced.scene, outlines, twice, seen);
+      CHECK(std::ranges::includes(once.mirrors, seen.mirrors));
+      CHECK(std::ranges::includes(once.edges, seen.edges));
+      taken_away += once.mirrors.size() - seen.mirrors.size();
+      for (int ray = 0; ray < 30'000; ++ray) {
+        const Vec3& from_m = points_m[draw.below(points_m.size())];
+        const Vec3 aim_m = draw.inside(Vec3(-40, -40, 0), Vec3(40, 40, 25));
+        for (const FacetId id : met_by(traced, {from_m, aim_m - from_m}, 0.0)) {
+          ++met;
+          lost += std::ranges::binary_search(seen.mirrors, id) ? 0U : 1U;
+        }
+      }
+    }
+  }
+  MESSAGE(met << " hits, " << taken_away << " facets taken away");
+  CHECK(lost == 0);
+  CHECK(met > 500'000);
+  CHECK(taken_away > 200);  // or nothing was tested
 }
 
 namespace {
