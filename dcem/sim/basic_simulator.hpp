@@ -17,6 +17,7 @@
 #include "dcem/channel/radio_map.hpp"
 #include "dcem/core/thread_pool.hpp"
 #include "dcem/field/diffuse/diffuse_power.hpp"
+#include "dcem/field/diffuse/facets_in_view.hpp"
 #include "dcem/field/element_paths.hpp"
 #include "dcem/field/field_evaluator.hpp"
 #include "dcem/field/medium_loss.hpp"
@@ -86,12 +87,13 @@ class BasicSimulator {
   struct TransmitterEnds {
     std::vector<std::optional<LinkEnd>> link;
     std::vector<RadioEnd> radio;
-    std::vector<ReachedEdges> reached;  ///< the edges within reach; empty lists where no diffraction is wanted
-    std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
-    std::span<const KeptHalf> halves;   ///< none where the plan has none
-    std::vector<KeptHalf> own_halves;   ///< holds them where nothing is kept
-    std::vector<char> embedded;         ///< edges that no path can use; empty where nobody has looked
-    WorkCounters work;                  ///< what finding them took
+    std::vector<ReachedEdges> reached;          ///< the edges within reach; empty lists where no diffraction is wanted
+    std::vector<EdgeReach> own_reach;           ///< holds them where nothing is remembered
+    std::span<const KeptHalf> halves;           ///< none where the plan has none
+    std::vector<KeptHalf> own_halves;           ///< holds them where nothing is kept
+    std::vector<char> embedded;                 ///< edges that no path can use; empty where nobody has looked
+    std::vector<std::vector<FacetId>> in_view;  ///< the facets that each may see, where diffuse power is asked for
+    WorkCounters work;                          ///< what finding them took
   };
 
   /// One end of a link, as paths and as fields see it.
@@ -131,9 +133,12 @@ class BasicSimulator {
   void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
   void find_transmitter_halves(TransmitterEnds& ends, std::size_t receivers, std::span<KeptHalf> halves,
                                bool fine) const;
-  /// Room for the halves of receivers, one per thread; empty where the plan has none.
-  std::vector<ReceiverRoom> rooms_for_halves() const {
-    return std::vector<ReceiverRoom>(plan_.joined > 0 ? std::max(1U, pool_->size()) : 0U);
+  void find_facets_in_view(TransmitterEnds& ends) const;
+  /// Whether views of the scene are made, from either end.
+  bool looks() const { return plan_.joined > 0 || settings_.propagation.diffuse.enabled; }
+  /// Room for what receivers see, one per thread; empty where no views are made.
+  std::vector<ReceiverRoom> receiver_rooms() const {
+    return std::vector<ReceiverRoom>(looks() ? std::max(1U, pool_->size()) : 0U);
   }
   Evaluator evaluator() const {
     const PropagationSettings& propagation = settings_.propagation;
@@ -154,9 +159,10 @@ class BasicSimulator {
   Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                         PathCache* cache, const Proposals& proposals) const;
   /// What rough surfaces bring to one receiver, by transmitter; empty entries where it is not asked for.
-  std::vector<DiffusePower> diffuse_powers(const std::string& receiver, const LinkEnd& end, const RadioEnd& to,
+  std::vector<DiffusePower> diffuse_powers(const Device& receiver, const DeviceEnd& end,
                                            const TransmitterEnds& transmitters,
-                                           std::span<const std::optional<LinkEnd>> ends, WorkCounters& work) const;
+                                           std::span<const std::optional<LinkEnd>> ends, ReceiverRoom* room,
+                                           WorkCounters& work) const;
   LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const DeviceEnd& from,
                        const DeviceEnd& to, const Evaluator& evaluator) const;
   /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
@@ -174,10 +180,11 @@ class BasicSimulator {
   std::vector<std::uint32_t> moved_;       ///< triangles that the index has still to hear of
   std::vector<PathCache> caches_;          ///< one per receiver of the scene; none where the cache is off
   std::vector<EdgeReach> reach_;           ///< one per transmitter; none where the cache is off
-  std::optional<FacetOutlines> outlines_;  ///< where the plan has halves
-  std::unique_ptr<LaneScene> lanes_;       ///< the same; what is kept points to it, wherever the simulator is moved
-  std::vector<KeptHalf> halves_;           ///< one per transmitter, where the plan has them …
-  bool halves_are_current_ = false;        ///< … and whether they are those of the current frame
+  std::optional<FacetOutlines> outlines_;  ///< where views are made
+  std::unique_ptr<LaneScene>
+      lanes_;  ///< where the plan has halves; what is kept points to it, wherever the simulator is moved
+  std::vector<KeptHalf> halves_;     ///< one per transmitter, where the plan has them …
+  bool halves_are_current_ = false;  ///< … and whether they are those of the current frame
   Frame frame_;
   std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
 };
@@ -203,8 +210,8 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   frame_ = scene_.frame_at(0.0);
   scene_.apply(frame_);
   index_.build(scene_.triangle_view(), scene_.triangle_boxes(), scene_.first_triangles());
+  if (looks()) outlines_.emplace(scene_);
   if (plan_.joined == 0) return;
-  outlines_.emplace(scene_);
   lanes_ = std::make_unique<LaneScene>(scene_, *outlines_);
   const std::size_t transmitters = scene_.transmitters().size();
   halves_.assign(transmitters, KeptHalf(detail::view_pixels_for(transmitters)));

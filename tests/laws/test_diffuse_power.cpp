@@ -1274,4 +1274,21 @@ TEST_CASE("diffuse power: between two ports at an end seeded tiles add in power,
   }
 }
 
+TEST_CASE("diffuse power: what a wall hides from both ends changes no bit of it, and is hardly looked at") {
+  const Material brick = rough("brick", Dielectric{3.75, 0.1}, 0.5);
+  const std::vector<Patch> wall{{Vec3(-20, 0, -20), Vec3(40, 0, 0), Vec3(0, 0, 40), "brick"}};
+  std::vector<Patch> with_more = wall;
+  for (int hidden = 0; hidden < 40; ++hidden) {  // behind it, turned towards the ends
+    with_more.push_back({Vec3(-10 + 0.5 * hidden, 1 + 0.1 * hidden, -3), Vec3(0.4, 0.1, 0), Vec3(0, 0, 6), "brick"});
+  }
+  const Vec3 from_m(-2, -4, 1), to_m(3, -6, -1);
+  const LinkResult alone = link(scene_of(wall, {brick}), from_m, to_m, settings_for(0.1));
+  const LinkResult among = link(scene_of(with_more, {brick}), from_m, to_m, settings_for(0.1));
+  CHECK(alone.diffuse.power_ratio > 0.0);
+  CHECK(among.diffuse.power_ratio == alone.diffuse.power_ratio);
+  // One or two may be met in the same box as the wall, before it.
+  CHECK(among.diffuse.tiles_evaluated <= alone.diffuse.tiles_evaluated + 8);
+  CHECK(among.diffuse.residual_ratio == alone.diffuse.residual_ratio);
+}
+
 }  // namespace test_diffuse_power

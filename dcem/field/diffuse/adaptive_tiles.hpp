@@ -28,7 +28,7 @@ namespace dcem {
 struct TileSettings {
   double tolerance = 0.02;                                          ///< of the sum, relative, above 0
   double longest_edge_m = std::numeric_limits<double>::infinity();  ///< larger tiles are halved unseen, above 0
-  std::size_t budget = 20'000;                                      ///< tiles that may be evaluated
+  std::size_t budget = 20'000;                                      ///< tiles that may be evaluated and are not 0
 };
 
 /// One triangle of the domain, or a part of it.
@@ -38,10 +38,9 @@ struct Tile {
   std::uint64_t place = 1;   ///< which part of it: 1 is the whole, 2p and 2p + 1 are the halves of p, modulo 2^64
   double bound = 0.0;        ///< no less than the value can be
   double value = 0.0;
-  double error = 0.0;     ///< estimate
-  double shown = 0.0;     ///< what differences have shown of it
-  double doubt = 0.0;     ///< what of it nobody has looked for
-  bool is_tight = false;  ///< the bound is the tight one
+  double error = 0.0;  ///< estimate
+  double shown = 0.0;  ///< what differences have shown of it
+  double doubt = 0.0;  ///< what of it nobody has looked for
   bool is_evaluated = false;
   bool is_halved = false;  ///< its halves stand for it
 
@@ -61,8 +60,8 @@ struct Tile {
 /// Tile&)`, the longest edge of a tile that shows what the integrand does there; and `double evaluate(const Tile&,
 /// std::size_t index)`, its integrand at the centroid times its area, where `index` is the tile's place in `tiles()`.
 /// None is negative. It may have `double tight_bound(const Tile&)`, a lower bound from above that costs more: it is
-/// asked for before a tile is evaluated, and a tile that has 0 there is not. The same domain in the same order gives
-/// the same bits.
+/// asked for right after the tile has been evaluated, so that it may use what was found there. The same domain in the
+/// same order gives the same bits.
 template <typename Integrand>
 class AdaptiveTiles {
  public:
@@ -85,6 +84,7 @@ class AdaptiveTiles {
   }
 
   std::span<const Tile> tiles() const { return tiles_; }
+  /// How many were evaluated, without those of which the tight bound was 0.
   std::size_t evaluated() const { return evaluated_; }
 
   /// The sum over all tiles that no halves stand for, in their order.
@@ -126,21 +126,11 @@ class AdaptiveTiles {
   void improve(std::size_t index) {
     error_ -= tiles_[index].error;
     if (longest_edge_m(tiles_[index]) > settings_.longest_edge_m) return halve_unseen(index);
-    if (!tiles_[index].is_tight && has_tight_bound) {
-      tighten(tiles_[index]);
-      tiles_[index].error = tiles_[index].doubt = tiles_[index].bound;
-      return enter(index);
-    }
     if (tiles_[index].is_evaluated) return halve(index);
     evaluate(index);
     tiles_[index].doubt = std::max(tiles_[index].value, tiles_[index].bound / slowest_decay);
     estimate(tiles_[index]);
     enter(index);
-  }
-
-  void tighten(Tile& tile) const {
-    if constexpr (has_tight_bound) tile.bound = std::min(tile.bound, integrand_.tight_bound(tile));
-    tile.is_tight = true;
   }
 
   void estimate(Tile& tile) const {
@@ -151,9 +141,11 @@ class AdaptiveTiles {
   void evaluate(std::size_t index) {
     tiles_[index].is_evaluated = true;
     if (tiles_[index].bound == 0.0) return;
-    ++evaluated_;
-    tiles_[index].value = integrand_.evaluate(tiles_[index], index);
-    total_ += tiles_[index].value;
+    Tile& tile = tiles_[index];
+    tile.value = integrand_.evaluate(tile, index);
+    total_ += tile.value;
+    if constexpr (has_tight_bound) tile.bound = std::min(tile.bound, integrand_.tight_bound(tile));
+    if (tile.bound > 0.0) ++evaluated_;
   }
 
   void halve_unseen(std::size_t index) {
@@ -169,10 +161,9 @@ class AdaptiveTiles {
     double bounds = 0.0, values = 0.0;
     for (Tile half : halves(whole)) {
       half.bound = integrand_.bound(half);
-      tighten(half);
-      bounds += half.bound;
       tiles_.push_back(half);
       evaluate(tiles_.size() - 1);
+      bounds += tiles_.back().bound;
       values += tiles_.back().value;
     }
     const double difference = std::abs(whole.value - values);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -40,16 +41,17 @@ class DiffuseIntegral {
         max_transmissions_(static_cast<std::size_t>(max_transmissions)),
         solver_(tracer, max_transmissions) {}
 
+  /// `facets`: those that both ends may see, ascending; nothing else is looked at.
   DiffusePower evaluate(const LinkEnd& transmitter, const RadioEnd& from, const LinkEnd& receiver, const RadioEnd& to,
-                        const DiffuseKey& key) {
+                        std::span<const FacetId> facets, const DiffuseKey& key) {
     Integrand integrand{*this, transmitter, from, receiver, to, TileSight<Index>(tracer_, transmitter, receiver)};
     AdaptiveTiles<Integrand> tiles(
         {relative_tolerance(), settings_.tile_max_m.value_or(std::numeric_limits<double>::infinity()),
          settings_.tile_budget},
         integrand);
     const SolverCounters before = solver_.counters();
-    for (std::uint32_t facet = 0; facet < scene_.facets().size(); ++facet) {
-      if (solver_.may_scatter(transmitter, receiver, FacetId(facet))) add_facet(tiles, FacetId(facet));
+    for (const FacetId facet : facets) {
+      if (solver_.may_scatter(transmitter, receiver, facet)) add_facet(tiles, facet);
     }
     tiles.refine();
     DiffusePower result = collect(tiles, integrand, key);
@@ -73,6 +75,7 @@ class DiffuseIntegral {
     std::vector<std::pair<std::size_t, DiffuseContribution>> seen{};  ///< by tile; only those that bring power
     std::vector<FacetId> sheets{};
     TraversalCounters traversal{};
+    bool is_free = false;  ///< nothing stands between the ends and the middle of the last tile
 
     double bound(const Tile& tile) const {
       const double from_m = least_distance_m(tile, from.position_m), to_m = least_distance_m(tile, to.position_m);
@@ -81,12 +84,13 @@ class DiffuseIntegral {
              tile.area_m2();
     }
 
-    /// With what certainly stands in the way of the whole tile.
+    /// With what certainly stands in the way of the whole tile; what does not stand in the way of its middle does not.
     double tight_bound(const Tile& tile) {
+      if (is_free) return tile.bound;
       if (!sight.crossed_by_all(tile, sheets, traversal) || sheets.size() > integral.max_transmissions_) return 0.0;
       double passed = 1.0;
       for (const FacetId sheet : sheets) passed *= integral.scattered_.transmission_limit(integral.scene_.facet(sheet));
-      return passed * bound(tile);
+      return passed * tile.bound;
     }
 
     /// Power density changes over a distance, a lobe within its width.
@@ -99,7 +103,9 @@ class DiffuseIntegral {
     double evaluate(const Tile& tile, std::size_t index) {
       DiffuseContribution one;
       const FacetId facet = integral.scene_.facet_of_triangle(tile.source);
-      if (!integral.solver_.solve(transmitter, receiver, facet, tile.centroid_m(), one.path)) return 0.0;
+      const bool solved = integral.solver_.solve(transmitter, receiver, facet, tile.centroid_m(), one.path);
+      is_free = solved && one.path.interactions.size() == 1;
+      if (!solved) return 0.0;
       one.sample = integral.scattered_.per_m2(one.path, from, to);
       one.sample.power_ratio *= tile.area_m2();
       const double power_ratio = one.sample.power_ratio;

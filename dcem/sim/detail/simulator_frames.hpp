@@ -60,7 +60,7 @@ TreeUpdateReport BasicSimulator<Surface, Index>::update_index(const ChangeSet& c
   }
   if (outlines_) {
     outlines_->update(scene_, changes.moved);
-    lanes_->update(scene_, *outlines_, changes.moved);
+    if (lanes_) lanes_->update(scene_, *outlines_, changes.moved);
   }
   // Kept where this throws (a box too far away): the index must hear of them in a later frame.
   const TreeUpdateReport report = index_.update(scene_.triangle_view(), scene_.triangle_boxes(), moved_);
@@ -99,7 +99,20 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
   const PathSearchSettings search = search_settings(ends.embedded);
   if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
   if (plan_.joined > 0 && search.max_interactions > 0) find_transmitter_halves(ends, receivers, halves, fine);
+  if (settings_.propagation.diffuse.enabled) find_facets_in_view(ends);
   return ends;
+}
+
+/// As `diffuse_powers` does for receivers, so that a link has the same bits in a run and on a map.
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::find_facets_in_view(TransmitterEnds& ends) const {
+  ends.in_view.resize(ends.link.size());
+  std::vector<ReceiverRoom> rooms = receiver_rooms();
+  pool_->for_each(ends.link.size(), [&](std::size_t index, unsigned worker) {
+    if (!ends.link[index]) return;
+    ends.in_view[index] = facets_in_view(rooms[worker].sight, scene_, *outlines_, *ends.link[index],
+                                         settings_.propagation.max_transmissions);
+  });
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>

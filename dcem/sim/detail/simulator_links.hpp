@@ -20,7 +20,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_all(
     std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches) const {
   std::vector<Solved> by_receiver(receivers.size());
-  std::vector<ReceiverRoom> rooms = rooms_for_halves();
+  std::vector<ReceiverRoom> rooms = receiver_rooms();
   pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
     PathCache* cache = caches.empty() ? nullptr : &caches[index];
     by_receiver[index] =
@@ -69,7 +69,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
   std::span<const SequenceList> joined = proposals.joined;
   std::vector<SequenceList> own;
-  if (proposals.room != nullptr && joined.empty()) {
+  if (plan_.joined > 0 && joined.empty()) {
     const LinkHalves halves{*outlines_, transmitters.halves, *proposals.room, *lanes_};
     own = join_halves(scene_, search, halves, end, ends);
     joined = own;
@@ -78,7 +78,8 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
       find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached, joined);
   const Evaluator field = evaluator();
   const RadioEnd to = detail::radio_end(receiver, state);
-  std::vector<DiffusePower> diffuse = diffuse_powers(receiver.id, end, to, transmitters, ends, solved.work);
+  std::vector<DiffusePower> diffuse =
+      diffuse_powers(receiver, {end, to}, transmitters, ends, proposals.room, solved.work);
   for (std::size_t transmitter = 0; transmitter < found.size(); ++transmitter) {
     if (!ends[transmitter]) continue;
     LinkResult& link =
@@ -94,11 +95,10 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-std::vector<DiffusePower> BasicSimulator<Surface, Index>::diffuse_powers(const std::string& receiver,
-                                                                         const LinkEnd& end, const RadioEnd& to,
+std::vector<DiffusePower> BasicSimulator<Surface, Index>::diffuse_powers(const Device& receiver, const DeviceEnd& end,
                                                                          const TransmitterEnds& transmitters,
                                                                          std::span<const std::optional<LinkEnd>> ends,
-                                                                         WorkCounters& work) const {
+                                                                         ReceiverRoom* room, WorkCounters& work) const {
   std::vector<DiffusePower> powers(ends.size());
   const PropagationSettings& propagation = settings_.propagation;
   if (!propagation.diffuse.enabled) return powers;
@@ -107,10 +107,13 @@ std::vector<DiffusePower> BasicSimulator<Surface, Index>::diffuse_powers(const s
                                                        settings_.frequency_hz);
   DiffuseIntegral<Index, Surface, AnyPathLoss> integral(tracer, scattered, propagation.diffuse,
                                                         propagation.max_transmissions);
+  const std::vector<FacetId> own =
+      facets_in_view(room->sight, scene_, *outlines_, end.link, propagation.max_transmissions);
   for (std::size_t index = 0; index < ends.size(); ++index) {
     if (!ends[index]) continue;
-    const DiffuseKey key{propagation.seed, scene_.transmitters()[index].id, receiver};
-    powers[index] = integral.evaluate(*ends[index], transmitters.radio[index], end, to, key);
+    const DiffuseKey key{propagation.seed, scene_.transmitters()[index].id, receiver.id};
+    powers[index] = integral.evaluate(*ends[index], transmitters.radio[index], end.link, end.radio,
+                                      in_both(own, transmitters.in_view[index]), key);
     detail::add_diffuse_work(powers[index], work);
   }
   return powers;

@@ -147,7 +147,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
   std::optional<MapShare> share;
   if (shares_views) share.emplace(*this, transmitters);
   std::vector<WorkCounters> spent(groups.size());
-  std::vector<ReceiverRoom> rooms = rooms_for_halves();
+  std::vector<ReceiverRoom> rooms = receiver_rooms();
   pool_->for_each(groups.size(), [&](std::size_t number, unsigned worker) {
     const std::vector<std::size_t>& group = groups[number];
     std::vector<Vec3> points_m;
