@@ -26,9 +26,9 @@ class ViewMap {
   /// What is nearer by this factor is never hidden.
   static constexpr double always_seen = 1e30;
 
-  /// So many pixels along each side of the six faces: a multiple of 8, at most 1024.
+  /// So many pixels along each side of the six faces: a multiple of 8, at most 1024. It looks from somewhere before it
+  /// is asked anything.
   explicit ViewMap(int pixels) : cube_pixels_(pixels) {
-    clear(pixels);
     DCEM_ASSERT(pixels > 0 && pixels % tile_pixels == 0 && pixels <= detail::FaceRows::most_pixels);
   }
 
