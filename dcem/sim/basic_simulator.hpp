@@ -181,10 +181,9 @@ class BasicSimulator {
   std::vector<PathCache> caches_;          ///< one per receiver of the scene; none where the cache is off
   std::vector<EdgeReach> reach_;           ///< one per transmitter; none where the cache is off
   std::optional<FacetOutlines> outlines_;  ///< where views are made
-  std::unique_ptr<LaneScene>
-      lanes_;  ///< where the plan has halves; what is kept points to it, wherever the simulator is moved
-  std::vector<KeptHalf> halves_;     ///< one per transmitter, where the plan has them …
-  bool halves_are_current_ = false;  ///< … and whether they are those of the current frame
+  std::unique_ptr<LaneScene> lanes_;       ///< where the plan has halves; those that are kept point to it
+  std::vector<KeptHalf> halves_;           ///< one per transmitter, where the plan has them …
+  bool halves_are_current_ = false;        ///< … and whether they are those of the current frame
   Frame frame_;
   std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
 };

@@ -19,6 +19,7 @@ inline std::vector<FacetId> facets_in_view(Sight& sight, const Scene& scene, con
   return seen;
 }
 
+/// The facets that are in both of two ascending lists.
 inline std::vector<FacetId> in_both(std::span<const FacetId> one, std::span<const FacetId> other) {
   std::vector<FacetId> both;
   std::ranges::set_intersection(one, other, std::back_inserter(both));

@@ -56,10 +56,12 @@ class KeptHalf {
   /// see very much, from above large cities.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, HalfSettings settings,
                     bool closer) {
-    settings.closer_from = closer ? 0 : 20'000;
+    settings.closer_from = closer ? 0 : very_many;
     half_.find_scenery(scene, outlines, end, settings);
     is_closer_ = closer;
   }
+
+  static constexpr std::size_t very_many = 20'000;  ///< facets; three times what a mast over one city sees
 
   PathHalf half_;
   BeamLists lists_;
