@@ -162,7 +162,9 @@ class EmbreeScene {
   }
 
  private:
-  static constexpr std::array<int, 16> all_lanes{-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+  /// Embree reads it as one register of 64 bytes.
+  alignas(64) static constexpr std::array<int, 16> all_lanes{-1, -1, -1, -1, -1, -1, -1, -1,
+                                                             -1, -1, -1, -1, -1, -1, -1, -1};
 
   static RTCIntersectContext coherent() {
     RTCIntersectContext context;
