@@ -1,4 +1,5 @@
-// The verifier, and the simulator that asks every triangle.
+// The verifier, what tells what rays lack, and the simulator that asks every triangle.
+#include "dcem/sim/verify/sampling_check_bodies.hpp"
 #include "dcem/sim/verify/verification_report_bodies.hpp"
 #include "dcem/sim/verify/verifier_bodies.hpp"
 

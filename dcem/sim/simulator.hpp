@@ -1,10 +1,12 @@
 #pragma once
 /// The whole line: scene and settings in, links out, frame by frame.
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dcem/channel/radio_map.hpp"
@@ -43,6 +45,10 @@ class Simulator {
   /// Links from all transmitters to receivers of the caller's, in the current frame, by transmitter, then receiver.
   /// `LinkResult::receiver` is the index in `receivers`. Nothing is remembered.
   std::vector<LinkResult> solve(std::span<const Device> receivers, WorkCounters* work = nullptr) const;
+
+  /// Closed shells that hold a point in the current frame: (body, number of the shell within it), ascending. Body 0 is
+  /// the scenery.
+  std::vector<std::pair<BodyId, std::uint32_t>> shells_around(const Vec3& point_m) const;
 
   /// Whether a device is there in the current frame.
   bool is_present(const Device& device) const;

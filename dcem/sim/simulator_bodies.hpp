@@ -52,6 +52,9 @@ DCEM_INLINE FrameResult Simulator::advance_to(double time_s, std::size_t index) 
 DCEM_INLINE std::vector<LinkResult> Simulator::solve(std::span<const Device> receivers, WorkCounters* work) const {
   return body_->simulator.solve(receivers, work);
 }
+DCEM_INLINE std::vector<std::pair<BodyId, std::uint32_t>> Simulator::shells_around(const Vec3& point_m) const {
+  return body_->simulator.shells_around(point_m);
+}
 DCEM_INLINE bool Simulator::is_present(const Device& device) const {
   return body_->simulator.is_present(device);
 }

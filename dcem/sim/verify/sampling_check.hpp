@@ -1,0 +1,50 @@
+#pragma once
+/// What a search by rays lacks, told from some of its links that are searched again, better: exactly where that is
+/// offered, otherwise with ten times as many rays, which finds most of what is easy to find and so tells the least that
+/// is missing.
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dcem/sim/frame_result.hpp"
+#include "dcem/world/frame.hpp"
+
+namespace dcem {
+
+class Simulator;
+struct Device;
+
+/// One link, found by rays and searched again.
+struct CheckedLink {
+  std::size_t paths_found = 0;  ///< by the rays
+  std::size_t paths_there = 0;  ///< by either search
+  /// How much the incoherent power grows with the paths that rays lack, dB; infinite where they found none of several.
+  double missing_db = 0.0;
+};
+
+struct SamplingReport {
+  bool exact = false;                ///< the second search misses nothing
+  std::uint32_t rays = 0;            ///< of the search that is checked, per receiver
+  std::uint32_t reference_rays = 0;  ///< of the second one, where it is not exact
+  std::vector<CheckedLink> links{};  ///< by transmitter, then receiver; empty where nothing is left to rays
+
+  /// The share of the paths that rays found; 1 where there are none.
+  double recall() const;
+  /// The `share` quantile of what links lack, dB; links on which neither search finds a path do not count.
+  double missing_db(double share) const;
+  /// Links on which rays found nothing although there is a path.
+  std::size_t links_not_reached() const;
+};
+
+/// Checks links of the simulator's current frame, which were solved for `receivers`: those of at most `most_receivers`
+/// of them, evenly spread. Makes a second simulator, which needs as much memory and time as the first one did. Nothing
+/// is done where no kind of path is left to rays.
+SamplingReport check_sampling(const Simulator& simulator, const Frame& frame, std::span<const Device> receivers,
+                              std::span<const LinkResult> links, std::size_t most_receivers = 8);
+
+}  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/sim/verify/sampling_check_bodies.hpp"
+#endif

@@ -1,0 +1,115 @@
+#pragma once
+/// Bodies of sampling_check.hpp.
+#include <algorithm>
+#include <limits>
+
+#include "dcem/core/build_mode.hpp"
+#include "dcem/core/statistics.hpp"
+#include "dcem/core/units.hpp"
+#include "dcem/sim/discovery.hpp"
+#include "dcem/sim/simulator.hpp"
+#include "dcem/sim/verify/sampling_check.hpp"
+#include "dcem/sim/verify/verification_report.hpp"
+
+namespace dcem {
+
+namespace detail {
+
+/// An exact search takes up to a second a link in a city with three interactions.
+inline constexpr std::size_t most_exact_links = 64;
+inline constexpr std::uint32_t reference_factor = 10, most_reference_rays = 100'000'000;
+
+/// The settings of the second search.
+inline SimulationSettings reference_settings(const Simulator& simulator, std::size_t links, SamplingReport& report) {
+  SimulationSettings settings = simulator.settings();
+  PropagationSettings& propagation = settings.propagation;
+  propagation.cache = CacheMode::off;
+  propagation.diffuse.enabled = false;
+  PropagationSettings by_halves = propagation;
+  by_halves.discovery = Discovery::automatic;
+  report.exact = links <= most_exact_links && plan_search(by_halves, simulator.scene()).discovery == Discovery::exact;
+  if (report.exact) {
+    propagation = by_halves;
+  } else {
+    propagation.rays = propagation.rays > most_reference_rays / reference_factor ? most_reference_rays
+                                                                                 : reference_factor * propagation.rays;
+    report.reference_rays = propagation.rays;
+  }
+  return settings;
+}
+
+/// Every so many receivers, from the middle of the first part of the list.
+inline std::vector<std::size_t> evenly_spread(std::size_t size, std::size_t most) {
+  std::vector<std::size_t> chosen;
+  const std::size_t count = std::min(size, most);
+  for (std::size_t number = 0; number < count; ++number) chosen.push_back((2 * number + 1) * size / (2 * count));
+  return chosen;
+}
+
+inline CheckedLink checked(const LinkResult& found, const LinkResult& again) {
+  CheckedLink link{found.paths.size(), found.paths.size(), 0.0};
+  double power_ratio = 0.0, lacking = 0.0;
+  for (const PathContribution& path : found.paths) power_ratio += path.power_ratio;
+  for (const PathContribution& path : again.paths) {
+    if (contains(found.paths, path.path)) continue;
+    ++link.paths_there;
+    lacking += path.power_ratio;
+  }
+  if (lacking > 0.0) {
+    link.missing_db =
+        power_ratio > 0.0 ? power_ratio_to_db(1.0 + lacking / power_ratio) : std::numeric_limits<double>::infinity();
+  }
+  return link;
+}
+
+}  // namespace detail
+
+DCEM_INLINE double SamplingReport::recall() const {
+  std::size_t found = 0, there = 0;
+  for (const CheckedLink& link : links) found += link.paths_found, there += link.paths_there;
+  return there > 0 ? static_cast<double>(found) / static_cast<double>(there) : 1.0;
+}
+
+DCEM_INLINE double SamplingReport::missing_db(double share) const {
+  std::vector<double> missing_db;
+  for (const CheckedLink& link : links) {
+    if (link.paths_there > 0) missing_db.push_back(link.missing_db);
+  }
+  return quantile(std::move(missing_db), share);
+}
+
+DCEM_INLINE std::size_t SamplingReport::links_not_reached() const {
+  return static_cast<std::size_t>(std::count_if(links.begin(), links.end(), [](const CheckedLink& link) {
+    return link.paths_found == 0 && link.paths_there > 0;
+  }));
+}
+
+DCEM_INLINE SamplingReport check_sampling(const Simulator& simulator, const Frame& frame,
+                                          std::span<const Device> receivers, std::span<const LinkResult> links,
+                                          std::size_t most_receivers) {
+  SamplingReport report;
+  if (simulator.discovery() == Discovery::exact || receivers.empty() || links.empty()) return report;
+  report.rays = simulator.settings().propagation.rays;
+  std::vector<std::size_t> present;
+  for (std::size_t index = 0; index < receivers.size(); ++index) {
+    if (simulator.is_present(receivers[index])) present.push_back(index);
+  }
+  std::vector<std::size_t> chosen;
+  std::vector<Device> devices;
+  for (const std::size_t at : detail::evenly_spread(present.size(), most_receivers)) {
+    chosen.push_back(present[at]);
+    devices.push_back(receivers[present[at]]);
+  }
+  const std::size_t count = chosen.size() * simulator.scene().transmitters().size();
+  Simulator reference(simulator.scene(), detail::reference_settings(simulator, count, report));
+  reference.move_to(frame);
+  for (const LinkResult& again : reference.solve(devices)) {
+    const auto same = std::find_if(links.begin(), links.end(), [&](const LinkResult& link) {
+      return link.transmitter == again.transmitter && link.receiver == chosen[again.receiver];
+    });
+    if (same != links.end()) report.links.push_back(detail::checked(*same, again));
+  }
+  return report;
+}
+
+}  // namespace dcem

@@ -1,0 +1,98 @@
+/// What rays lack is told from links that are searched again.
+#include "dcem/sim/verify/sampling_check.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "dcem/io/scenario.hpp"
+#include "dcem/sim/simulator.hpp"
+
+namespace test_sampling_check {
+
+using namespace dcem;
+
+namespace {
+
+/// Points on the streets of the town whose drive ships with DCEM.
+struct Town {
+  io::Scenario scenario = io::load_scenario(std::filesystem::path(DCEM_DATA_DIR) / "town_drive.json");
+  std::vector<Device> receivers;
+
+  Town() {
+    scenario.settings.threads = 1;
+    for (int row = 0; row < 6; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        Device device;
+        device.id = "street" + std::to_string(4 * row + column);
+        device.motion = LinearMotion{{Vec3(-100.0 + 30.0 * row, -6.0 + 4.0 * column, 1.5)}, Vec3(0.0), 0.0};
+        receivers.push_back(device);
+      }
+    }
+  }
+
+  Simulator simulator(Discovery discovery, std::uint32_t rays, int max_interactions = 2) const {
+    SimulationSettings settings = scenario.settings;
+    settings.propagation.discovery = discovery;
+    settings.propagation.rays = rays;
+    settings.propagation.max_interactions = max_interactions;
+    settings.propagation.max_reflections = std::max(2, max_interactions);
+    return {scenario.scene, settings};
+  }
+
+  SamplingReport check(const Simulator& simulator, std::size_t most_receivers = 24) const {
+    const Frame frame = simulator.scene().frame_at(0.0, 0);
+    return check_sampling(simulator, frame, receivers, simulator.solve(receivers), most_receivers);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what two searches of a link find is told apart by path, and by power") {
+  SamplingReport report;
+  report.links = {{4, 4, 0.0}, {1, 4, 3.0}, {0, 2, std::numeric_limits<double>::infinity()}, {0, 0, 0.0}};
+  CHECK(report.recall() == doctest::Approx(0.5));
+  CHECK(report.links_not_reached() == 1);
+  CHECK(report.missing_db(0.5) == 3.0);  // of the three links that have a path
+  CHECK(std::isinf(report.missing_db(1.0)));
+  CHECK(SamplingReport{}.recall() == 1.0);
+}
+
+TEST_CASE("where nothing is left to rays nothing is checked") {
+  const Town town;
+  CHECK(town.check(town.simulator(Discovery::automatic, 2000)).links.empty());
+}
+
+TEST_CASE("in a town the check says by how much rays fall short of an exact search, and less for more rays") {
+  const Town town;
+  double last = 0.0;
+  for (const std::uint32_t rays : {500U, 5000U, 50'000U}) {
+    const SamplingReport report = town.check(town.simulator(Discovery::sampled, rays));
+    CHECK(report.exact);
+    CHECK(report.rays == rays);
+    REQUIRE(report.links.size() > 20);
+    MESSAGE(rays << " rays find " << report.recall() << " of the paths; missing " << report.missing_db(0.5) << ", "
+                 << report.missing_db(0.95) << " dB; not reached " << report.links_not_reached());
+    CHECK(report.recall() > last);
+    CHECK(report.recall() < 1.0);
+    last = report.recall();
+  }
+  CHECK(last > 0.7);
+}
+
+TEST_CASE("beyond what exact search covers ten times as many rays are the measure") {
+  const Town town;
+  const SamplingReport report = town.check(town.simulator(Discovery::automatic, 500, 4), 4);
+  CHECK_FALSE(report.exact);
+  CHECK(report.reference_rays == 5000);
+  REQUIRE(report.links.size() == 4 * town.scenario.scene.transmitters().size());
+  CHECK(report.recall() < 1.0);
+  CHECK(report.missing_db(1.0) > 0.0);
+}
+
+}  // namespace test_sampling_check
