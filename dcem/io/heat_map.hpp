@@ -63,6 +63,7 @@ struct HeatMap {
   /// Where this is not empty the values are numbers of these names, counted from 0. Each name has a colour and an entry
   /// in the legend, and there is no colour bar. Colours repeat after 21 names.
   std::vector<std::string> categories;
+  std::vector<std::string> notes;  ///< what must be known of the values, below the legend
 };
 
 /// The colour range of a map that names none: from the 2nd percentile of its values (so that a few deep fades do not

@@ -10,6 +10,7 @@
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/settings.hpp"
+#include "dcem/sim/verify/sampling_check.hpp"
 
 namespace dcem::io {
 
@@ -24,6 +25,7 @@ struct RunFacts {
   std::size_t receivers = 0;          ///< points of grids included
   std::vector<std::string> warnings;  ///< one line each
   int exact_interactions = 0;         ///< up to which all paths are found
+  std::string sampled_kinds{};        ///< what rays look for; empty where nothing is left to them
 };
 
 /// What is kept of a frame after its results are written.
@@ -48,9 +50,13 @@ class RunSummary {
   RunSummary(RunFacts facts, const Scene& scene);
 
   void add(const FrameFigures& frame) { frames_.push_back(frame); }
-  void add_warning(std::string line) { facts_.warnings.push_back(std::move(line)); }
+  /// What was not known before the first frame.
+  void add_late_warning(std::string line) { late_warnings_.push_back(std::move(line)); }
+  /// What is missing on links that were searched again.
+  void set_sampling(SamplingReport report) { sampling_ = std::move(report); }
 
-  /// The text of `summary.json`: `version`, `scenario`, `scene`, `settings`, `warnings`, `totals`, `frames`. Times
+  /// The text of `summary.json`: `version`, `scenario`, `scene`, `settings`, `warnings`, `sampling` (null where
+  /// nothing is left to rays), `totals`, `frames`. Times
   /// differ from run to run; everything else is the same for the same input.
   [[nodiscard]] std::string json() const;
 
@@ -69,6 +75,8 @@ class RunSummary {
   RunFacts facts_;
   const Scene& scene_;
   std::vector<FrameFigures> frames_;
+  SamplingReport sampling_{};
+  std::vector<std::string> late_warnings_{};
 };
 
 }  // namespace dcem::io

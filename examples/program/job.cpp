@@ -9,6 +9,7 @@
 
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/sampling_text.hpp"
 #include "dcem/sim/discovery.hpp"
 
 #ifndef DCEM_VERSION
@@ -95,9 +96,17 @@ void expand_grids(io::Scenario& scenario, const std::string& file) {
 }
 
 io::RunFacts run_facts(const Job& job, const Simulator& simulator, const SearchPlan& plan, std::size_t receivers) {
-  return {DCEM_VERSION,   job.scenario.name,     simulator.settings(),
-          plan.discovery, simulator.cache(),     job.scenario.time,
-          receivers,      job.scenario.warnings, exactly_searched_interactions(simulator.settings().propagation, plan)};
+  const PropagationSettings& propagation = simulator.settings().propagation;
+  return {DCEM_VERSION,
+          job.scenario.name,
+          simulator.settings(),
+          plan.discovery,
+          simulator.cache(),
+          job.scenario.time,
+          receivers,
+          job.scenario.warnings,
+          exactly_searched_interactions(propagation, plan),
+          io::sampled_kinds(propagation, plan)};
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options) {
@@ -115,7 +124,7 @@ std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Jo
 
 void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary) {
   if (viewer == nullptr) return;
-  for (const std::string& notice : viewer->finish()) summary.add_warning("viewer.html: " + notice);
+  for (const std::string& notice : viewer->finish()) summary.add_late_warning("viewer.html: " + notice);
 }
 
 io::ProgressMode progress_mode(const ScenarioOptions& options) {

@@ -10,6 +10,8 @@
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/map_distribution.hpp"
 #include "dcem/io/map_writer.hpp"
+#include "dcem/io/placement_watch.hpp"
+#include "dcem/io/sampling_text.hpp"
 #include "job.hpp"
 
 namespace dcem::program {
@@ -92,8 +94,11 @@ void add_figures(const RadioMap& map, io::FrameFigures& figures) {
 /// Writes the files of the maps of one frame. Pictures and rasters are of grids alone.
 class MapFiles {
  public:
-  MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& simulator, const Frame& frame)
+  /// `notes` stand at the foot of each picture.
+  MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& simulator, const Frame& frame,
+           std::vector<std::string> notes)
       : folder_(folder),
+        notes_(std::move(notes)),
         wanted_(job.scenario.output.map),
         scene_(simulator.scene()),
         frame_(frame),
@@ -131,7 +136,7 @@ class MapFiles {
     if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_map_npz(file, map, frequency_hz_); });
     if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_map_asc(file, map); });
     const auto draw = [&](auto& file) {
-      io::write_heat_map_png(io::map_picture(map, scene_, frame_, frequency_hz_, time_s_), file);
+      io::write_heat_map_png(noted(io::map_picture(map, scene_, frame_, frequency_hz_, time_s_)), file);
     };
     if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
   }
@@ -143,7 +148,7 @@ class MapFiles {
     if (wanted_.asc && map.places.is_grid())
       put(name + ".asc", [&](auto& file) { io::write_best_server_asc(file, map); });
     const auto draw = [&](auto& file) {
-      io::write_heat_map_png(io::best_server_picture(map, scene_, frame_, frequency_hz_, time_s_), file);
+      io::write_heat_map_png(noted(io::best_server_picture(map, scene_, frame_, frequency_hz_, time_s_)), file);
     };
     if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
   }
@@ -155,12 +160,19 @@ class MapFiles {
     if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_sinr_asc(file, map); });
     const auto draw = [&](auto& file) {
       const bool has_noise = noise_dbm_.has_value();
-      io::write_heat_map_png(io::sinr_picture(map, scene_, frame_, frequency_hz_, has_noise, time_s_), file);
+      io::write_heat_map_png(noted(io::sinr_picture(map, scene_, frame_, frequency_hz_, has_noise, time_s_)), file);
     };
     if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
   }
 
+  /// A picture that says what must be known of its values.
+  io::HeatMap noted(io::HeatMap picture) const {
+    picture.notes = notes_;
+    return picture;
+  }
+
   io::OutputFolder& folder_;
+  const std::vector<std::string> notes_;
   const io::MapOutputs wanted_;
   const Scene& scene_;
   const Frame& frame_;
@@ -170,8 +182,32 @@ class MapFiles {
   std::optional<double> noise_dbm_;
 };
 
+Device receiver_at(const ReceiverGrid& grid, std::size_t point) {
+  return grid_receiver(grid, point / grid.columns(), point % grid.columns());
+}
+Device receiver_at(const ReceiverList& list, std::size_t point) {
+  return list.receivers[point];
+}
+
+/// What rays lack at some of the points of a map.
+template <typename Places>
+SamplingReport check_points(const Simulator& simulator, const Frame& frame, const Places& places, const RadioMap& map) {
+  constexpr std::size_t most_points = 16;
+  if (simulator.discovery() == Discovery::exact) return {};
+  std::vector<std::size_t> open;
+  for (std::size_t point = 0; point < map.points.size(); ++point) {
+    if (!map.points[point].obstructed) open.push_back(point);
+  }
+  std::vector<Device> receivers;
+  for (std::size_t number = 0; number < std::min(most_points, open.size()); ++number) {
+    receivers.push_back(receiver_at(places, open[number * open.size() / std::min(most_points, open.size())]));
+  }
+  return check_sampling(simulator, frame, receivers, simulator.solve(receivers), most_points);
+}
+
 io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, const MapOrders& orders, Simulator& simulator,
-                           const Frame& frame, io::ViewerWriter* viewer, io::ProgressBar& bar) {
+                           const Frame& frame, io::ViewerWriter* viewer, io::ProgressBar& bar,
+                           std::optional<SamplingReport>& sampling) {
   const FrameResult result = simulator.advance(frame);
   io::FrameFigures figures = io::figures_of(result);
   if (viewer != nullptr) viewer->add(frame, result);
@@ -184,7 +220,9 @@ io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, const MapOr
       add_figures(map, figures);
       if (viewer != nullptr && map.places.is_grid()) viewer->add(map);
     }
-    MapFiles(folder, job, simulator, frame).write(maps);
+    if (!sampling && !maps.empty()) sampling = check_points(simulator, frame, places, maps.front());
+    MapFiles(folder, job, simulator, frame, sampling ? io::sampling_notes(*sampling) : std::vector<std::string>{})
+        .write(maps);
   };
   for (const ReceiverGrid& grid : orders.grids) make(grid);
   for (const ReceiverList& list : orders.lists) make(list);
@@ -212,13 +250,23 @@ void map_scenario(const ScenarioOptions& options) {
   io::RunSummary summary(run_facts(job, simulator, simulator.plan(), points), simulator.scene());
   print_warnings(job.scenario.warnings, options);
   const auto viewer = make_viewer(folder, job, simulator, orders.cells() * simulator.scene().transmitters().size());
+  std::vector<Device> points_of_lists;
+  for (const ReceiverList& list : lists) {
+    points_of_lists.insert(points_of_lists.end(), list.receivers.begin(), list.receivers.end());
+  }
+  io::PlacementWatch watch(options.scenario, simulator, points_of_lists, job.scenario.grids);
+  std::optional<SamplingReport> sampling;  // of the first map
   {
     io::ProgressBar bar("points", points * job.frames.count(), progress_mode(options));
     for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
       const Frame instant = frames.frame(simulator.scene(), frame);
-      summary.add(map_frame(folder, job, orders, simulator, instant, viewer.get(), bar));
+      const io::FrameFigures figures = map_frame(folder, job, orders, simulator, instant, viewer.get(), bar, sampling);
+      watch.look(instant);
+      summary.add(figures);
     }
   }
+  if (sampling) summary.set_sampling(*sampling);
+  for (const std::string& warning : watch.warnings()) summary.add_late_warning(warning);
   finish_viewer(viewer.get(), summary);
   folder.open("map_summary.json").write(summary.json());
   folder.commit();

@@ -4,6 +4,7 @@
 
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/placement_watch.hpp"
 #include "dcem/io/result_writer.hpp"
 #include "dcem/sim/discovery.hpp"
 #include "job.hpp"
@@ -23,15 +24,19 @@ void write_frame(io::ResultWriter& writer, const FrameResult& result, const Scen
 }
 
 void solve_frames(Simulator& simulator, const Job& job, const ScenarioOptions& options, io::FrameSource& frames,
-                  io::ResultWriter& writer, io::ViewerWriter* viewer, io::RunSummary& summary) {
+                  io::ResultWriter& writer, io::ViewerWriter* viewer, io::PlacementWatch& watch,
+                  io::RunSummary& summary) {
   io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
   for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
     const Frame instant = frames.frame(simulator.scene(), frame);
     const FrameResult result = simulator.advance(instant);
     write_frame(writer, result, options);
     if (viewer != nullptr) viewer->add(instant, result);
+    watch.look(instant);
     summary.add(io::figures_of(result));
     bar.advance();
+    const bool is_last = frame + 1 == job.frames.last;
+    if (is_last) summary.set_sampling(check_sampling(simulator, instant, simulator.scene().receivers(), result.links));
   }
 }
 
@@ -70,6 +75,7 @@ void warn_of_plots(Job& job, std::size_t links) {
 
 void run_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
+  const std::size_t devices = job.scenario.scene.receivers().size();  // the rest are points of grids
   expand_grids(job.scenario, options.scenario);
   io::FrameSource frames(job.scenario);
   Simulator simulator = make_simulator(job, options);
@@ -80,7 +86,9 @@ void run_scenario(const ScenarioOptions& options) {
   io::RunSummary summary(run_facts(job, simulator, simulator.plan(), receivers.size()), simulator.scene());
   print_warnings(job.scenario.warnings, options);
   const auto viewer = make_viewer(folder, job, simulator);
-  solve_frames(simulator, job, options, frames, writer, viewer.get(), summary);
+  io::PlacementWatch watch(options.scenario, simulator, receivers.first(devices), job.scenario.grids);
+  solve_frames(simulator, job, options, frames, writer, viewer.get(), watch, summary);
+  for (const std::string& warning : watch.warnings()) summary.add_late_warning(warning);
   writer.finish();
   finish_viewer(viewer.get(), summary);
   folder.open("summary.json").write(summary.json());

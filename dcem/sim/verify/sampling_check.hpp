@@ -19,8 +19,7 @@ struct Device;
 struct CheckedLink {
   std::size_t paths_found = 0;  ///< by the rays
   std::size_t paths_there = 0;  ///< by either search
-  /// How much the incoherent power grows with the paths that rays lack, dB; infinite where they found none of several.
-  double missing_db = 0.0;
+  double missing_db = 0.0;      ///< how much the incoherent power grows with what rays lack; 0 where they found nothing
 };
 
 struct SamplingReport {
@@ -31,7 +30,7 @@ struct SamplingReport {
 
   /// The share of the paths that rays found; 1 where there are none.
   double recall() const;
-  /// The `share` quantile of what links lack, dB; links on which neither search finds a path do not count.
+  /// The `share` quantile of what links lack, dB, of those on which rays found something.
   double missing_db(double share) const;
   /// Links on which rays found nothing although there is a path.
   std::size_t links_not_reached() const;

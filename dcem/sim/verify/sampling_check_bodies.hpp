@@ -1,7 +1,6 @@
 #pragma once
 /// Bodies of sampling_check.hpp.
 #include <algorithm>
-#include <limits>
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/core/statistics.hpp"
@@ -55,10 +54,7 @@ inline CheckedLink checked(const LinkResult& found, const LinkResult& again) {
     ++link.paths_there;
     lacking += path.power_ratio;
   }
-  if (lacking > 0.0) {
-    link.missing_db =
-        power_ratio > 0.0 ? power_ratio_to_db(1.0 + lacking / power_ratio) : std::numeric_limits<double>::infinity();
-  }
+  if (power_ratio > 0.0) link.missing_db = power_ratio_to_db(1.0 + lacking / power_ratio);
   return link;
 }
 
@@ -73,7 +69,7 @@ DCEM_INLINE double SamplingReport::recall() const {
 DCEM_INLINE double SamplingReport::missing_db(double share) const {
   std::vector<double> missing_db;
   for (const CheckedLink& link : links) {
-    if (link.paths_there > 0) missing_db.push_back(link.missing_db);
+    if (link.paths_found > 0) missing_db.push_back(link.missing_db);
   }
   return quantile(std::move(missing_db), share);
 }

@@ -97,6 +97,7 @@ std::vector<LegendItem> legend_items(const HeatMap& map, const HeatMapLayout& la
     items.push_back({Symbol::none, "shown: one point in " + std::to_string(layout.sampling) + " along each axis"});
   }
   if (!layout.to_scale && map.axes.to_scale) items.push_back({Symbol::none, "axes not to the same scale"});
+  for (const std::string& note : map.notes) items.push_back({Symbol::none, note});
   return items;
 }
 

@@ -7,6 +7,7 @@
 
 #include "dcem/core/statistics.hpp"
 #include "dcem/core/thread_pool.hpp"
+#include "dcem/io/sampling_text.hpp"
 #include "dcem/io/src/results/fact_json.hpp"
 #include "dcem/io/src/scenario/enum_words.hpp"
 #include "dcem/io/src/scenario/settings_json.hpp"
@@ -92,6 +93,17 @@ Json cache_json(const CacheCounters& cache) {
           {"died", cache.died}};
 }
 
+Json sampling_json(const SamplingReport& report) {
+  return {{"rays", report.rays},
+          {"searched_again", report.exact ? "exact" : "sampled"},
+          {"rays_again", report.exact ? Json(nullptr) : Json(report.reference_rays)},
+          {"links", report.links.size()},
+          {"links_not_reached", report.links_not_reached()},
+          {"recall", report.recall()},
+          {"missing_median_db", report.missing_db(0.5)},
+          {"missing_p95_db", report.missing_db(0.95)}};
+}
+
 double total_time_s(const FrameFigures& frame) {
   return frame.update_time_s + frame.solve_time_s;
 }
@@ -175,9 +187,11 @@ std::vector<std::string> RunSummary::warnings() const {
 }
 
 std::vector<std::string> RunSummary::late_warnings() const {
+  std::vector<std::string> lines = late_warnings_;
+  if (!sampling_.links.empty()) lines.push_back(sampling_warning(sampling_, facts_.sampled_kinds));
   const FrameFigures sum = sum_of(frames_);
-  if (sum.work.diffuse_links_unfinished == 0) return {};
-  return {"diffuse power: " + diffuse_text(sum)};
+  if (sum.work.diffuse_links_unfinished > 0) lines.push_back("diffuse power: " + diffuse_text(sum));
+  return lines;
 }
 
 /// How many tiles the sums took, and what they may lack.
@@ -200,6 +214,7 @@ std::string RunSummary::json() const {
                                 {"scene", scene_json(scene_, facts_.receivers)},
                                 {"settings", settings_json(facts_)},
                                 {"warnings", warnings()},
+                                {"sampling", sampling_.links.empty() ? Json(nullptr) : sampling_json(sampling_)},
                                 {"totals",
                                  {{"frames", frames_.size()},
                                   {"links", sum.links},
@@ -245,6 +260,7 @@ std::string RunSummary::table(const std::filesystem::path& folder) const {
   table.add_row({"real-time factor", factor ? format_fixed(*factor, *factor < 10.0 ? 3 : 1) : "-"});
   table.add_row({"discovery", word_of(facts_.discovery)});
   table.add_row({"cache", cache_text(sum.cache)});
+  for (const std::string& note : sampling_notes(sampling_)) table.add_row({"", note});
   if (facts_.settings.propagation.diffuse.enabled) table.add_row({"diffuse", diffuse_text(sum)});
   table.add_row({"tree", std::to_string(sum.tree.nodes_refit) + " nodes refit, " +
                              std::to_string(sum.tree.nodes_rebuilt) + " rebuilt in " +

@@ -1,0 +1,68 @@
+#pragma once
+/// Devices, grids and vehicles in places where they can hardly be meant to be: kilometres outside the scene, below it,
+/// inside what lets nothing through. A watch looks at each frame and says at the end what it saw, once for all frames.
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dcem/scene/device.hpp"
+#include "dcem/sim/simulator.hpp"
+
+namespace dcem::io {
+
+class PlacementWatch {
+ public:
+  /// Watches a simulator, its transmitters and objects, these receivers and these grids. `file` begins each warning.
+  /// Everything must outlive the watch.
+  PlacementWatch(std::string file, const Simulator& simulator, std::span<const Device> receivers,
+                 std::span<const ReceiverGrid> grids);
+
+  /// Looks at the simulator's current frame. Some microseconds for each device and each object.
+  void look(const Frame& frame);
+
+  /// One line for each kind of misplacement of each device, grid or object, with the frames and the likely cause; of
+  /// each kind the first five, and how many more there are.
+  std::vector<std::string> warnings() const;
+
+ private:
+  using Shell = std::pair<BodyId, std::uint32_t>;
+  enum class Problem { far_outside, below_all, below_ground, shut_in, shut_in_alone, drives_through };
+  /// What is wrong with whom, and the rest of the sentence.
+  struct Sighting {
+    Problem problem;
+    std::string subject, detail;
+    std::vector<std::size_t> frames;
+  };
+
+  void look_at_places(const Vec3& position_m, const std::string& subject);
+  void look_at_receiver(const Device& device, const std::string& subject);
+  void look_at_transmitter(const Device& device);
+  void look_at_grid(const ReceiverGrid& grid);
+  void look_at_object(BodyId body);
+  void note(Problem problem, const std::string& subject, const std::string& detail);
+  bool is_below_ground(const Vec3& position_m) const;
+  /// Shells around a point that let nothing through, without those of a body that is not there for its links.
+  std::vector<Shell> closed_shells(const Vec3& point_m, const DeviceState* of) const;
+  bool lets_through(const Shell& shell) const;
+  double share_of_receivers_in(const Shell& shell) const;
+  std::string name_of(const Shell& shell) const;
+
+  std::string file_;
+  const Simulator& simulator_;
+  std::span<const Device> receivers_;
+  std::span<const ReceiverGrid> grids_;
+  std::vector<std::optional<Vec3>> middles_m_;  ///< of all bodies, in their own coordinates
+  const Frame* frame_ = nullptr;                ///< while it is looked at
+  Aabb<double> box_;                            ///< of everything in the current frame
+  std::set<Shell> rooms_;                       ///< shells that hold a transmitter
+  mutable std::map<Shell, bool> lets_through_;
+  std::vector<Sighting> sightings_;  ///< in the order in which they were seen first
+  std::map<std::pair<Problem, std::string>, std::size_t> numbers_;
+};
+
+}  // namespace dcem::io
