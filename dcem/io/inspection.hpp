@@ -69,7 +69,7 @@ struct Inspection {
   std::size_t overlapping_facet_pairs = 0;
   std::vector<InspectedMaterial> materials;    ///< by name
   std::vector<InspectedFacet> largest_facets;  ///< at most ten, by area
-  std::vector<std::string> warnings;           ///< of the reader
+  std::vector<std::string> warnings;           ///< of the reader, and what looks odd about size and orientation
 };
 
 /// Reads and mends the file. Materials without a definition are reported, not refused. O(n log n) in triangles, apart

@@ -10,6 +10,7 @@
 #include "dcem/em/surface/material_table.hpp"
 #include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/checks/mesh_doubts.hpp"
 
 namespace dcem::io {
 namespace {
@@ -113,6 +114,7 @@ Inspection inspect_obj(const std::filesystem::path& file, const InspectionSettin
   inspection.materials = inspect_materials(obj, mesh, settings.frequency_hz);
   inspection.largest_facets = largest_facets(mesh);
   inspection.warnings = obj.warnings;
+  for (const std::string& doubt : mesh_doubts(obj.mesh)) inspection.warnings.push_back(file.string() + ": " + doubt);
   return inspection;
 }
 

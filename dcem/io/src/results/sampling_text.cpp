@@ -31,13 +31,14 @@ std::string sampled_kinds(const PropagationSettings& propagation, const SearchPl
 }
 
 std::string sampling_warning(const SamplingReport& report, const std::string& sampled) {
-  std::string text = sampled + " are looked for by " + std::to_string(report.rays) + " rays. Of " +
-                     std::to_string(report.links.size()) + " links searched again " + reference(report) +
-                     " rays had found " + percent(report.recall()) + " of the paths; the power lacks " +
+  const std::string again = report.exact ? "exactly" : "with " + std::to_string(report.reference_rays);
+  std::string text = sampled + " are looked for by " + std::to_string(report.rays) + " rays, which found " +
+                     percent(report.recall()) + " of the paths of " + std::to_string(report.links.size()) +
+                     " links that were searched again " + again + "; their powers lack " +
                      decibels(report.missing_db(0.5)) + " in the median, " + decibels(report.missing_db(common_share)) +
                      " at 95 %";
   const std::size_t empty = report.links_not_reached();
-  if (empty > 0) text += "; on " + std::to_string(empty) + " with paths they had found none";
+  if (empty > 0) text += "; on " + std::to_string(empty) + " of them no path was found though there is one";
   return "sampled: " + text;
 }
 

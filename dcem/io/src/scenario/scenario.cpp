@@ -58,6 +58,17 @@ void check_frequency(const Scenario& scenario, const JsonValue& place) {
   }
 }
 
+/// A mirror loses what it scatters; where nobody adds that up, power is missing.
+void warn_of_lost_scattering(const std::filesystem::path& file, Scenario& scenario) {
+  if (scenario.settings.propagation.diffuse.enabled) return;
+  for (const Material& material : scenario.scene.materials()) {
+    if (!scatters(material)) continue;
+    scenario.warnings.push_back(file.string() + ": material " + in_quotes(material.name) +
+                                " scatters, which weakens its mirror, and propagation.diffuse is off: what it scatters "
+                                "is missing from all powers");
+  }
+}
+
 Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root, const JsonObject& command_line) {
   if (root.at("format").text() != "dcem-scenario/1") root.at("format").fail("unknown format; expected dcem-scenario/1");
   refuse_later_blocks(root);
@@ -79,6 +90,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   reported_at(root.value(), [&] { validate(result.settings); });
   check_exact_discovery(result, root, command_line);
   check_frequency(result, root.at("frequency_hz"));
+  warn_of_lost_scattering(file, result);
   return result;
 }
 

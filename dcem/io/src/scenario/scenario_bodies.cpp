@@ -2,6 +2,7 @@
 
 #include "dcem/em/surface/itu_p2040.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/checks/mesh_doubts.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
@@ -79,10 +80,18 @@ void BodyLoader::load() {
   add_materials();
   reported_at(scene.at("obj"), [&] { result_.scene.set_scenery(scenery.mesh); });
   if (result_.scene.facets().empty()) scene.at("obj").fail("no face has an area; expected at least one");
+  warn(scene.at("obj"), mesh_doubts(scenery.mesh));
   for (Object& object : objects_) {
+    warn(object.value, object_doubts(object.mesh));
     reported_at(object.value, [&] { result_.scene.add_object(object.id, object.mesh, std::move(object.motion)); });
   }
   if (result_.traffic) add_traffic();
+}
+
+void BodyLoader::warn(const JsonValue& place, const std::vector<std::string>& doubts) {
+  for (const std::string& doubt : doubts) {
+    result_.warnings.push_back(place.place() + ": " + place.path() + ": " + doubt);
+  }
 }
 
 void BodyLoader::add_traffic() {

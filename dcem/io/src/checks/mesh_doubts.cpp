@@ -1,0 +1,88 @@
+#include "dcem/io/src/checks/mesh_doubts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dcem/core/statistics.hpp"
+#include "dcem/geometry/aabb.hpp"
+#include "dcem/io/text_table.hpp"
+
+namespace dcem::io {
+namespace {
+
+constexpr std::size_t least_triangles = 20;
+constexpr double millimetres_height_m = 2000.0, millimetres_edge_m = 500.0;
+constexpr double degrees_width_m = 2.0, degrees_slenderness = 10.0;
+constexpr double upright_height_m = 150.0, flatness = 4.0;
+constexpr double longest_object_m = 500.0;
+
+/// Of what faces use: other vertices are not drawn either.
+Aabb<double> box_of(const TriangleMesh& mesh) {
+  Aabb<double> box;
+  for (const TriangleMesh::Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle.vertices) box.extend(mesh.vertices_m[vertex]);
+  }
+  return box;
+}
+
+double median_edge_m(const TriangleMesh& mesh) {
+  std::vector<double> lengths_m;
+  for (const TriangleMesh::Triangle& triangle : mesh.triangles) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      lengths_m.push_back(glm::length(mesh.vertices_m[triangle.vertices[corner]] -
+                                      mesh.vertices_m[triangle.vertices[(corner + 1) % 3]]));
+    }
+  }
+  return median(std::move(lengths_m));
+}
+
+/// How much of the area faces along each axis, m².
+Vec3 facing_m2(const TriangleMesh& mesh) {
+  Vec3 sum_m2(0.0);
+  for (const TriangleMesh::Triangle& triangle : mesh.triangles) {
+    const Vec3& first_m = mesh.vertices_m[triangle.vertices[0]];
+    sum_m2 += 0.5 * glm::abs(glm::cross(mesh.vertices_m[triangle.vertices[1]] - first_m,
+                                        mesh.vertices_m[triangle.vertices[2]] - first_m));
+  }
+  return sum_m2;
+}
+
+bool is_flat_along_y(const TriangleMesh& mesh, const Vec3& size_m) {
+  if (size_m.z < upright_height_m || flatness * size_m.y > std::min(size_m.x, size_m.z)) return false;
+  const Vec3 area_m2 = facing_m2(mesh);
+  return area_m2.y > std::max(area_m2.x, area_m2.z);
+}
+
+std::string size_text(const Vec3& size_m) {
+  const auto number = [](double length_m) { return format_fixed(length_m, length_m < 10.0 ? 3 : 0); };
+  return number(size_m.x) + " x " + number(size_m.y) + " x " + number(size_m.z) + " m";
+}
+
+}  // namespace
+
+std::vector<std::string> mesh_doubts(const TriangleMesh& mesh) {
+  if (mesh.triangles.size() < least_triangles) return {};
+  const Aabb<double> box = box_of(mesh);
+  const Vec3 size_m = box.max - box.min;
+  const double width_m = std::max(size_m.x, size_m.y);
+  if (size_m.z >= millimetres_height_m && median_edge_m(mesh) >= millimetres_edge_m) {
+    return {"the mesh is " + size_text(size_m) + " in size; is it in millimetres (unit_m 0.001)?"};
+  }
+  if (width_m < degrees_width_m && size_m.z > degrees_slenderness * width_m) {
+    return {"the mesh is " + size_text(size_m) + " in size; are x and y in degrees? They must be in one unit with z"};
+  }
+  if (is_flat_along_y(mesh, size_m)) {
+    return {"the mesh is " + size_text(size_m) +
+            " in size and flat along y; does another axis of the file point up (up)?"};
+  }
+  return {};
+}
+
+std::vector<std::string> object_doubts(const TriangleMesh& mesh) {
+  const Aabb<double> box = box_of(mesh);
+  const Vec3 size_m = box.max - box.min;
+  if (std::max({size_m.x, size_m.y, size_m.z}) <= longest_object_m) return {};
+  return {"the object is " + size_text(size_m) + " in size; is it in another unit (unit_m)?"};
+}
+
+}  // namespace dcem::io

@@ -1,0 +1,22 @@
+#pragma once
+/// Whether a mesh looks as if it were meant in another unit or another orientation. Private to dcem::io.
+#include <string>
+#include <vector>
+
+#include "dcem/geometry/triangle_mesh.hpp"
+
+namespace dcem::io {
+
+/// What looks odd about a scene, a sentence each, in metres and with z up as it was read:
+/// * millimetres taken for metres: 2 km high or more, with edges of half a kilometre or more;
+/// * degrees of longitude and latitude taken for metres: less than 2 m wide, and ten times as high;
+/// * another axis up: flattest along y by a factor of four, with most of its area facing along y, and higher than
+///   150 m.
+/// Meshes of fewer than twenty triangles are taken as they are. A room read with the wrong axis up is not noticed: it
+/// may be as high as it is wide.
+std::vector<std::string> mesh_doubts(const TriangleMesh& mesh);
+
+/// The same of an object that moves: longer than 500 m.
+std::vector<std::string> object_doubts(const TriangleMesh& mesh);
+
+}  // namespace dcem::io
