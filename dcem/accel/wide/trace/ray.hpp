@@ -157,7 +157,7 @@ template <int lane>
 }
 /// What is left of numbers when their rounded ones are taken away.
 [[gnu::always_inline]] inline Float4 remainder(const Double4& value, const Float4& rounded) {
-#if defined(__AVX__)
+#if defined(__AVX__) && !defined(__clang__)
   return narrowed(value - __builtin_ia32_cvtps2pd256(rounded));  // g++ 12 makes four steps of the portable form
 #else
   return narrowed(value - __builtin_convertvector(rounded, Double4));

@@ -220,11 +220,11 @@ std::vector<std::string> PlacementWatch::warnings() const {
     lines.push_back(file_ + ": " + sighting.subject + " " + sighting.detail + " (" + frame_ranges(sighting.frames) +
                     ")");
   }
-  for (const auto& [problem, count] : named) {
-    if (count <= most_named) continue;
+  for (const auto& entry : named) {
+    if (entry.second <= most_named) continue;
     const auto first = std::find_if(sightings_.begin(), sightings_.end(),
-                                    [&](const Sighting& sighting) { return sighting.problem == problem; });
-    lines.push_back(file_ + ": " + std::to_string(count - most_named) + " more are placed as " + first->subject +
+                                    [&](const Sighting& sighting) { return sighting.problem == entry.first; });
+    lines.push_back(file_ + ": " + std::to_string(entry.second - most_named) + " more are placed as " + first->subject +
                     " is");
   }
   return lines;
