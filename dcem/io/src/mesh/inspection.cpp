@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dcem/core/units.hpp"
 #include "dcem/em/surface/material_table.hpp"
 #include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/io/input_error.hpp"
