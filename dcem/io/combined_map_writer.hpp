@@ -36,7 +36,8 @@ void write_sinr_npz(AtomicFile& file, const CombinedMap& map);
 void write_best_server_asc(AtomicFile& file, const CombinedMap& map);
 void write_sinr_asc(AtomicFile& file, const CombinedMap& map);
 
-/// Pictures. All transmitters have labels; the best server has a colour for each of them. `time_s` goes into the title
+/// Pictures. The best server has a colour for each transmitter; colours of the SINR go from −10 to 30 dB, so that maps
+/// can be compared. `time_s` goes into the title
 /// where it is given. `has_noise` is for the names alone: SINR, or SIR.
 HeatMap best_server_picture(const CombinedMap& map, const Scene& scene, const Frame& frame, double frequency_hz,
                             std::optional<double> time_s = {});

@@ -37,8 +37,8 @@ void write_map_asc(AtomicFile& file, const RadioMap& map);
 
 /// The picture of a map: the incoherent power in dBm at each point. It is the mean over a few wavelengths, which is all
 /// that points further apart than half a wavelength can show. Obstructed points are hatched; walls are where the
-/// scene, as it stands now, meets the plane of the grid; every transmitter of the scene has its symbol, the map's own
-/// alone has a label. `time_s` goes into the title where it is given.
+/// scene, as it stands now, meets the plane of the grid; every transmitter of the scene has its symbol and its name.
+/// `time_s` goes into the title where it is given.
 HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame, double frequency_hz,
                     std::optional<double> time_s = {});
 

@@ -15,6 +15,9 @@
 namespace dcem::io {
 namespace {
 
+/// What links can use: below, none decodes; above, all do. The same in every map, so that maps can be compared.
+constexpr ValueRange sinr_colours_db{-10.0, 30.0};
+
 using Value = std::optional<double> CombinedMapPoint::*;
 
 constexpr std::size_t longest_category = 40;
@@ -58,8 +61,7 @@ std::vector<double> values_of(const CombinedMap& map, Get&& get) {
 }
 
 HeatMap picture_without_values(const CombinedMap& map, const MapOccasion& occasion, const std::string& what) {
-  HeatMap picture =
-      empty_map_picture(map.grid(), occasion, map.places.id() + ": " + what, [](const std::string&) { return true; });
+  HeatMap picture = empty_map_picture(map.grid(), occasion, map.places.id() + ": " + what);
   for (const CombinedMapPoint& point : map.points) picture.hatched.push_back(point.obstructed ? 1 : 0);
   return picture;
 }
@@ -116,6 +118,7 @@ HeatMap sinr_picture(const CombinedMap& map, const Scene& scene, const Frame& fr
   picture.values = values_of(map, [](const CombinedMapPoint& point) { return point.sinr_db; });
   picture.label = ratio;
   picture.unit = "dB";
+  picture.range = sinr_colours_db;
   return picture;
 }
 

@@ -107,8 +107,7 @@ HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame,
                     std::optional<double> time_s) {
   const MapOccasion occasion{scene, frame, frequency_hz, time_s};
   HeatMap picture = empty_map_picture(map.grid(), occasion,
-                                      map.places.id() + ", transmitter " + map.transmitter + ": incoherent power",
-                                      [&](const std::string& id) { return id == map.transmitter; });
+                                      map.places.id() + ", transmitter " + map.transmitter + ": incoherent power");
   picture.label = "incoherent received power";
   for (const RadioMapPoint& point : map.points) {
     picture.values.push_back(point.statistics.power_incoherent_dbm.value_or(no_value_db));
@@ -128,8 +127,9 @@ std::string map_title_end(const ReceiverGrid& grid, const MapOccasion& occasion)
   return title;
 }
 
-HeatMap map_picture_ground(const ReceiverGrid& grid, const MapOccasion& occasion) {
+HeatMap empty_map_picture(const ReceiverGrid& grid, const MapOccasion& occasion, const std::string& what) {
   HeatMap picture;
+  picture.title = what + map_title_end(grid, occasion);
   picture.origin_x_m = grid.origin_m.x;
   picture.origin_y_m = grid.origin_m.y;
   picture.spacing_x_m = grid.spacing_m[0];
@@ -139,6 +139,10 @@ HeatMap map_picture_ground(const ReceiverGrid& grid, const MapOccasion& occasion
   picture.values.reserve(grid.size());
   picture.hatched.reserve(grid.size());
   picture.walls_m = walls_at_height_m(occasion.scene, grid.origin_m.z);
+  for (const Device& device : occasion.scene.transmitters()) {
+    const DeviceState state = occasion.scene.device_state(device, occasion.frame);
+    if (state.present) picture.transmitters.push_back({state.position_m.x, state.position_m.y, device.id});
+  }
   return picture;
 }
 
