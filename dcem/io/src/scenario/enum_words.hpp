@@ -17,6 +17,8 @@ struct EnumWord {
   Enum value;
   const char* word;
 };
+template <typename Enum>
+EnumWord(Enum, const char*) -> EnumWord<Enum>;  // clang 14 deduces none for aggregates
 
 /// Words in the order in which a message lists them; `otherwise`: what results say of a value for which files have no
 /// word.
