@@ -220,30 +220,54 @@ def with_defaults(schema, scenario):
     return full
 
 
+def box(name, material, motion):
+    return {"id": name, "box_m": [0.4, 0.3, 1.8], "material": material, "motion": motion}
+
+
 def plain_scenario(more):
+    """As few keys as a scenario can have that leaves most of the others to their defaults."""
     return {"format": "dcem-scenario/1", "scene": {"obj": "../good/room.obj"}, "frequency_hz": 28e9,
-            "itu": {}, "time": {}, "tree": {}, "materials": {"metal": {"relative_permittivity": 5, "scattering": 0.5, "scattering_pattern": "backscattering"}},
+            "itu": {}, "time": {}, "tree": {},
+            "materials": {"rough": {"relative_permittivity": 5, "scattering": 0.5, "scattering_pattern": "backscattering"},
+                          "mirror": {"relative_permittivity": 4}, "dull": {"relative_permittivity": 4, "scattering": 0.3},
+                          "smooth": {"relative_permittivity": 3},
+                          "plaster": {"layers": [{"relative_permittivity": 3, "thickness_m": 0.1}]}},
+            "objects": [{"id": "plate", "obj": "plate.obj", "motion": {"position_m": [2, 2.5, 1.2]}},
+                        box("a", "rough", {"position_m": [1, 4, 0]}), box("b", "smooth", {"position_m": [3, 1, 0]}),
+                        box("c", "mirror", {"waypoints": [{"t_s": 0, "position_m": [1.5, 3, 0]}]}),
+                        box("d", "dull", {"position_m": [2.5, 3.5, 0]})],
             "transmitters": [{"id": "tx", "motion": {"position_m": [0.5, 0.5, 2.5]}, "power_dbm": 20,
-                              "antenna": {"array": {}}}],
-            "receivers": [{"id": "rx", "motion": {"waypoints": [{"t_s": 0, "position_m": [3.5, 4.5, 1.5]}]}},
+                              "antenna": {"array": {"rows": 2}}},
+                             {"id": "list", "positions_m": [[1.5, 0.5, 2.4]], "power_w": 1, "antenna": {"array": {"columns": 2}}}],
+            "receivers": [{"id": "rx", "motion": {"position_m": [3.5, 4.5, 1.5]}},
                           {"id": "area", "grid": {"origin_m": [0.5, 0.5, 1], "spacing_m": [1, 1], "count": [2, 3]}}],
             "noise": {"bandwidth_hz": 1e6}, **more}
 
 
 def drop_what_does_not_go(full):
     """Keys that do not go with those of plain_scenario, not even with their defaults."""
-    owners = full["transmitters"] + full["receivers"] + [full["materials"]["metal"], full["receivers"][0]["motion"]]
-    for owner in owners:
-        angles = ("yaw_deg", "pitch_deg", "roll_deg") if "waypoints" in owner else ()
-        for key in ("sees_own_body", "roughness_rms_m", *angles):
+    def drop(owner, *keys):
+        for key in keys:
             owner.pop(key, None)
+
+    for device in full["transmitters"] + full["receivers"]:
+        drop(device, "sees_own_body")
+    for thing in full["objects"]:
+        drop(thing, *(("up", "unit_m") if "box_m" in thing else ()))
+        drop(thing["motion"], *(("yaw_deg", "pitch_deg", "roll_deg") if "waypoints" in thing["motion"] else ()))
+    lobes = ("scattering_lobe", "scattering_back_lobe", "scattering_forward_share")
+    drop(full["materials"]["rough"], "roughness_rms_m")
+    drop(full["materials"]["smooth"], "scattering", "scattering_pattern", *lobes)
+    drop(full["materials"]["mirror"], "roughness_rms_m", *lobes)
+    drop(full["materials"]["dull"], "roughness_rms_m", *lobes)
+    drop(full["materials"]["plaster"], "conductivity_s_per_m", "roughness_rms_m", *lobes)
 
 
 def check_defaults(program, schema):
     """A key left out, and the same key with what is said to be its default, give the same files."""
     for name, command, more in (
             ("plain", "run", {"propagation": {"max_transmissions": 0}, "output": {}}),
-            ("blocks", "run", {"propagation": {"max_reflections": 1, "diffraction": {}, "diffuse": {}, "atmosphere": {},
+            ("blocks", "run", {"propagation": {"max_reflections": 1, "discovery": "sampled", "diffraction": {}, "diffuse": {}, "atmosphere": {},
                                                "path_loss": {"model": "close_in"}},
                                "output": {"pdp": {}, "doppler": {}, "paths": True}}),
             ("map", "map", {"propagation": {"max_reflections": 1}})):
