@@ -396,18 +396,23 @@ def check_examples(schema, validator_of):
             check(validator_of({**rule, "$defs": schema["$defs"]}).is_valid(value), f"{block}.{key}: {value} may not stand there")
 
 
-def test_schema(program, source):
+def find_validator():
+    """The validator of python3-jsonschema, if need be with the system's Python; skips where there is none."""
     try:
         import jsonschema
+        return jsonschema.Draft202012Validator
     except ImportError:
         other = "/usr/bin/python3"
         if os.path.exists(other) and os.path.realpath(sys.executable) != os.path.realpath(other):
             os.execv(other, [other, *sys.argv])
         print("skipped: no Python with jsonschema (apt install python3-jsonschema)")
         sys.exit(77)
+
+
+def test_schema(program, source, validator_of):
     schema = json.loads(program.text("schema"))
-    jsonschema.Draft202012Validator.check_schema(schema)
-    validator = jsonschema.Draft202012Validator(schema)
+    validator_of.check_schema(schema)
+    validator = validator_of(schema)
     shipped = [file for folder in ("data", "bench", "examples") for file in sorted((source / folder).rglob("*.json"))
                if '"dcem-scenario/1"' in file.read_text(encoding="utf-8") and not file.name.endswith(".schema.json")]
     for file in shipped:
@@ -420,7 +425,7 @@ def test_schema(program, source):
         for what, path, wrong in slips(schema, scenario):
             check(not validator.is_valid(wrong), f"{path_text(path)}: {what}: admitted")
             count += 1
-    check_examples(schema, jsonschema.Draft202012Validator)
+    check_examples(schema, validator_of)
     # Cases that are written by hand: no program made them from the schema.
     by_hand = refused = 0
     for file in sorted((source / "tests/invalid_input/cases").glob("*/scenario.json")):
@@ -440,9 +445,10 @@ def main():
     if len(sys.argv) != 4 or sys.argv[1] not in ("program", "schema"):
         sys.exit(__doc__)
     source = Path(sys.argv[3]).resolve()
+    judge = [] if sys.argv[1] == "program" else [find_validator()]
     program = Program(os.path.realpath(sys.argv[2]), source)
     try:
-        (test_program if sys.argv[1] == "program" else test_schema)(program, source)
+        (test_schema if judge else test_program)(program, source, *judge)
     finally:
         shutil.rmtree(program.folder)
     print("\n".join(failure.strip() for failure in failures[:40]))

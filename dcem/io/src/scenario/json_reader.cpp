@@ -6,6 +6,7 @@
 
 #include "dcem/core/error.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/scenario/limits.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
 namespace dcem::io {
@@ -89,10 +90,9 @@ std::string JsonValue::line() const {
 }
 
 std::string JsonValue::identifier() const {
-  constexpr std::size_t longest = 200;
   const std::string name = text();
   const bool plain = is_printable(name) && name.find_first_of("/\\") == std::string::npos;
-  if (!plain || name.size() > longest) fail_expected();
+  if (!plain || name.size() > longest_identifier_bytes) fail_expected();
   return name;
 }
 

@@ -107,7 +107,7 @@ void read_plots(const JsonValue& value, OutputSettings& output) {
   if (value.is_boolean()) return;
   const JsonObject object = value.object();
   output.plots_max_links = object.count("max_links", output.plots_max_links);
-  if (object.has("pdp_frame")) output.plots_pdp_frame = object.count("pdp_frame", 0);
+  if (const auto frame = object.find("pdp_frame")) output.plots_pdp_frame = static_cast<std::size_t>(frame->integer());
 }
 
 /// `true`, or a list of the endings of the files that are wanted.
@@ -159,7 +159,7 @@ void read_orders(const JsonObject& file, PropagationSettings& settings) {
   settings.max_reflections = order("max_reflections", settings.max_reflections);
   settings.max_transmissions = order("max_transmissions", settings.max_transmissions);
   settings.max_diffractions = order("max_diffractions", settings.max_diffractions);
-  if (file.has("max_interactions")) settings.max_interactions = order("max_interactions", 0);
+  if (const auto value = file.find("max_interactions")) settings.max_interactions = static_cast<int>(value->integer());
 }
 
 void read_fields(const JsonObject& file, PropagationSettings& settings) {
@@ -218,8 +218,8 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
   if (file) {
     read_orders(*file, settings);
     read_fields(*file, settings);
-    if (file->has("rays_steady")) {
-      settings.rays_steady = static_cast<std::uint32_t>(file->integer("rays_steady", 0));
+    if (const auto value = file->find("rays_steady")) {
+      settings.rays_steady = static_cast<std::uint32_t>(value->integer());
     }
   }
   if (const auto value = chosen(command_line, "--cache", file, "cache")) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "dcem/io/src/scenario/limits.hpp"
+
 namespace dcem::io::keys {
 
 namespace {
@@ -49,7 +51,8 @@ std::string form_text(const ValueRule& rule, bool with_unit, bool alone) {
     case ValueKind::line:
       return "text without control characters";
     case ValueKind::identifier:
-      return "a name without slashes and control characters, at most 200 bytes";
+      return "a name without slashes and control characters, at most " + std::to_string(longest_identifier_bytes) +
+             " bytes";
     case ValueKind::file:
       return "the name of a file";
     case ValueKind::list:

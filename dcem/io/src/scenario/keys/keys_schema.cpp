@@ -2,6 +2,7 @@
 
 #include "dcem/io/scenario_keys.hpp"
 #include "dcem/io/src/scenario/keys/blocks.hpp"
+#include "dcem/io/src/scenario/limits.hpp"
 
 namespace dcem::io {
 
@@ -77,7 +78,7 @@ Schema schema_of(const ValueRule& rule) {
       return text_schema(line_pattern);
     case ValueKind::identifier: {
       Schema schema = text_schema(identifier_pattern);
-      schema["maxLength"] = 200;
+      schema["maxLength"] = longest_identifier_bytes;
       return schema;
     }
     case ValueKind::list:
