@@ -34,4 +34,5 @@ install(FILES "${PROJECT_BINARY_DIR}/dcemConfig.cmake" "${PROJECT_BINARY_DIR}/dc
 if(DCEM_BUILD_IO)
   install(FILES cmake/FindLibZip.cmake DESTINATION "${package_dir}")
 endif()
-install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES LICENSE docs/scenario_reference.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES data/dcem-scenario-1.schema.json DESTINATION "${CMAKE_INSTALL_DATADIR}/dcem")

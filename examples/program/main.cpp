@@ -25,10 +25,13 @@ const std::map<std::string, io::ProgressMode> progress_modes{
     {"auto", io::ProgressMode::automatic}, {"always", io::ProgressMode::always}, {"never", io::ProgressMode::never}};
 const std::map<std::string, io::UpAxis> up_axes{{"y", io::UpAxis::y}, {"z", io::UpAxis::z}};
 
+constexpr const char* command_names = "run, map, verify, inspect, compare, keys or schema";
+
 struct Options {
   ScenarioOptions scenario;
   InspectOptions inspect;
   CompareOptions compare;
+  KeysOptions keys;
 };
 
 // An option that takes one of a few words.
@@ -119,13 +122,16 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
       ->type_name("NAME");
 }
 
+void add_keys_options(CLI::App& command, KeysOptions& options) {
+  command.add_option("word", options.word, "Only keys whose path or meaning holds this")->type_name("WORD");
+  command.add_flag("--markdown", options.markdown, "All of them as a page in Markdown")->excludes("word");
+}
+
 // Commands of later versions are known by name, so that the answer is not "unknown".
 void add_absent_command(CLI::App& app, const std::string& name, const std::string& does) {
   CLI::App* command = app.add_subcommand(name, does + " (not in this version)");
   command->allow_extras();
-  command->callback([name] {
-    throw UsageError("'dcem " + name + "' is not in this version", "run, map, verify, inspect or compare");
-  });
+  command->callback([name] { throw UsageError("'dcem " + name + "' is not in this version", command_names); });
 }
 
 void add_commands(CLI::App& app, Options& options) {
@@ -151,6 +157,10 @@ void add_commands(CLI::App& app, Options& options) {
   CLI::App* compare = app.add_subcommand("compare", "How far two maps of the same places are apart");
   add_compare_options(*compare, options.compare);
   compare->callback([&] { compare_maps(options.compare); });
+  CLI::App* keys = app.add_subcommand("keys", "The keys of a scenario: meaning, range, unit, default, example");
+  add_keys_options(*keys, options.keys);
+  keys->callback([&] { print_keys(options.keys); });
+  app.add_subcommand("schema", "The JSON Schema (2020-12) of a scenario")->callback(print_schema);
   add_absent_command(app, "import", "Make scenarios from SUMO, OpenStreetMap or GEMV2 data");
 }
 
@@ -158,8 +168,7 @@ void add_commands(CLI::App& app, Options& options) {
 void check_command(const CLI::App& app, int argument_count, char** arguments) {
   if (argument_count < 2 || arguments[1][0] == '-') return;
   const auto commands = app.get_subcommands([&](const CLI::App* command) { return command->check_name(arguments[1]); });
-  if (commands.empty())
-    throw UsageError("'" + std::string(arguments[1]) + "' is no command", "run, map, verify, inspect or compare");
+  if (commands.empty()) throw UsageError("'" + std::string(arguments[1]) + "' is no command", command_names);
 }
 
 int fail(std::string message, int exit_code) {

@@ -55,6 +55,11 @@ struct CompareOptions {
   std::string folder;  ///< empty: out/compare
 };
 
+struct KeysOptions {
+  std::string word;  ///< empty: all keys
+  bool markdown = false;
+};
+
 // The commands. They return when everything is written; errors are thrown.
 
 void run_scenario(const ScenarioOptions& options);
@@ -62,5 +67,7 @@ void map_scenario(const ScenarioOptions& options);
 void verify_scenario(const ScenarioOptions& options);
 void inspect_scene(const InspectOptions& options);
 void compare_maps(const CompareOptions& options);
+void print_keys(const KeysOptions& options);
+void print_schema();
 
 }  // namespace dcem::program

@@ -206,7 +206,10 @@ TEST_CASE("damaged files are named with file, line and element") {
   CHECK(files.error(triangle_obj + "f 1 2 3\nv 1 -inf 0\n").starts_with("a.obj:5: v: '-inf'"));
   CHECK(files.error(triangle_obj + "f 1 2 \\\n3\n").starts_with("a.obj:4: the line goes on"));
   CHECK(files.error("mtllib m.mtl\n" + triangle_obj + "f 1 2 3\n", "newmtl a\nem_reflecton 1\n") ==
-        "m.mtl:2: em_reflecton: unknown key; the nearest known one is 'em_reflection'");
+        "m.mtl:2: em_reflecton: unknown key (did you mean 'em_reflection'?); expected one of em_model, em_itu, "
+        "em_relative_permittivity, em_conductivity_s_per_m, em_thickness_m, em_reflection, em_penetration_loss_db, "
+        "em_foliage_db_per_m, em_roughness_rms_m, em_scattering, em_scattering_pattern, em_scattering_lobe, "
+        "em_scattering_back_lobe, em_scattering_forward_share");
   CHECK_THROWS_AS(io::read_obj(files.folder / "absent.obj"), io::InputError);
   CHECK_THROWS_AS(io::read_obj(files.folder.path()), io::InputError);
 }

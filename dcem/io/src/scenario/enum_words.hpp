@@ -2,10 +2,15 @@
 /// The words of enumerations in scenarios and results: one table for each, to read and to write by. Private to
 /// dcem::io.
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dcem/accel/wide/settings.hpp"
+#include "dcem/em/antenna/polarization.hpp"
+#include "dcem/em/surface/effective_roughness.hpp"
+#include "dcem/io/obj_reader.hpp"
 #include "dcem/io/scenario.hpp"
 #include "dcem/io/src/scenario/json_reader.hpp"
 #include "dcem/sim/settings.hpp"
@@ -18,7 +23,7 @@ struct EnumWord {
   const char* word;
 };
 template <typename Enum>
-EnumWord(Enum, const char*) -> EnumWord<Enum>;  // clang 14 deduces nothing for aggregates
+EnumWord(Enum, const char*) -> EnumWord<Enum>;  // clang 14 deduces none for aggregates
 
 /// Words in the order in which a message lists them; `otherwise`: what results say of a value for which files have no
 /// word.
@@ -74,6 +79,25 @@ struct EnumWords<WideQuality> {
                                        EnumWord{WideQuality::high, "high"}};
 };
 
+template <>
+struct EnumWords<UpAxis> {
+  static constexpr std::array in_files{EnumWord{UpAxis::z, "z"}, EnumWord{UpAxis::y, "y"}};
+};
+/// A slant has no word but an angle.
+template <>
+struct EnumWords<PolarizationKind> {
+  static constexpr std::array in_files{
+      EnumWord{PolarizationKind::vertical, "V"}, EnumWord{PolarizationKind::horizontal, "H"},
+      EnumWord{PolarizationKind::right_circular, "RHC"}, EnumWord{PolarizationKind::left_circular, "LHC"},
+      EnumWord{PolarizationKind::dual, "VH"}};
+};
+template <>
+struct EnumWords<ScatteringPattern> {
+  static constexpr std::array in_files{EnumWord{ScatteringPattern::lambertian, "lambertian"},
+                                       EnumWord{ScatteringPattern::directive, "directive"},
+                                       EnumWord{ScatteringPattern::backscattering, "backscattering"}};
+};
+
 template <typename Enum>
 const char* word_of(Enum value) {
   for (const EnumWord<Enum>& entry : EnumWords<Enum>::in_files) {
@@ -83,16 +107,28 @@ const char* word_of(Enum value) {
   return "";
 }
 
-/// Throws InputError for any other word.
 template <typename Enum>
-Enum read_word(const JsonValue& value) {
+std::vector<std::string> words_of() {
   std::vector<std::string> words;
   for (const EnumWord<Enum>& entry : EnumWords<Enum>::in_files) words.emplace_back(entry.word);
-  const std::string word = value.one_of(words);
+  return words;
+}
+
+/// What a word of a file means; absent for any other.
+template <typename Enum>
+std::optional<Enum> meaning_of(std::string_view word) {
   for (const EnumWord<Enum>& entry : EnumWords<Enum>::in_files) {
     if (word == entry.word) return entry.value;
   }
-  value.fail_expected("one of its words");  // not reached: one_of has checked
+  return std::nullopt;
+}
+
+/// Throws InputError for any other word.
+template <typename Enum>
+Enum read_word(const JsonValue& value) {
+  const std::optional<Enum> meaning = meaning_of<Enum>(value.word());
+  if (!meaning) value.fail_expected();  // the rule of the key has other words: a defect
+  return *meaning;
 }
 
 /// The same where the key may be missing.

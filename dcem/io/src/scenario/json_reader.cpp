@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "dcem/core/error.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/scenario/limits.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
 namespace dcem::io {
@@ -17,161 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Deeper than any scenario; keeps paths short whatever the input.
-constexpr std::size_t deepest_nesting = 30;
-
-/// Walks through a text and counts the lines passed.
-class LineCountingIterator {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-
-  LineCountingIterator(const char* position, std::size_t* line) : position_(position), line_(line) {}
-
-  reference operator*() const { return *position_; }
-  LineCountingIterator& operator++() {
-    if (*position_++ == '\n') ++*line_;
-    return *this;
-  }
-  LineCountingIterator operator++(int) {
-    const LineCountingIterator before = *this;
-    ++*this;
-    return before;
-  }
-  friend bool operator==(const LineCountingIterator& a, const LineCountingIterator& b) {
-    return a.position_ == b.position_;
-  }
-
- private:
-  const char* position_;
-  std::size_t* line_;
-};
-
-/// Follows the parser and notes the line of every key and of every object in an array.
-class PlaceRecorder {
- public:
-  PlaceRecorder(const std::string& file, const std::size_t& line) : file_(file), line_(line) {}
-
-  bool operator()(int, json::parse_event_t event, const json& parsed) {
-    switch (event) {
-      case json::parse_event_t::object_start:
-      case json::parse_event_t::array_start:
-        begin_value();
-        if (levels_.size() >= deepest_nesting) throw InputError(file_, line_, "nested too deeply; expected a scenario");
-        levels_.push_back({event == json::parse_event_t::array_start, 0, {}, {}, current_path()});
-        // Not for arrays in arrays: a list of a million points would be noted point by point.
-        if (event == json::parse_event_t::object_start) lines_.try_emplace(levels_.back().path, line_);
-        break;
-      case json::parse_event_t::key:
-        enter_key(parsed.get_ref<const std::string&>());
-        break;
-      case json::parse_event_t::value:
-        begin_value();
-        break;
-      case json::parse_event_t::object_end:
-      case json::parse_event_t::array_end:
-        levels_.pop_back();
-        break;
-    }
-    return true;
-  }
-
-  std::map<std::string, std::size_t> take_lines() { return std::move(lines_); }
-
- private:
-  struct Level {
-    bool is_array;
-    std::size_t values;  // begun so far
-    std::string key;     // the last one
-    std::set<std::string> keys;
-    std::string path;
-  };
-
-  void begin_value() {
-    if (!levels_.empty()) ++levels_.back().values;
-  }
-
-  std::string current_path() const {
-    if (levels_.empty()) return {};
-    const Level& level = levels_.back();
-    if (level.is_array) return level.path + "[" + std::to_string(level.values - 1) + "]";
-    return level.path.empty() ? level.key : level.path + "." + level.key;
-  }
-
-  void enter_key(const std::string& key) {
-    Level& level = levels_.back();
-    level.key = key;
-    if (!level.keys.insert(key).second) {
-      const std::string where = level.path.empty() ? "" : printable(level.path) + ": ";
-      throw InputError(file_, line_, where + "key " + in_quotes(key) + " stands twice; expected it once");
-    }
-    lines_[current_path()] = line_;
-  }
-
-  const std::string& file_;
-  const std::size_t& line_;
-  std::vector<Level> levels_;
-  std::map<std::string, std::size_t> lines_;
-};
-
-/// The parser's words without its own name and number: "syntax error while parsing value - unexpected end of input".
-std::string parser_words(const std::string& message) {
-  const std::size_t bracket = message.find("] ");
-  std::string words = bracket == std::string::npos ? message : message.substr(bracket + 2);
-  const std::size_t position = words.find("column ");
-  if (position != std::string::npos) {
-    const std::size_t colon = words.find(": ", position);
-    if (colon != std::string::npos) words.erase(0, colon + 2);
-  }
-  return printable(words.substr(0, words.find("; ")));  // behind it: what the parser would have liked
-}
-
 }  // namespace
-
-struct JsonDocument::Content {
-  json value;
-  std::map<std::string, std::size_t> lines;
-};
-
-// ---------------------------------------------------------------------------------------------------------------------
-
-JsonDocument::JsonDocument(const std::filesystem::path& file)
-    : name_(file.string()), content_(std::make_unique<Content>()) {
-  const std::string text = read_text_file(file, "expected a scenario in JSON");
-  std::size_t line = 1;
-  PlaceRecorder recorder(name_, line);
-  try {
-    content_->value = json::parse(LineCountingIterator(text.data(), &line),
-                                  LineCountingIterator(text.data() + text.size(), &line), std::ref(recorder));
-  } catch (const json::exception& error) {
-    throw InputError(name_, line, parser_words(error.what()) + "; expected well-formed JSON");
-  }
-  content_->lines = recorder.take_lines();
-}
-
-JsonDocument::JsonDocument(std::string name, json value)
-    : name_(std::move(name)), content_(std::make_unique<Content>(Content{std::move(value), {}})) {}
-
-JsonDocument::~JsonDocument() = default;
-
-JsonValue JsonDocument::root() const {
-  return {*this, content_->value, ""};
-}
-
-std::size_t JsonDocument::line_of(std::string path) const {
-  while (true) {
-    const auto found = content_->lines.find(path);
-    if (found != content_->lines.end()) return found->second;
-    if (path.empty()) return 0;
-    const std::size_t cut = path.find_last_of(".[");
-    path.resize(cut == std::string::npos ? 0 : cut);
-  }
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
 
 void JsonValue::fail(const std::string& what) const {
   throw InputError(place(), (path_.empty() ? "" : printable(path_) + ": ") + what);
@@ -189,8 +33,27 @@ void JsonValue::fail_expected(const std::string& expectation) const {
        "; expected " + expectation);
 }
 
-void JsonValue::not_in_this_version(const std::string& expectation) const {
-  fail("not in this version; expected " + expectation);
+void JsonValue::fail_expected() const {
+  DCEM_ASSERT(forms_ != nullptr);
+  if (is_later()) fail("not in this version; expected " + keys::text_of(*forms_));
+  fail_expected(keys::text_of(*forms_));
+}
+
+/// Whether the value is one that a later version offers; asked where no form of this version holds it.
+bool JsonValue::is_later() const {
+  const keys::ValueRule* later = keys::find_form(*forms_, keys::ValueKind::later);
+  if (later == nullptr || later->words.empty()) return later != nullptr;
+  return value_->is_string() &&
+         std::find(later->words.begin(), later->words.end(), value_->get<std::string>()) != later->words.end();
+}
+
+bool JsonValue::may_be(keys::ValueKind kind) const {
+  return forms_ != nullptr && keys::find_form(*forms_, kind) != nullptr;
+}
+
+const keys::ValueRule& JsonValue::rule(keys::ValueKind kind) const {
+  DCEM_ASSERT(may_be(kind));
+  return *keys::find_form(*forms_, kind);
 }
 
 bool JsonValue::is_null() const {
@@ -210,116 +73,124 @@ bool JsonValue::is_boolean() const {
 }
 
 bool JsonValue::boolean() const {
-  if (!value_->is_boolean()) fail_expected("true or false");
+  const std::vector<std::string>& words = rule(keys::ValueKind::boolean).words;
+  if (!value_->is_boolean() || (!words.empty() && words.front() != value_->dump())) fail_expected();
   return value_->get<bool>();
 }
 
 std::string JsonValue::text() const {
-  if (!value_->is_string() || value_->get_ref<const std::string&>().empty()) fail_expected("text that is not empty");
+  if (!value_->is_string() || value_->get_ref<const std::string&>().empty()) fail_expected();
   return value_->get<std::string>();
 }
 
 std::string JsonValue::line() const {
-  if (!value_->is_string() || !is_printable(text())) fail_expected("text without control characters");
-  return text();
+  const std::string text = this->text();
+  if (!is_printable(text)) fail_expected();
+  return text;
 }
 
 std::string JsonValue::identifier() const {
-  constexpr std::size_t longest = 200;
   const std::string name = text();
   const bool plain = is_printable(name) && name.find_first_of("/\\") == std::string::npos;
-  if (!plain || name.size() > longest)
-    fail_expected("a name without slashes and control characters, at most 200 bytes");
+  if (!plain || name.size() > longest_identifier_bytes) fail_expected();
   return name;
 }
 
-std::string JsonValue::one_of(const std::vector<std::string>& choices) const {
-  if (value_->is_string()) {
-    const auto found = std::find(choices.begin(), choices.end(), value_->get_ref<const std::string&>());
-    if (found != choices.end()) return *found;
-  }
-  std::string expectation;
-  for (std::size_t index = 0; index < choices.size(); ++index) {
-    expectation += (index == 0 ? "" : index + 1 < choices.size() ? ", " : " or ") + choices[index];
-  }
-  fail_expected(expectation);
+std::string JsonValue::word() const {
+  const std::vector<std::string>& words = rule(keys::ValueKind::word).words;
+  if (!value_->is_string()) fail_expected();
+  const auto found = std::find(words.begin(), words.end(), value_->get_ref<const std::string&>());
+  if (found == words.end()) fail_expected();
+  return *found;
 }
 
-double JsonValue::number(const NumberRange& range) const {
-  if (!value_->is_number()) fail_expected(range.text());
+double JsonValue::number() const {
+  const NumberRange& range = rule(keys::ValueKind::number).range;
+  if (!value_->is_number()) fail_expected();
   const double value = value_->get<double>();
-  if (!std::isfinite(value) || !range.holds(value)) fail_expected(range.text());
+  if (!std::isfinite(value) || !range.holds(value)) fail_expected();
   return value;
 }
 
-long long JsonValue::integer(long long minimum, long long maximum) const {
-  const std::string expectation = "a whole number from " + std::to_string(minimum) + " to " + std::to_string(maximum);
+long long JsonValue::integer() const {
+  const NumberRange& range = rule(keys::ValueKind::whole_number).range;
+  const auto minimum = static_cast<long long>(range.minimum), maximum = static_cast<long long>(range.maximum);
+  if (!value_->is_number()) fail_expected();
   if (value_->is_number_unsigned() && value_->get<unsigned long long>() > static_cast<unsigned long long>(maximum)) {
-    fail_expected(expectation);
+    fail_expected();
   }
   if (value_->is_number_float()) {
     // 2e3 is a whole number too; beyond 2^53 a double cannot tell one from the next.
     const double real = value_->get<double>();
-    if (!(std::abs(real) <= 9007199254740992.0) || real != std::floor(real)) fail_expected(expectation);
-  } else if (!value_->is_number()) {
-    fail_expected(expectation);
+    if (!(std::abs(real) <= 9007199254740992.0) || real != std::floor(real)) fail_expected();
   }
   const auto value = value_->get<long long>();
-  if (value < minimum || value > maximum) fail_expected(expectation);
+  if (value < minimum || value > maximum) fail_expected();
   return value;
 }
 
-Vec3 JsonValue::vector3(double limit) const {
-  const std::vector<JsonValue> numbers = elements(3, "three numbers [x, y, z]");
-  Vec3 vector(0.0);
-  for (int axis = 0; axis < 3; ++axis) {
-    vector[axis] = numbers[static_cast<std::size_t>(axis)].number({-limit, limit});
-  }
-  return vector;
+Vec3 JsonValue::vector3() const {
+  const std::vector<JsonValue> numbers = elements();
+  DCEM_ASSERT(numbers.size() == 3);
+  return {numbers[0].number(), numbers[1].number(), numbers[2].number()};
 }
 
 std::vector<JsonValue> JsonValue::elements() const {
-  if (!value_->is_array()) fail_expected("an array [...]");
+  const keys::ValueRule& list = rule(keys::ValueKind::list);
+  if (!value_->is_array() || (list.most > 0 && value_->size() != list.most)) fail_expected();
+  if (value_->size() < list.least) fail("empty; expected at least one " + list.noun);
   std::vector<JsonValue> result;
   result.reserve(value_->size());
   for (const json& element : *value_) {
-    result.emplace_back(*document_, element, path_ + "[" + std::to_string(result.size()) + "]");
+    result.emplace_back(*document_, element, path_ + "[" + std::to_string(result.size()) + "]", &list.element);
   }
   return result;
 }
 
-std::vector<JsonValue> JsonValue::elements(std::size_t count, const std::string& expectation) const {
-  if (!value_->is_array() || value_->size() != count) fail_expected(expectation);
-  return elements();
+JsonObject JsonValue::object() const {
+  return object(*rule(keys::ValueKind::block).block);
 }
 
-JsonObject JsonValue::object(const std::vector<std::string>& known_keys) const {
+JsonObject JsonValue::object(const keys::BlockRule& block) const {
+  if (!value_->is_object()) forms_ == nullptr ? fail_expected("an object {...}") : fail_expected();
   std::map<std::string, JsonValue> members;
-  for (auto& [key, value] : entries()) {
-    if (std::find(known_keys.begin(), known_keys.end(), key) == known_keys.end()) {
-      value.fail("unknown key; the nearest known one is '" + nearest_name(key, known_keys) + "'");
-    }
-    members.emplace(key, std::move(value));
+  for (const auto& [key, value] : value_->items()) {
+    const keys::KeyRule* known = keys::find_key(block, key);
+    if (known == nullptr) fail_unknown(block, key);
+    const JsonValue member(*document_, value, child_path(key), &known->forms);
+    if (known->forms.front().kind == keys::ValueKind::later) member.fail_expected();
+    members.emplace(key, member);
   }
-  return {*this, std::move(members)};
+  return {*this, block, std::move(members)};
+}
+
+void JsonValue::fail_unknown(const keys::BlockRule& block, const std::string& key) const {
+  const JsonValue place(*document_, (*value_)[key], child_path(key), nullptr);
+  for (const keys::Elsewhere& other : block.elsewhere) {
+    if (other.key == key) place.fail(other.says);
+  }
+  place.fail("unknown key" + expected_names(key, keys::key_names(block)));
 }
 
 JsonValue JsonValue::member(const std::string& key) const {
   DCEM_ASSERT(value_->is_object() && value_->contains(key));
-  return {*document_, (*value_)[key], child_path(key)};
+  const keys::KeyRule* known = keys::find_key(*rule(keys::ValueKind::block).block, key);
+  DCEM_ASSERT(known != nullptr);
+  return {*document_, (*value_)[key], child_path(key), &known->forms};
 }
 
 std::vector<std::pair<std::string, JsonValue>> JsonValue::entries() const {
-  if (!value_->is_object()) fail_expected("an object {...}");
+  if (!value_->is_object()) fail_expected();
   std::vector<std::pair<std::string, JsonValue>> result;
   for (const auto& [key, value] : value_->items())
-    result.emplace_back(key, JsonValue(*document_, value, child_path(key)));
+    result.emplace_back(key, JsonValue(*document_, value, child_path(key), forms_));
   return result;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 
 std::optional<JsonValue> JsonObject::find(const std::string& key) const {
+  DCEM_ASSERT(keys::find_key(*block_, key) != nullptr);
   const auto member = members_.find(key);
   return member == members_.end() ? std::nullopt : std::optional(member->second);
 }
@@ -330,25 +201,32 @@ JsonValue JsonObject::at(const std::string& key) const {
   return *value;
 }
 
-std::string JsonObject::exactly_one_of(const std::vector<std::string>& keys) const {
-  std::string list, found;
-  std::size_t count = 0;
-  for (const std::string& key : keys) {
-    list += (list.empty() ? "" : ", ") + key;
-    if (has(key)) found = (count++ == 0 ? "" : found + ", ") + key;
+std::string JsonObject::chosen(const std::string& choice) const {
+  const auto rule = std::find_if(block_->choices.begin(), block_->choices.end(),
+                                 [&](const keys::Choice& other) { return other.name == choice; });
+  DCEM_ASSERT(rule != block_->choices.end());
+  std::vector<std::string> found;
+  for (const std::string& key : rule->keys) {
+    if (has(key)) found.push_back(key);
   }
-  if (count != 1) fail("found " + (count == 0 ? "none" : found) + "; expected exactly one of " + list);
-  return found;
+  if (found.size() == 1) return found.front();
+  fail("found " + (found.empty() ? "none" : keys::enumeration(found, ", ")) + "; expected exactly one of " +
+       keys::enumeration(rule->keys, ", "));
 }
 
-double JsonObject::number(const std::string& key, double absent, const NumberRange& range) const {
+double JsonObject::number(const std::string& key, double absent) const {
   const std::optional<JsonValue> value = find(key);
-  return value ? value->number(range) : absent;
+  return value ? value->number() : absent;
 }
 
-long long JsonObject::integer(const std::string& key, long long absent, long long minimum, long long maximum) const {
+long long JsonObject::integer(const std::string& key, long long absent) const {
   const std::optional<JsonValue> value = find(key);
-  return value ? value->integer(minimum, maximum) : absent;
+  return value ? value->integer() : absent;
+}
+
+std::size_t JsonObject::count(const std::string& key, std::size_t absent) const {
+  const std::optional<JsonValue> value = find(key);
+  return value ? static_cast<std::size_t>(value->integer()) : absent;
 }
 
 bool JsonObject::boolean(const std::string& key, bool absent) const {

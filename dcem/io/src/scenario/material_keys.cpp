@@ -2,56 +2,25 @@
 #include "dcem/em/surface/itu_p2040.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
 
 #include "dcem/io/input_error.hpp"
-#include "dcem/io/src/text/number_text.hpp"
+#include "dcem/io/src/scenario/enum_words.hpp"
+#include "dcem/io/src/scenario/keys/blocks.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
 namespace dcem::io {
 
 namespace {
 
-constexpr std::string_view prefix = "em_";
 /// What a material with a loss per metre is; no word of the files.
 constexpr const char* foliage_model = "foliage";
-constexpr const char* known_models = "pec, constant, dielectric, itu or multilayer";
 
-/// What may stand under a key. The upper limits only keep out slips of units and of the keyboard.
-struct KeyRule {
-  std::string_view name;
-  std::optional<NumberRange> range = {};  ///< absent: text or layers
-  std::string_view word = {};             ///< a word that may stand there instead of a number
-};
-
-constexpr std::array<KeyRule, 15> rules{{
-    {"model"},
-    {"itu"},
-    {"relative_permittivity", NumberRange{1.0, 1e6}},
-    {"conductivity_s_per_m", NumberRange{0.0, 1e12}},
-    {"thickness_m", NumberRange{0.0, 1e3, true}},
-    {"reflection", NumberRange{0.0, 1.0}},
-    {"penetration_loss_db", NumberRange{0.0, 1e3}},
-    {"scattering", NumberRange{0.0, 1.0}},
-    {"scattering_pattern"},
-    {"scattering_lobe", NumberRange{1.0, highest_scattering_lobe}},
-    {"scattering_back_lobe", NumberRange{1.0, highest_scattering_lobe}},
-    {"scattering_forward_share", NumberRange{0.0, 1.0}},
-    {"roughness_rms_m", NumberRange{0.0, 1.0}},
-    {"foliage_db_per_m", NumberRange{0.0, 1e3}, "auto"},
-    {"layers"},
-}};
-
-const KeyRule* find_rule(const std::string& name) {
-  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const KeyRule& other) { return other.name == name; });
-  return rule == rules.end() ? nullptr : &*rule;
-}
-
-std::string alternative(const KeyRule& rule) {
-  return rule.word.empty() ? std::string() : " or '" + std::string(rule.word) + "'";
+/// The words that may stand under a key: "lambertian, directive or backscattering".
+std::string words_under(const char* key) {
+  return keys::text_of(keys::find_key(keys::material_block(), key)->forms);
 }
 
 /// Makes one material out of its keys.
@@ -99,7 +68,7 @@ class MaterialMaker {
     if (model == "itu") return make_itu();
     if (model == "multilayer") return make_multilayer();
     if (model == foliage_model && !find("model")) return make_foliage();
-    find("model")->fail("unknown model " + in_quotes(model) + "; expected " + known_models);
+    find("model")->fail("unknown model " + in_quotes(model) + "; expected " + words_under("model"));
   }
 
   ConstantReflection make_constant() const {
@@ -145,8 +114,8 @@ class MaterialMaker {
     require(lobes, "scattering_lobe", "goes with scattering_pattern 'directive' or 'backscattering' only");
     require(back, "scattering_back_lobe", "goes with scattering_pattern 'backscattering' only");
     require(back, "scattering_forward_share", "goes with scattering_pattern 'backscattering' only");
-    scattering.lobe = lobe("scattering_lobe").value_or(scattering.lobe);
-    scattering.back_lobe = lobe("scattering_back_lobe").value_or(scattering.back_lobe);
+    scattering.lobe = static_cast<int>(number("scattering_lobe").value_or(scattering.lobe));
+    scattering.back_lobe = static_cast<int>(number("scattering_back_lobe").value_or(scattering.back_lobe));
     scattering.forward_share = number("scattering_forward_share").value_or(scattering.forward_share);
     return scattering;
   }
@@ -156,28 +125,14 @@ class MaterialMaker {
     if (!key) return ScatteringPattern::lambertian;
     if (!find("scattering")) key->fail("goes with 'scattering' only; expected that key, too");
     const std::string& name = std::get<std::string>(key->value);
-    if (name == "directive") return ScatteringPattern::directive;
-    if (name == "backscattering") return ScatteringPattern::backscattering;
-    if (name != "lambertian") {
-      key->fail("unknown pattern " + in_quotes(name) + "; expected lambertian, directive or backscattering");
-    }
-    return ScatteringPattern::lambertian;
+    const auto pattern = meaning_of<ScatteringPattern>(name);
+    if (!pattern) key->fail("unknown pattern " + in_quotes(name) + "; expected " + words_under("scattering_pattern"));
+    return *pattern;
   }
 
   /// Refuses a key that is there although the condition does not hold.
   void require(bool condition, const std::string& name, const std::string& what) const {
     if (const MaterialKey* key = find(name); key && !condition) key->fail(what + "; expected no such key");
-  }
-
-  std::optional<int> lobe(const std::string& name) const {
-    const std::optional<double> value = number(name);
-    if (!value) return std::nullopt;
-    if (*value != std::floor(*value)) {
-      std::string found;
-      append_number(found, *value);
-      find(name)->fail("found " + in_quotes(found) + "; expected a whole number from 1 to 100");
-    }
-    return static_cast<int>(*value);
   }
 
   /// Refuses keys that would have no effect under this model. Any surface may be rough, or scatter.
@@ -231,25 +186,6 @@ void MaterialKey::fail(const std::string& what) const {
   throw InputError(place, printable(spelling) + ": " + what);
 }
 
-const std::vector<std::string>& material_key_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const KeyRule& rule : rules) all.emplace_back(rule.name);
-    return all;
-  }();
-  return names;
-}
-
-std::string_view material_word(const std::string& name) {
-  const KeyRule* rule = find_rule(name);
-  return rule ? rule->word : std::string_view();
-}
-
-const NumberRange* material_number_range(const std::string& name) {
-  const KeyRule* rule = find_rule(name);
-  return rule && rule->range ? &*rule->range : nullptr;
-}
-
 std::string itu_name(const MaterialKey& key) {
   const std::string& given = std::get<std::string>(key.value);
   if (const std::optional<std::string> name = canonical_itu_name(given)) return *name;
@@ -259,24 +195,35 @@ std::string itu_name(const MaterialKey& key) {
            nearest_name(given, names) + "'");
 }
 
+namespace {
+
+/// The number or the word that a line of an MTL file holds.
+std::variant<double, std::string, std::vector<MaterialLayer>> value_from_mtl(const MaterialKey& key,
+                                                                             const keys::KeyRule& rule,
+                                                                             const std::string& text) {
+  const keys::ValueRule* whole = keys::find_form(rule.forms, keys::ValueKind::whole_number);
+  const keys::ValueRule* number = whole ? whole : keys::find_form(rule.forms, keys::ValueKind::number);
+  const keys::ValueRule* word = keys::find_form(rule.forms, keys::ValueKind::word);
+  if (number == nullptr || (word != nullptr && text == word->words.front())) return text;
+  const std::optional<double> value = parse_number(text);
+  if (!value || !number->range.holds(*value) || (whole && *value != std::floor(*value)))
+    key.fail("found " + in_quotes(text) + "; expected " + keys::text_of(rule.forms));
+  return *value;
+}
+
+}  // namespace
+
 MaterialKeys keys_from_mtl(const MtlMaterial& mtl) {
+  const keys::BlockRule& block = keys::material_block();
   MaterialKeys result{mtl.file + ":" + std::to_string(mtl.line), {}};
   for (const auto& [spelling, entry] : mtl.em_keys) {
-    const std::string name = spelling.substr(prefix.size());
+    const std::string name = spelling.substr(block.mtl_prefix.size());
     MaterialKey key{entry.value, mtl.file + ":" + std::to_string(entry.line), spelling};
-    const KeyRule* rule = find_rule(name);
-    if (name == "layers" || (name == "model" && entry.value == "multilayer"))
+    const keys::KeyRule* rule = keys::find_key(block, name);
+    if ((rule && !keys::fits_mtl(block, *rule)) || (name == "model" && entry.value == "multilayer"))
       key.fail("layers do not fit in an MTL file; expected them in the scenario's materials");
-    if (!rule) {
-      key.fail("unknown key; the nearest known one is '" + std::string(prefix) +
-               nearest_name(name, material_key_names()) + "'");
-    }
-    if (rule->range && entry.value != rule->word) {
-      const std::optional<double> number = parse_number(entry.value);
-      if (!number || !rule->range->holds(*number))
-        key.fail("found " + in_quotes(entry.value) + "; expected " + rule->range->text() + alternative(*rule));
-      key.value = *number;
-    }
+    if (!rule) key.fail("unknown key" + expected_names(spelling, keys::mtl_names(block)));
+    key.value = value_from_mtl(key, *rule, entry.value);
     result.keys.emplace(name, std::move(key));
   }
   return result;

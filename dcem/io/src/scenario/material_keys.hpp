@@ -30,13 +30,6 @@ struct MaterialKeys {
   std::map<std::string, MaterialKey> keys;
 };
 
-/// Names of the keys that may stand in a file, without `em_`.
-const std::vector<std::string>& material_key_names();
-/// The numbers that may stand under a key; null where the value is text.
-const NumberRange* material_number_range(const std::string& name);
-/// The word that may stand there instead of a number; empty where there is none.
-std::string_view material_word(const std::string& name);
-
 /// The canonical name of the material of ITU-R P.2040 that a key names. Throws InputError with the nearest one.
 std::string itu_name(const MaterialKey& key);
 

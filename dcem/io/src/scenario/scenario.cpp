@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "dcem/field/medium_loss.hpp"
+#include "dcem/io/src/scenario/keys/blocks.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 #include "dcem/sim/discovery.hpp"
@@ -69,12 +70,21 @@ void warn_of_lost_scattering(const std::filesystem::path& file, Scenario& scenar
   }
 }
 
+/// JSON of another kind: better told than by the first key that is unknown.
+void check_is_scenario(const JsonValue& root) {
+  if (!root.is_object()) root.fail_expected("an object {...}");
+  if (!root.raw().contains("format")) {
+    root.fail("the key 'format' is missing, this is no scenario; expected \"format\": \"dcem-scenario/1\" in it");
+  }
+}
+
 Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root, const JsonObject& command_line) {
-  if (root.at("format").text() != "dcem-scenario/1") root.at("format").fail("unknown format; expected dcem-scenario/1");
-  refuse_later_blocks(root);
+  root.at("format").word();
+  if (const auto schema = root.find("$schema")) schema->text();
+  check_links(root);
   Scenario result;
   result.name = file.stem().string();
-  result.settings.frequency_hz = root.at("frequency_hz").number({0.0, 1e15, true});
+  result.settings.frequency_hz = root.at("frequency_hz").number();
   result.settings.itu = read_itu(root);
   result.settings.tree = read_tree(root);
   result.settings.propagation = read_propagation(root, command_line);
@@ -99,11 +109,9 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
 Scenario load_scenario(const std::filesystem::path& file, const ScenarioOverrides& overrides) {
   const JsonDocument document(file);
   const JsonDocument command_line("command line", command_line_values(overrides, document.root().raw()));
-  const JsonObject root =
-      document.root().object({"format", "scene", "materials", "itu", "frequency_hz", "time", "objects", "transmitters",
-                              "receivers", "propagation", "output", "mobility", "links", "noise", "geo", "tree"});
-  return read_scenario(file, root,
-                       command_line.root().object({"--discovery", "--cache", "--rays", "--seed", "--output"}));
+  check_is_scenario(document.root());
+  return read_scenario(file, document.root().object(keys::scenario_block()),
+                       command_line.root().object(keys::command_line_block()));
 }
 
 std::vector<ReceiverList> take_point_lists(Scenario& scenario) {

@@ -3,6 +3,8 @@
 #include "dcem/em/surface/itu_p2040.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/checks/mesh_doubts.hpp"
+#include "dcem/io/src/scenario/enum_words.hpp"
+#include "dcem/io/src/scenario/keys/blocks.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
@@ -12,44 +14,49 @@ namespace {
 
 ObjSettings read_obj_settings(const JsonObject& owner) {
   ObjSettings settings;
-  if (const auto up = owner.find("up")) settings.up = up->one_of({"z", "y"}) == "y" ? UpAxis::y : UpAxis::z;
-  settings.unit_m = owner.number("unit_m", settings.unit_m, {1e-9, 1e6});
+  settings.up = read_word(owner, "up", settings.up);
+  settings.unit_m = owner.number("unit_m", settings.unit_m);
   return settings;
 }
 
 /// A layer is told by the keys of the models `dielectric` and `itu`; `model` may stand there but need not.
 MaterialLayer read_layer(const JsonValue& value) {
-  const JsonObject layer =
-      value.object({"model", "itu", "relative_permittivity", "conductivity_s_per_m", "thickness_m"});
-  const auto number = [&layer](const char* key) { return layer.at(key).number(*material_number_range(key)); };
-  const bool is_itu = layer.exactly_one_of({"itu", "relative_permittivity"}) == "itu";
-  if (const auto model = layer.find("model")) model->one_of({is_itu ? "itu" : "dielectric"});
-  const bool has_conductivity = layer.has("conductivity_s_per_m");
+  const JsonObject layer = value.object();
+  const bool is_itu = layer.chosen("medium") == "itu";
+  const std::string model = is_itu ? "itu" : "dielectric";
+  if (layer.has("model") && layer.at("model").word() != model) layer.at("model").fail_expected(model);
+  const double thickness_m = layer.at("thickness_m").number();
   if (!is_itu) {
-    const double conductivity_s_per_m = has_conductivity ? number("conductivity_s_per_m") : 0.0;
-    return Dielectric{number("relative_permittivity"), conductivity_s_per_m, number("thickness_m")};
+    return Dielectric{layer.at("relative_permittivity").number(), layer.number("conductivity_s_per_m", 0.0),
+                      thickness_m};
   }
-  if (has_conductivity)
+  if (layer.has("conductivity_s_per_m"))
     layer.at("conductivity_s_per_m").fail("goes with relative_permittivity only; expected no such key");
   const JsonValue itu = layer.at("itu");
-  return ItuMaterial{itu_name({itu.text(), itu.place(), itu.path()}), number("thickness_m")};
+  return ItuMaterial{itu_name({itu.text(), itu.place(), itu.path()}), thickness_m};
 }
 
-MaterialKey read_material_key(const std::string& name, const JsonValue& value) {
+std::vector<MaterialLayer> read_layers(const JsonValue& value) {
+  std::vector<MaterialLayer> layers;
+  for (const JsonValue& element : value.elements()) layers.push_back(read_layer(element));
+  return layers;
+}
+
+/// Which words and which keys go together is looked at when a material is made of them, as for MTL files.
+MaterialKey read_material_key(const JsonValue& value) {
+  using keys::ValueKind;
   MaterialKey key{0.0, value.place(), value.path()};
-  const std::string word(material_word(name));
-  const NumberRange* range = material_number_range(name);
-  if (!word.empty() && !value.is_number()) {
-    if (!value.is_string() || value.text() != word) value.fail_expected(range->text() + " or '" + word + "'");
-    key.value = word;
-  } else if (range != nullptr) {
-    key.value = value.number(*range);
-  } else if (name != "layers") {
-    key.value = value.text();
+  const bool is_number = value.may_be(ValueKind::number);
+  if (value.may_be(ValueKind::list)) {
+    key.value = read_layers(value);
+  } else if (value.may_be(ValueKind::whole_number)) {
+    key.value = static_cast<double>(value.integer());
+  } else if (is_number && value.may_be(ValueKind::word) && !value.is_number()) {
+    key.value = value.word();
+  } else if (is_number) {
+    key.value = value.number();
   } else {
-    std::vector<MaterialLayer> layers;
-    for (const JsonValue& element : value.elements()) layers.push_back(read_layer(element));
-    key.value = std::move(layers);
+    key.value = value.text();
   }
   return key;
 }
@@ -67,8 +74,7 @@ TriangleMesh all_of_foliage(TriangleMesh mesh) {
 }  // namespace
 
 void BodyLoader::load() {
-  const JsonObject scene =
-      scenario_.at("scene").object({"obj", "up", "unit_m", "weld_tolerance_m", "planarity_tolerance_m"});
+  const JsonObject scene = scenario_.at("scene").object();
   result_.scene = Scene(read_surface_settings(scene));
   read_scenario_materials();
   const ObjFile& scenery = read_mesh(scene);
@@ -139,18 +145,14 @@ TriangleMesh BodyLoader::read_object_mesh(const JsonObject& object) {
     foliage_objects_.push_back(object.at("foliage"));
     used_materials_.try_emplace(foliage_material, object.at("foliage").place());
   }
-  if (object.exactly_one_of({"obj", "box_m"}) == "obj") {
+  if (object.chosen("shape") == "obj") {
     if (object.has("material")) object.at("material").fail("goes with box_m only; expected no such key");
     return foliage ? all_of_foliage(read_file(object).mesh) : read_mesh(object).mesh;
   }
   for (const char* key : {"up", "unit_m"}) {
     if (object.has(key)) object.at(key).fail("goes with obj only; expected no such key");
   }
-  const auto sizes = object.at("box_m").elements(3, "three lengths [along x, along y, along z]");
-  Vec3 size_m(0.0);
-  for (int axis = 0; axis < 3; ++axis) {
-    size_m[axis] = sizes[static_cast<std::size_t>(axis)].number({0.0, 1e6, true});
-  }
+  const Vec3 size_m = object.at("box_m").vector3();
   if (foliage) return make_box(size_m, foliage_material);
   const JsonValue material = object.at("material");
   used_materials_.try_emplace(material.line(), material.place());
@@ -161,7 +163,7 @@ void BodyLoader::read_objects() {
   const auto list = scenario_.find("objects");
   if (!list) return;
   for (const JsonValue& element : list->elements()) {
-    const JsonObject object = element.object({"id", "obj", "up", "unit_m", "box_m", "material", "motion", "foliage"});
+    const JsonObject object = element.object();
     check_object_id(object.at("id"));
     const std::string id = object.at("id").text();
     const auto motion = object.find("motion");
@@ -194,11 +196,13 @@ void BodyLoader::read_scenario_materials() {
   const auto block = scenario_.find("materials");
   if (!block) return;
   for (const auto& [name, value] : block->entries()) {
-    const JsonObject object = value.object(material_key_names());
+    const JsonObject object = value.object(keys::material_block());
     if (!is_printable(name)) value.fail("the name holds control characters; expected a name on one line");
-    MaterialKeys keys{value.place(), {}};
-    for (const auto& [key, member] : value.entries()) keys.keys.emplace(key, read_material_key(key, member));
-    scenario_materials_.emplace(name, std::move(keys));
+    MaterialKeys definition{value.place(), {}};
+    for (const keys::KeyRule& key : keys::material_block().keys) {
+      if (const auto found = object.find(key.name)) definition.keys.emplace(key.name, read_material_key(*found));
+    }
+    scenario_materials_.emplace(name, std::move(definition));
   }
 }
 

@@ -8,22 +8,20 @@ namespace dcem::io {
 namespace {
 
 Pose read_pose(const JsonObject& object) {
-  const auto angle_rad = [&](const char* key) { return degrees_to_radians(object.number(key, 0.0, any_angle_deg)); };
-  return {object.at("position_m").vector3(farthest_coordinate_m), angle_rad("yaw_deg"), angle_rad("pitch_deg"),
-          angle_rad("roll_deg")};
+  const auto angle_rad = [&](const char* key) { return degrees_to_radians(object.number(key, 0.0)); };
+  return {object.at("position_m").vector3(), angle_rad("yaw_deg"), angle_rad("pitch_deg"), angle_rad("roll_deg")};
 }
 
 WaypointMotion read_waypoints(const JsonValue& value) {
   WaypointMotion motion;
   for (const JsonValue& element : value.elements()) {
-    const JsonObject object = element.object({"t_s", "position_m", "yaw_deg", "pitch_deg", "roll_deg"});
-    const double time_s = object.at("t_s").number(any_instant_s);
+    const JsonObject object = element.object();
+    const double time_s = object.at("t_s").number();
     if (!motion.waypoints.empty() && !(time_s > motion.waypoints.back().time_s)) {
       object.at("t_s").fail("not later than the waypoint before; expected increasing times");
     }
     motion.waypoints.push_back({time_s, read_pose(object)});
   }
-  if (motion.waypoints.empty()) value.fail("no waypoint; expected at least one");
   return motion;
 }
 
@@ -32,15 +30,14 @@ WaypointMotion read_waypoints(const JsonValue& value) {
 Vec3 read_velocity_mps(const JsonObject& object) {
   const auto value = object.find("velocity_mps");
   if (!value) return Vec3(0.0);
-  const Vec3 velocity_mps = value->vector3(speed_of_light_mps);
+  const Vec3 velocity_mps = value->vector3();
   if (!(glm::length(velocity_mps) < speed_of_light_mps)) value->fail("faster than light; expected metres per second");
   return velocity_mps;
 }
 
 Motion MotionReader::read(const JsonValue& value, const std::string& id) {
-  const JsonObject object =
-      value.object({"position_m", "yaw_deg", "pitch_deg", "roll_deg", "velocity_mps", "waypoints", "poses_csv"});
-  const std::string form = object.exactly_one_of({"position_m", "waypoints", "poses_csv"});
+  const JsonObject object = value.object();
+  const std::string form = object.chosen("form");
   if (form == "position_m") return LinearMotion{read_pose(object), read_velocity_mps(object), reference_time_s_};
   for (const char* key : {"yaw_deg", "pitch_deg", "roll_deg", "velocity_mps"}) {
     if (!object.has(key)) continue;

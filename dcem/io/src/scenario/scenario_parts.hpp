@@ -12,14 +12,11 @@
 #include "dcem/io/obj_reader.hpp"
 #include "dcem/io/scenario.hpp"
 #include "dcem/io/src/scenario/json_reader.hpp"
+#include "dcem/io/src/scenario/limits.hpp"
 #include "dcem/io/src/scenario/material_keys.hpp"
 #include "dcem/io/src/traffic/poses_csv.hpp"
 
 namespace dcem::io {
-
-inline constexpr double farthest_coordinate_m = 1e9;
-inline constexpr NumberRange any_instant_s{-1e9, 1e9};
-inline constexpr NumberRange any_angle_deg{-1e6, 1e6};
 
 /// Runs `action`; what the engine finds wrong with the values is reported at `place`.
 template <typename Action>
@@ -42,8 +39,8 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
 OutputSettings read_output(const JsonObject& scenario, const JsonObject& command_line);
 /// The block `noise`, if there is one.
 std::optional<NoiseSettings> read_noise(const JsonObject& scenario);
-/// Refuses the blocks of a scenario that later versions bring.
-void refuse_later_blocks(const JsonObject& scenario);
+/// Refuses what later versions bring beside all links.
+void check_links(const JsonObject& scenario);
 
 // scenario_motion.cpp
 

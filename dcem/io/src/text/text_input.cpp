@@ -83,14 +83,24 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   });
 }
 
+std::string expected_names(std::string_view name, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_name(name, candidates);
+  const std::size_t longer = std::max(name.size(), nearest.size());
+  const bool is_near = 2 * edit_distance(name.substr(0, 4 * longest_quotation), nearest) <= longer + 1;
+  std::string text = is_near ? " (did you mean " + in_quotes(nearest) + "?)" : "";
+  text += candidates.size() == 1 ? "; expected " : "; expected one of ";
+  for (const std::string& candidate : candidates) text += (&candidate == &candidates.front() ? "" : ", ") + candidate;
+  return text;
+}
+
 std::string number_text(double value) {
   std::array<char, 32> digits{};
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
-std::string NumberRange::text() const {
+std::string NumberRange::bounds_text() const {
   const std::string low = number_text(minimum), high = number_text(maximum);
-  return above_minimum ? "a number above " + low + ", at most " + high : "a number from " + low + " to " + high;
+  return above_minimum ? "above " + low + ", at most " + high : "from " + low + " to " + high;
 }
 
 std::optional<double> parse_number(std::string_view text) {

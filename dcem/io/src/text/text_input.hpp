@@ -26,6 +26,10 @@ bool is_printable(std::string_view text);
 /// Precondition: at least one candidate.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
+/// What is said of a name that is none of the candidates: " (did you mean 'rays'?); expected one of rays, seed". Asks
+/// only where the nearest is near. Precondition: at least one candidate.
+std::string expected_names(std::string_view name, const std::vector<std::string>& candidates);
+
 /// The whole text as a finite number in decimal notation; nothing where it is anything else ("nan", "1e999", "1x").
 std::optional<double> parse_number(std::string_view text);
 /// The whole text as an integer; nothing where it is anything else or too large.
@@ -40,7 +44,8 @@ struct NumberRange {
   bool above_minimum = false;  ///< the minimum itself is not allowed
 
   bool holds(double value) const { return (above_minimum ? value > minimum : value >= minimum) && value <= maximum; }
-  std::string text() const;  ///< "a number from 0 to 1", "a number above 0, at most 10"
+  std::string bounds_text() const;  ///< "from 0 to 1", "above 0, at most 10"
+  std::string text() const { return "a number " + bounds_text(); }
 };
 
 /// Text without blanks at its ends.

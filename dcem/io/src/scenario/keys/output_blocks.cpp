@@ -1,0 +1,107 @@
+#include "dcem/io/scenario.hpp"
+#include "dcem/io/src/scenario/keys/blocks.hpp"
+#include "dcem/io/src/scenario/keys/rule_words.hpp"
+
+namespace dcem::io::keys {
+
+namespace {
+
+const BlockRule& pdp_block() {
+  static const OutputSettings standards{};
+  static const BlockRule rule{
+      "output.pdp",
+      "The power delay profile, pdp.csv.",
+      {{"bin_s", {number({1e-15, 1.0}, "s")}, standard(standards.pdp_bin_s), "Width of a bin.", "1e-9"},
+       {"mode",
+        {word<PdpMode>()},
+        standard(standards.pdp_mode),
+        "incoherent: powers are summed; coherent: fields; band_limited: what a receiver of limited band sees.",
+        R"("incoherent")"}}};
+  return rule;
+}
+
+const BlockRule& cfr_block() {
+  static const BlockRule rule{"output.cfr",
+                              "The frequency response, cfr.npz.",
+                              {{"bandwidth_hz",
+                                {number({0.0, 1e12}, "Hz")},
+                                required(),
+                                "Around the carrier; at most twice the frequency.",
+                                "100e6"},
+                               {"points", {whole_number(1, 1e6)}, required(), "How many frequencies.", "256"}}};
+  return rule;
+}
+
+const BlockRule& doppler_block() {
+  static const OutputSettings standards{};
+  static const BlockRule rule{
+      "output.doppler",
+      "The Doppler spectrum, doppler.csv.",
+      {{"bin_hz", {number({1e-6, 1e9}, "Hz")}, standard(standards.doppler_bin_hz), "Width of a bin.", "10"}}};
+  return rule;
+}
+
+const BlockRule& plots_block() {
+  static const OutputSettings standards{};
+  static const BlockRule rule{"output.plots",
+                              "Pictures of links over time.",
+                              {{"max_links",
+                                {whole_number(1, 10'000)},
+                                standard(standards.plots_max_links),
+                                "So many links have pictures, the first ones.",
+                                "20"},
+                               {"pdp_frame",
+                                {whole_number(0, 999'999'999)},
+                                told("the middle one"),
+                                "Frame of the single power delay profile.",
+                                "40"}}};
+  return rule;
+}
+
+const BlockRule& html_block() {
+  static const ViewerSettings standards{};
+  static const BlockRule rule{
+      "output.html",
+      "The viewer, viewer.html: one file for a browser.",
+      {{"max_rays", {whole_number(1, 1e7)}, standard(standards.max_rays), "So many paths over all frames.", "400000"},
+       {"max_frames", {whole_number(1, 1e6)}, standard(standards.max_frames), "So many frames.", "2000"}}};
+  return rule;
+}
+
+KeyRule yes_or_no(const std::string& name, bool absent, const std::string& meaning) {
+  return {name, {boolean()}, standard(absent), meaning, "true"};
+}
+
+KeyRule yes_or_settings(const std::string& name, const BlockRule& settings, const std::string& meaning) {
+  return {name, {boolean(), block(settings)}, standard(false), meaning, "true"};
+}
+
+}  // namespace
+
+const BlockRule& output_block() {
+  static const OutputSettings standards{};
+  static const BlockRule rule = [] {
+    BlockRule output{"output",
+                     "Which files are written: each key with true, or with the settings of its file.",
+                     {yes_or_no("paths", standards.paths, "Every path of every link, paths.jsonl."),
+                      yes_or_no("links", standards.links, "A line for each link and frame, links.csv."),
+                      yes_or_settings("pdp", pdp_block(), "The power delay profile, pdp.csv."),
+                      yes_or_settings("cfr", cfr_block(), "The frequency response, cfr.npz."),
+                      yes_or_settings("doppler", doppler_block(), "The Doppler spectrum, doppler.csv."),
+                      yes_or_no("npz", standards.npz, "All paths as arrays for NumPy, paths.npz."),
+                      yes_or_settings("plots", plots_block(), "Pictures of links over time, SVG and PNG."),
+                      {"map",
+                       {only(true), list(word({"csv", "png", "npz", "asc", "svg"}), 1, "ending")},
+                       Absence{Absence::Kind::value, "true"},
+                       "Which files dcem map writes: all, or those of a list.",
+                       R"(["csv", "png"])"},
+                      yes_or_settings("html", html_block(), "The viewer, viewer.html.")}};
+    for (const char* name : {"mat", "qd", "p2m", "deepmimo", "kml", "gltf"}) {
+      output.keys.push_back({name, {only(false), later()}, standard(false), "Another format of results.", "false"});
+    }
+    return output;
+  }();
+  return rule;
+}
+
+}  // namespace dcem::io::keys
