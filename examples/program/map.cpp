@@ -1,4 +1,5 @@
 /// `dcem map`: a coverage map per grid or list of points, transmitter and frame, and what all transmitters together do.
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <set>
@@ -11,6 +12,7 @@
 #include "dcem/io/map_distribution.hpp"
 #include "dcem/io/map_writer.hpp"
 #include "job.hpp"
+#include "stop_signal.hpp"
 
 namespace dcem::program {
 namespace {
@@ -68,7 +70,7 @@ void check_names(const Scene& scene, const MapOrders& orders, const std::string&
   });
 }
 
-/// While a map is folded to cells there are both.
+/// While a map is folded to cells there are both. The maps of a frame are there together.
 void check_memory(const Scene& scene, const MapOrders& orders, const std::string& file) {
   const double point_bytes = static_cast<double>(scene.transmitters().size()) * sizeof(RadioMapPoint);
   for (const ReceiverGrid& grid : orders.grids) {
@@ -78,6 +80,7 @@ void check_memory(const Scene& scene, const MapOrders& orders, const std::string
   for (const ReceiverList& list : orders.lists) {
     require_memory(file, "list '" + list.id + "'", list.receivers.size(), point_bytes);
   }
+  require_memory(file, "the maps of a frame", orders.points(), point_bytes);
 }
 
 void add_figures(const RadioMap& map, io::FrameFigures& figures) {
@@ -170,31 +173,107 @@ class MapFiles {
   std::optional<double> noise_dbm_;
 };
 
-io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, const MapOrders& orders, Simulator& simulator,
-                           const Frame& frame, io::ViewerWriter* viewer, io::ProgressBar& bar) {
-  const FrameResult result = simulator.advance(frame);
-  io::FrameFigures figures = io::figures_of(result);
-  if (viewer != nullptr) viewer->add(frame, result);
+/// Thrown out of the midst of a map when it is to end.
+struct StopNow {};
+
+/// The maps of one frame. None is written before all are there.
+struct FrameMaps {
+  FrameResult result;
+  io::FrameFigures figures;
+  std::vector<std::vector<RadioMap>> maps;  ///< by grid or list, then by transmitter
+};
+
+/// Nothing where a signal came before all points were done.
+std::optional<FrameMaps> solve_maps(const MapOrders& orders, Simulator& simulator, const Frame& frame,
+                                    io::ProgressBar& bar, const StopRequest& stop) {
+  FrameMaps solved{simulator.advance(frame), {}, {}};
+  solved.figures = io::figures_of(solved.result);
+  const auto tell = [&](std::size_t points) {
+    if (stop.signal() != 0) throw StopNow{};
+    bar.advance(points);
+  };
   const auto make = [&](const auto& places) {
     const auto start = std::chrono::steady_clock::now();
-    const auto maps = simulator.radio_maps(
-        places, [&](std::size_t points) { bar.advance(points); }, &figures.work);
-    figures.solve_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    solved.maps.push_back(simulator.radio_maps(places, tell, &solved.figures.work));
+    solved.figures.solve_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    for (const RadioMap& map : solved.maps.back()) add_figures(map, solved.figures);
+  };
+  try {
+    for (const ReceiverGrid& grid : orders.grids) make(grid);
+    for (const ReceiverList& list : orders.lists) make(list);
+  } catch (const StopNow&) {
+    return std::nullopt;
+  }
+  return solved;
+}
+
+void write_maps(const FrameMaps& solved, io::OutputFolder& folder, const Job& job, const Simulator& simulator,
+                const Frame& frame, io::ViewerWriter* viewer) {
+  if (viewer != nullptr) viewer->add(frame, solved.result);
+  for (const std::vector<RadioMap>& maps : solved.maps) {
     for (const RadioMap& map : maps) {
-      add_figures(map, figures);
       if (viewer != nullptr && map.places.is_grid()) viewer->add(map);
     }
     MapFiles(folder, job, simulator, frame).write(maps);
-  };
-  for (const ReceiverGrid& grid : orders.grids) make(grid);
-  for (const ReceiverList& list : orders.lists) make(list);
-  return figures;
+  }
+}
+
+/// Makes the maps frame by frame until a signal comes; returns the first frame that is not there.
+std::size_t map_frames(const Job& job, const ScenarioOptions& options, const MapOrders& orders, Simulator& simulator,
+                       io::OutputFolder& folder, io::ViewerWriter* viewer, io::RunSummary& summary,
+                       const StopRequest& stop) {
+  io::FrameSource frames(job.scenario);
+  io::ProgressBar bar("points", orders.points() * job.frames.count(), progress_mode(options));
+  std::optional<Frame> last;
+  for (std::size_t index = job.frames.first; index < job.frames.last; ++index) {
+    const Frame frame = frames.frame(simulator.scene(), index);
+    const std::optional<FrameMaps> solved =
+        stop.signal() == 0 ? solve_maps(orders, simulator, frame, bar, stop) : std::nullopt;
+    if (!solved) {
+      if (last) simulator.move_to(*last);  // the summary tells of the scene as it stood in the last whole frame
+      return index;
+    }
+    write_maps(*solved, folder, job, simulator, frame, viewer);
+    summary.add(solved->figures);
+    last = frame;
+  }
+  return job.frames.last;
+}
+
+/// `dcem map --output csv,png,html`: which files of each map are wanted, and whether the page is.
+void choose_outputs(const std::string& list, io::OutputSettings& output) {
+  output.map = {false, false, false, false, false};
+  output.html = false;
+  const std::vector<std::pair<std::string, bool*>> kinds{{"csv", &output.map.csv}, {"png", &output.map.png},
+                                                         {"npz", &output.map.npz}, {"asc", &output.map.asc},
+                                                         {"svg", &output.map.svg}, {"html", &output.html}};
+  for (const std::string& word : words_of(list)) {
+    const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == word; });
+    if (kind == kinds.end()) {
+      throw UsageError("--output: '" + word + "' is no file of a map", "some of csv, png, npz, asc, svg and html");
+    }
+    *kind->second = true;
+  }
+  if (output.html && !io::viewer_is_built_in()) {
+    throw UsageError("--output html: this build has no viewer", "three.js (libjs-three) when DCEM was built");
+  }
+}
+
+[[noreturn]] void end_interrupted(int signal, const Job& job, std::size_t next_frame) {
+  const std::string by = "interrupted by " + signal_name(signal);
+  if (next_frame == job.frames.first) {
+    throw Interrupted(signal, by + " before the first frame was whole: nothing is written");
+  }
+  throw Interrupted(signal, by + ": " + job.folder.string() + " holds the maps of frames " +
+                                std::to_string(job.frames.first) + " to " + std::to_string(next_frame - 1) + " of " +
+                                std::to_string(job.frames.first) + " to " + std::to_string(job.frames.last - 1));
 }
 
 }  // namespace
 
 void map_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
+  if (options.map_output) choose_outputs(*options.map_output, job.scenario.output);
   const std::vector<ReceiverList> lists = io::take_point_lists(job.scenario);
   const MapOrders orders{job.scenario.grids, lists};
   if (orders.points() == 0) {
@@ -205,25 +284,28 @@ void map_scenario(const ScenarioOptions& options) {
   }
   check_names(job.scenario.scene, orders, options.scenario);
   check_memory(job.scenario.scene, orders, options.scenario);
-  io::FrameSource frames(job.scenario);
   Simulator simulator = make_simulator(job, options);
-  io::OutputFolder folder(job.folder);
-  const std::size_t points = orders.points();
-  io::RunSummary summary(run_facts(job, simulator, simulator.plan(), points), simulator.scene());
+  require_effect(options, simulator);
+  ResultFolder folder(job.folder, "map_summary.json", "summary.json");
+  if (job.scenario.output.html) folder.require_free("viewer.html");
+  io::RunSummary summary(run_facts(job, simulator, simulator.plan(), orders.points()), simulator.scene());
   print_warnings(job.scenario.warnings, options);
-  const auto viewer = make_viewer(folder, job, simulator, orders.cells() * simulator.scene().transmitters().size());
+  const auto viewer =
+      make_viewer(folder.files(), job, simulator, orders.cells() * simulator.scene().transmitters().size());
+  const StopRequest stop;
+  const std::size_t next_frame =
+      map_frames(job, options, orders, simulator, folder.files(), viewer.get(), summary, stop);
+  const bool is_cut = next_frame < job.frames.last;
+  if (is_cut && next_frame == job.frames.first) end_interrupted(stop.signal(), job, next_frame);
+  if (is_cut) summary.set_interruption({signal_name(stop.signal()), next_frame, job.frames.last});
   {
-    io::ProgressBar bar("points", points * job.frames.count(), progress_mode(options));
-    for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
-      const Frame instant = frames.frame(simulator.scene(), frame);
-      summary.add(map_frame(folder, job, orders, simulator, instant, viewer.get(), bar));
-    }
+    const io::ProgressStage stage("writing results", progress_mode(options));
+    finish_viewer(viewer.get(), summary);
+    folder.commit(summary, run_identity(job, options).text());
   }
-  finish_viewer(viewer.get(), summary);
-  folder.open("map_summary.json").write(summary.json());
-  folder.commit();
   print_warnings(summary.late_warnings(), options);
-  if (!options.quiet) std::cout << summary.table(folder.path());
+  if (!options.quiet) std::cout << summary.table(job.folder) << std::flush;
+  if (is_cut) end_interrupted(stop.signal(), job, next_frame);
 }
 
 }  // namespace dcem::program

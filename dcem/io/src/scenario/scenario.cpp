@@ -6,6 +6,7 @@
 
 #include "dcem/field/medium_loss.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
+#include "dcem/io/src/text/read_log.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 #include "dcem/sim/discovery.hpp"
 
@@ -85,13 +86,16 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
 }  // namespace
 
 Scenario load_scenario(const std::filesystem::path& file, const ScenarioOverrides& overrides) {
+  const ReadLog log;
   const JsonDocument document(file);
   const JsonDocument command_line("command line", command_line_values(overrides, document.root().raw()));
   const JsonObject root =
       document.root().object({"format", "scene", "materials", "itu", "frequency_hz", "time", "objects", "transmitters",
                               "receivers", "propagation", "output", "mobility", "links", "noise", "geo", "tree"});
-  return read_scenario(file, root,
-                       command_line.root().object({"--discovery", "--cache", "--rays", "--seed", "--output"}));
+  Scenario scenario =
+      read_scenario(file, root, command_line.root().object({"--discovery", "--cache", "--rays", "--seed", "--output"}));
+  scenario.files = log.files();
+  return scenario;
 }
 
 std::vector<ReceiverList> take_point_lists(Scenario& scenario) {
