@@ -73,6 +73,7 @@ void add_commands(CLI::App& app, Options& options) {
       ->type_name("SHELL");
   completion->callback([&] { std::cout << completion_script(app, options.shell) << std::flush; });
   add_absent_command(app, "import", "Make scenarios from SUMO, OpenStreetMap or GEMV2 data");
+  app.set_help_all_flag("--help-all", "Print the help of all commands and exit");  // last: of the program alone
 }
 
 // Without this, a mistyped command reads "a subcommand is required".
