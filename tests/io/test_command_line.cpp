@@ -80,10 +80,10 @@ TEST_CASE("the help of each command lists exactly what it takes") {
       {"compare", {"-h", "--help", "-o", "--column", "--second-column"}},
       {"completion", {"-h", "--help"}}};
   const Words commands = commands_in_help(dcem_program(folder, "--help").output);
-  for (const auto& [command, options] : expected) {
-    CAPTURE(command);
-    CHECK(commands.contains(command));
-    CHECK(options_in_help(dcem_program(folder, command + " --help").output) == options);
+  for (const auto& one : expected) {
+    CAPTURE(one.first);
+    CHECK(commands.contains(one.first));
+    CHECK(options_in_help(dcem_program(folder, one.first + " --help").output) == one.second);
   }
   const std::string run = dcem_program(folder, "run --help").output, map = dcem_program(folder, "map --help").output;
   CHECK(run.find("{paths,links,pdp,cfr,doppler,npz,plots,html}") != std::string::npos);

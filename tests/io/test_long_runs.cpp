@@ -50,9 +50,9 @@ bool holds(const std::vector<std::string>& names, const std::string& part) {
 void check_same_files(const std::filesystem::path& folder, const std::filesystem::path& expected) {
   CHECK(names_in(folder) == names_in(expected));
   const auto files = files_of(folder), others = files_of(expected);
-  for (const auto& [name, bytes] : others) {
-    CAPTURE(name);
-    CHECK((files.contains(name) && files.at(name) == bytes));  // not shown: megabytes
+  for (const auto& other : others) {
+    CAPTURE(other.first);
+    CHECK((files.contains(other.first) && files.at(other.first) == other.second));  // not shown: megabytes
   }
 }
 
@@ -276,6 +276,16 @@ TEST_CASE("a map ends between its points: what is whole is written, and of one f
     CHECK_FALSE(holds(names_in(folder / "many"), ".part"));
     return;
   }
+}
+
+TEST_CASE("a verification that is ended says how much it has verified") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  RunningProgram program(folder, words("verify " + town + " --progress json"));  // a quarter of a second a frame
+  REQUIRE(program.wait_for(first_frame_done));
+  program.send(SIGINT);
+  CHECK(program.end() == 130);
+  CHECK(std::regex_match(program.last_line(), std::regex("interrupted by SIGINT: [0-9]+ of 100 frames are verified")));
 }
 
 TEST_CASE("--resume wants the run that was ended: another scenario, other options and an empty folder are refused") {
