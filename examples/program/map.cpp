@@ -4,27 +4,15 @@
 #include <iostream>
 #include <set>
 
-#include "dcem/channel/map_combination.hpp"
-#include "dcem/channel/thermal_noise.hpp"
-#include "dcem/io/combined_map_writer.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
-#include "dcem/io/map_distribution.hpp"
 #include "dcem/io/map_writer.hpp"
 #include "job.hpp"
+#include "map_files.hpp"
 #include "stop_signal.hpp"
 
 namespace dcem::program {
 namespace {
-
-constexpr const char* best_server_part = "best_server";
-constexpr const char* sinr_part = "sinr";
-constexpr const char* distribution_part = "distribution";
-
-/// One frame's number for the file names, or nothing where there is only one frame.
-std::optional<std::size_t> numbered(const Job& job, std::size_t frame) {
-  return job.frames.count() > 1 ? std::optional(frame) : std::nullopt;
-}
 
 /// What maps are asked of: grids, and lists of points.
 struct MapOrders {
@@ -83,6 +71,16 @@ void check_memory(const Scene& scene, const MapOrders& orders, const std::string
   require_memory(file, "the maps of a frame", orders.points(), point_bytes);
 }
 
+void check_orders(const Scene& scene, const MapOrders& orders, const std::string& file) {
+  if (orders.points() == 0) {
+    throw io::InputError(file,
+                         "no receiver is a grid or a list of points; expected one with the key 'grid', 'positions_m' "
+                         "or 'points_csv' to make a map of");
+  }
+  check_names(scene, orders, file);
+  check_memory(scene, orders, file);
+}
+
 void add_figures(const RadioMap& map, io::FrameFigures& figures) {
   for (const RadioMapPoint& point : map.points) {
     if (point.obstructed) continue;
@@ -91,87 +89,6 @@ void add_figures(const RadioMap& map, io::FrameFigures& figures) {
     figures.paths += point.statistics.path_count;
   }
 }
-
-/// Writes the files of the maps of one frame. Pictures and rasters are of grids alone.
-class MapFiles {
- public:
-  MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& simulator, const Frame& frame)
-      : folder_(folder),
-        wanted_(job.scenario.output.map),
-        scene_(simulator.scene()),
-        frame_(frame),
-        number_(numbered(job, frame.index)),
-        time_s_(number_ ? std::optional(frame.time_s) : std::nullopt),
-        frequency_hz_(simulator.settings().frequency_hz) {
-    if (job.scenario.noise) noise_dbm_ = noise_power_dbm(*job.scenario.noise);
-  }
-
-  void write(const std::vector<RadioMap>& maps) {
-    for (const RadioMap& map : maps) write_one(map);
-    if (maps.empty()) return;
-    const CombinedMap combined = combine_maps(maps, noise_dbm_);
-    write_best_server(combined);
-    if (io::has_sinr(combined, noise_dbm_.has_value())) write_sinr(combined);
-    const auto chart = [&](io::AtomicFile& file) { file.write(io::map_distribution_svg(maps, combined, time_s_)); };
-    if (wanted_.svg) put(name_of(combined, distribution_part) + ".svg", chart);
-  }
-
- private:
-  template <typename Write>
-  void put(const std::string& name, Write&& write) {
-    io::AtomicFile& file = folder_.open(name);
-    write(file);
-    file.close();
-  }
-
-  std::string name_of(const CombinedMap& map, const char* part) const {
-    return io::map_name(map.places.id(), part, number_);
-  }
-
-  void write_one(const RadioMap& map) {
-    const std::string name = io::map_name(map.places.id(), map.transmitter, number_);
-    if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_map_csv(file, map, frequency_hz_); });
-    if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_map_npz(file, map, frequency_hz_); });
-    if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_map_asc(file, map); });
-    const auto draw = [&](auto& file) {
-      io::write_heat_map_png(io::map_picture(map, scene_, frame_, frequency_hz_, time_s_), file);
-    };
-    if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
-  }
-
-  void write_best_server(const CombinedMap& map) {
-    const std::string name = name_of(map, best_server_part);
-    if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_best_server_csv(file, map); });
-    if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_best_server_npz(file, map); });
-    if (wanted_.asc && map.places.is_grid())
-      put(name + ".asc", [&](auto& file) { io::write_best_server_asc(file, map); });
-    const auto draw = [&](auto& file) {
-      io::write_heat_map_png(io::best_server_picture(map, scene_, frame_, frequency_hz_, time_s_), file);
-    };
-    if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
-  }
-
-  void write_sinr(const CombinedMap& map) {
-    const std::string name = name_of(map, sinr_part);
-    if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_sinr_csv(file, map); });
-    if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_sinr_npz(file, map); });
-    if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_sinr_asc(file, map); });
-    const auto draw = [&](auto& file) {
-      const bool has_noise = noise_dbm_.has_value();
-      io::write_heat_map_png(io::sinr_picture(map, scene_, frame_, frequency_hz_, has_noise, time_s_), file);
-    };
-    if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
-  }
-
-  io::OutputFolder& folder_;
-  const io::MapOutputs wanted_;
-  const Scene& scene_;
-  const Frame& frame_;
-  const std::optional<std::size_t> number_;  ///< in the names of files; absent where there is one frame
-  const std::optional<double> time_s_;
-  const double frequency_hz_;
-  std::optional<double> noise_dbm_;
-};
 
 /// Thrown out of the midst of a map when it is to end.
 struct StopNow {};
@@ -276,14 +193,7 @@ void map_scenario(const ScenarioOptions& options) {
   if (options.map_output) choose_outputs(*options.map_output, job.scenario.output);
   const std::vector<ReceiverList> lists = io::take_point_lists(job.scenario);
   const MapOrders orders{job.scenario.grids, lists};
-  if (orders.points() == 0) {
-    throw io::InputError(
-        options.scenario,
-        "no receiver is a grid or a list of points; expected one with the key 'grid', 'positions_m' or "
-        "'points_csv' to make a map of");
-  }
-  check_names(job.scenario.scene, orders, options.scenario);
-  check_memory(job.scenario.scene, orders, options.scenario);
+  check_orders(job.scenario.scene, orders, options.scenario);
   Simulator simulator = make_simulator(job, options);
   require_effect(options, simulator);
   ResultFolder folder(job.folder, "map_summary.json", "summary.json");

@@ -182,6 +182,32 @@ std::optional<io::RunJournal> begin_journal(const Job& job, const io::RunIdentit
   return std::optional<io::RunJournal>(std::in_place, job.folder, identity);
 }
 
+/// Writes what is there as the result, where that is a frame at least, and says so where frames are left.
+void write_result(Run& run, const Job& job, const ScenarioOptions& options, ResultFolder& folder,
+                  const io::RunIdentity& identity, io::RunJournal* journal, int signal) {
+  const bool is_cut = run.next_frame() < job.frames.last;
+  if (is_cut && run.next_frame() == job.frames.first) end_interrupted(signal, job, run.next_frame(), false);
+  io::RunSummary& summary = run.finish();
+  if (is_cut) summary.set_interruption({signal_name(signal), run.next_frame(), job.frames.last});
+  folder.commit(summary, identity.text());
+  if (journal != nullptr) is_cut ? journal->keep() : journal->remove();
+  print_warnings(summary.late_warnings(), options);
+  if (!options.quiet) std::cout << summary.table(job.folder) << std::flush;
+  if (is_cut) end_interrupted(signal, job, run.next_frame(), journal != nullptr);
+}
+
+/// Solves the frames that are left.
+void go_on(Run& run, const Job& job, const ScenarioOptions& options, ResultFolder& folder,
+           const io::RunIdentity& identity, io::RunJournal* journal, const StopRequest& stop) {
+  try {
+    run.solve(journal, stop);
+    write_result(run, job, options, folder, identity, journal, stop.signal());
+  } catch (const io::OutputError&) {
+    if (journal != nullptr) journal->keep();  // a disk that is full today has room tomorrow
+    throw;
+  }
+}
+
 }  // namespace
 
 void run_scenario(const ScenarioOptions& options) {
@@ -203,23 +229,7 @@ void run_scenario(const ScenarioOptions& options) {
   const StopRequest stop;
   if (former) run.replay(*former, stop);
   std::optional<io::RunJournal> journal = begin_journal(job, identity, simulator, former);
-  try {
-    run.solve(journal ? &*journal : nullptr, stop);
-    const bool is_cut = run.next_frame() < job.frames.last;
-    if (is_cut && run.next_frame() == job.frames.first) {
-      end_interrupted(stop.signal(), job, run.next_frame(), false);
-    }
-    io::RunSummary& summary = run.finish();
-    if (is_cut) summary.set_interruption({signal_name(stop.signal()), run.next_frame(), job.frames.last});
-    folder.commit(summary, identity.text());
-    print_warnings(summary.late_warnings(), options);
-    if (!options.quiet) std::cout << summary.table(job.folder) << std::flush;
-    if (journal) is_cut ? journal->keep() : journal->remove();
-    if (is_cut) end_interrupted(stop.signal(), job, run.next_frame(), journal.has_value());
-  } catch (const io::OutputError&) {
-    if (journal) journal->keep();  // a disk that is full today has room tomorrow
-    throw;
-  }
+  go_on(run, job, options, folder, identity, journal ? &*journal : nullptr, stop);
 }
 
 }  // namespace dcem::program

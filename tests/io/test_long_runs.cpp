@@ -208,8 +208,7 @@ TEST_CASE("a second Ctrl-C ends at once, and the next run clears away what is le
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;
   // One long frame: the whole is one request away from its end.
-  write_scenario(folder,
-                 R"({"id":"area","grid":{"origin_m":[-30,-9,1.5],"spacing_m":[0.05,0.05],"count":[1200,360]}})");
+  write_scenario(folder, R"({"id":"area","grid":{"origin_m":[-30,-9,1.5],"spacing_m":[0.1,0.1],"count":[600,180]}})");
   RunningProgram program(folder, words("run street.json --progress json -o out"));
   REQUIRE(program.wait_for(R"({"stage":"frames","done":0,)"));
   program.send(SIGINT);
@@ -238,7 +237,9 @@ TEST_CASE("a map ends between its points: what is whole is written, and of one f
   const TemporaryFolder folder;
   write_scenario(folder, R"({"id":"area","grid":{"origin_m":[-30,-9,1.5],"spacing_m":[0.2,0.2],"count":[300,90]}})");
   constexpr std::size_t points = 27'000;  // of a frame
-  {
+  for (int code = 0, attempt = 0; code == 0; ++attempt) {
+    REQUIRE(attempt < 20);
+    std::filesystem::remove_all(folder / "one");
     RunningProgram program(folder, words("map street.json --frames 0:1 --progress json --output csv -o one"));
     // The second line says that points are done, and comes with the first of them.
     const auto is_at_work = [](const std::string& said) {
@@ -247,7 +248,9 @@ TEST_CASE("a map ends between its points: what is whole is written, and of one f
     };
     REQUIRE(program.wait_until(is_at_work));
     program.send(SIGINT);
-    CHECK(program.end() == 130);
+    code = program.end();
+    if (code == 0) continue;
+    CHECK(code == 130);
     CHECK(program.last_line() == "interrupted by SIGINT before the first frame was whole: nothing is written");
     CHECK_FALSE(std::filesystem::exists(folder / "one"));
   }
