@@ -23,6 +23,9 @@ if(DCEM_BUILD_IO)
 endif()
 if(TARGET dcem_program)
   install(TARGETS dcem_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  if(TARGET dcem_man)
+    install(FILES "${PROJECT_BINARY_DIR}/examples/dcem.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+  endif()
 endif()
 
 configure_package_config_file(cmake/dcemConfig.cmake.in "${PROJECT_BINARY_DIR}/dcemConfig.cmake"

@@ -3,8 +3,9 @@
 ///
 /// A file is written aside, in the same folder under a hidden temporary name, and renamed by `commit()`; a rename
 /// within one folder is atomic, so a reader sees the old file or the whole new one. What is not committed is removed
-/// by the destructor. This guards against a run that fails, a full disk and a program that is interrupted between two
-/// files; it does not wait for the disk (no fsync), so it promises nothing about a power failure.
+/// by the destructor, and what a program that was killed left aside by the next `OutputFolder` there. This guards
+/// against a run that fails, a full disk and a program that is killed; it does not wait for the disk (no fsync), so it
+/// promises nothing about a power failure.
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -59,13 +60,17 @@ class AtomicFile {
   bool closed_ = false;
 };
 
-/// Several files of one folder that appear together: none has its final name before `commit()`.
+class FolderClaim;
+
+/// Several files of one folder that appear together: none has its final name before `commit()`. One object at a time,
+/// of whatever process, has the folder.
 /// A run that fails leaves nothing: temporary files are removed, and so are the folders that this object created, as
 /// long as nothing else was put there.
 class OutputFolder {
  public:
-  /// Creates the folder (and its parents) where absent and tries whether it can be written, so that a long run fails
-  /// at its start and not at its end. Throws `OutputError`.
+  /// Creates the folder (and its parents) where absent, removes what a program that was killed left there, and tries
+  /// whether the folder can be written, so that a long run fails at its start and not at its end. Throws `OutputError`,
+  /// also where another object has the folder.
   explicit OutputFolder(std::filesystem::path folder);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -76,9 +81,13 @@ class OutputFolder {
   /// `OutputError` as `AtomicFile` does.
   AtomicFile& open(const std::string& name);
 
-  /// Closes and checks every file, then renames all of them. Throws `OutputError`; should a rename fail in the midst,
-  /// the files of this object that already had their final name are removed, so that no partial result stays.
-  void commit();
+  /// The names of the files opened so far, in that order.
+  [[nodiscard]] std::vector<std::string> names() const;
+
+  /// Closes and checks every file, removes those of a former result (plain names in this folder), then renames all in
+  /// the order in which they were opened. Throws `OutputError`; should a rename fail in the midst, the files of this
+  /// object that already had their final name are removed, so that no partial result stays.
+  void commit(const std::vector<std::string>& former = {});
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
@@ -89,6 +98,7 @@ class OutputFolder {
 
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> created_;  // outermost first
+  std::unique_ptr<FolderClaim> claim_;          // given up last
   std::vector<std::unique_ptr<AtomicFile>> files_;
   bool committed_ = false;
 };

@@ -42,6 +42,9 @@ struct ResultFacts {
   int exact_interactions = 0;   ///< up to which all paths are found, where discovery is sampled beyond them
 };
 
+/// Whether more is asked for than `links.csv`, whose lines say all that there is to write of a frame.
+bool needs_paths(const OutputSettings& output);
+
 /// The links that `output.plots` counts: transmitters times receivers, without those of a device to itself.
 std::size_t plotted_links(const Scene& scene, std::span<const Device> receivers);
 
@@ -64,7 +67,13 @@ class ResultWriter {
   /// Appends a frame. Lines are in the order of the frame's links. Throws `OutputError`, and
   /// std::invalid_argument where the paths as arrays would need more memory than 16 GB.
   void write(const FrameResult& frame);
-  /// After the last frame: writes what is complete only now. Throws `OutputError`.
+  /// The lines of `links.csv` of a frame; empty where it is not asked for.
+  [[nodiscard]] std::string link_lines(const FrameResult& frame) const;
+  /// Appends a frame that is known by these lines alone. Precondition: no more than they is asked for. Throws
+  /// `OutputError`.
+  void write_lines(std::string_view link_lines);
+  /// After the last frame, be it the last that was announced or not: writes what is complete only now. Throws
+  /// `OutputError`.
   void finish();
 
  private:
@@ -77,7 +86,7 @@ class ResultWriter {
   };
 
   CsvLine begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const;
-  void append_link(const FrameResult& frame, const LinkResult& link);
+  void append_link(std::string& text, const FrameResult& frame, const LinkResult& link) const;
   void append_profile(const FrameResult& frame, const LinkResult& link);
   void append_doppler(const FrameResult& frame, const LinkResult& link);
 

@@ -92,6 +92,7 @@ struct Scenario {
   std::vector<PointList> point_lists;    ///< which of the scene's receivers are points of a list
   std::optional<Traffic> traffic;        ///< vehicles of a trace; their frames come from a `FrameSource`
   std::vector<std::string> warnings;
+  std::vector<std::filesystem::path> files{};  ///< everything that was read, the scenario itself first
 
   /// Instant of a frame.
   double time_s(std::size_t frame) const { return time.time_s(frame); }

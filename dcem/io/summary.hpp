@@ -2,6 +2,7 @@
 /// What a run did and what it took: `summary.json`, and the table on the console at its end.
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,13 @@ struct RunFacts {
   std::vector<std::string> warnings;  ///< one line each
   int exact_interactions = 0;         ///< up to which all paths are found
   std::string sampled_kinds{};        ///< what rays look for; empty where nothing is left to them
+};
+
+/// A run that was ended before its last frame.
+struct Interruption {
+  std::string signal;            ///< "SIGINT" or "SIGTERM"
+  std::size_t next_frame = 0;    ///< the first that is not there
+  std::size_t beyond_frame = 0;  ///< behind the last that was asked for
 };
 
 /// What is kept of a frame after its results are written.
@@ -54,9 +62,15 @@ class RunSummary {
   void add_late_warning(std::string line) { late_warnings_.push_back(std::move(line)); }
   /// What is missing on links that were searched again.
   void set_sampling(SamplingReport report) { sampling_ = std::move(report); }
+  void set_interruption(Interruption interruption) { interruption_ = std::move(interruption); }
+  /// What the run is of, as `RunIdentity::text` has it, and the names of all its files, the summary among them.
+  void set_files(std::string identity, std::vector<std::string> names) {
+    identity_ = std::move(identity);
+    files_ = std::move(names);
+  }
 
-  /// The text of `summary.json`: `version`, `scenario`, `scene`, `settings`, `warnings`, `sampling` (null where
-  /// nothing is left to rays), `totals`, `frames`. Times
+  /// The text of `summary.json`: `version`, `scenario`, `identity`, `files`, `interrupted`, `scene`, `settings`,
+  /// `warnings`, `sampling` (null where nothing is left to rays), `totals`, `frames`. Times
   /// differ from run to run; everything else is the same for the same input.
   [[nodiscard]] std::string json() const;
 
@@ -77,6 +91,19 @@ class RunSummary {
   std::vector<FrameFigures> frames_;
   SamplingReport sampling_{};
   std::vector<std::string> late_warnings_{};
+  std::optional<Interruption> interruption_;
+  std::string identity_;
+  std::vector<std::string> files_;
 };
+
+/// What the summary of a former result says of it.
+struct FormerResult {
+  std::string identity;
+  std::vector<std::string> files;  ///< names that were written; empty where it does not say
+  bool is_interrupted = false;
+};
+
+/// Nothing where there is no summary, or where it is none of this program.
+std::optional<FormerResult> read_former_result(const std::filesystem::path& summary);
 
 }  // namespace dcem::io

@@ -25,7 +25,6 @@ struct ViewerFacts {
   std::string scenario;  ///< its name
   double frequency_hz = 0.0;
   std::size_t first_frame = 0;           ///< number of the first frame of the run
-  std::size_t frames = 1;                ///< how many there will be
   std::size_t map_points_per_frame = 0;  ///< over all grids and transmitters; 0: no maps
 };
 

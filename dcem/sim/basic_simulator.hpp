@@ -56,6 +56,10 @@ class BasicSimulator {
   /// The same for the instant `time_s`, by the motions of the scene.
   FrameResult advance_to(double time_s, std::size_t index = 0) { return advance(scene_.frame_at(time_s, index)); }
 
+  /// Moves to a frame whose results are known already and took `spent`. What follows is as after `advance`, every
+  /// counter included. Throws std::logic_error unless `cache()` is off: what it remembers of a frame would be missing.
+  TreeUpdateReport pass(const Frame& frame, const WorkCounters& spent);
+
   /// Links from all transmitters to receivers of the caller's, in the current frame, by transmitter, then receiver.
   /// `LinkResult::receiver` is the index in `receivers`. Nothing is remembered.
   std::vector<LinkResult> solve(std::span<const Device> receivers, WorkCounters* work = nullptr) const;
@@ -121,6 +125,9 @@ class BasicSimulator {
 
   void check_surface_model() const;
   TreeUpdateReport update_index(const ChangeSet& changes);
+  void note_rays(const WorkCounters& work) {
+    index_.note_rays({work.nodes_visited, work.primitives_tested}, work.rays + work.legs);
+  }
   LinkEnd link_end(const DeviceState& state, TraversalCounters& counters) const {
     return make_link_end(Tracer(scene_, index_), state.position_m, state.ignored_body, counters);
   }

@@ -42,6 +42,10 @@ class Simulator {
   /// The same for the instant `time_s`, by the motions of the scene.
   FrameResult advance_to(double time_s, std::size_t index = 0);
 
+  /// Moves to a frame whose results are known already and took `spent`. What follows is as after `advance`, every
+  /// counter included. Throws std::logic_error unless `cache()` is off: what it remembers of a frame would be missing.
+  TreeUpdateReport pass(const Frame& frame, const WorkCounters& spent);
+
   /// Links from all transmitters to receivers of the caller's, in the current frame, by transmitter, then receiver.
   /// `LinkResult::receiver` is the index in `receivers`. Nothing is remembered.
   std::vector<LinkResult> solve(std::span<const Device> receivers, WorkCounters* work = nullptr) const;

@@ -49,6 +49,9 @@ DCEM_INLINE FrameResult Simulator::advance(const Frame& frame) {
 DCEM_INLINE FrameResult Simulator::advance_to(double time_s, std::size_t index) {
   return body_->simulator.advance_to(time_s, index);
 }
+DCEM_INLINE TreeUpdateReport Simulator::pass(const Frame& frame, const WorkCounters& spent) {
+  return body_->simulator.pass(frame, spent);
+}
 DCEM_INLINE std::vector<LinkResult> Simulator::solve(std::span<const Device> receivers, WorkCounters* work) const {
   return body_->simulator.solve(receivers, work);
 }

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iostream>
@@ -49,6 +50,7 @@ std::string gigabytes(double bytes) {
 }  // namespace
 
 Job prepare_job(const ScenarioOptions& options) {
+  const io::ProgressStage stage("reading scenario", progress_mode(options));
   Job job{io::load_scenario(options.scenario, options.overrides), {}, options.folder};
   job.frames = parse_frames(options.frames, job.scenario.time.frames);
   io::require_attached_devices(job.scenario, job.frames.first, job.frames.last);
@@ -58,6 +60,7 @@ Job prepare_job(const ScenarioOptions& options) {
 }
 
 Simulator make_simulator(Job& job, const ScenarioOptions& options) {
+  const io::ProgressStage stage("building tree", progress_mode(options));
   try {
     return {std::move(job.scenario.scene), job.scenario.settings};
   } catch (const std::invalid_argument& error) {
@@ -118,13 +121,67 @@ std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Jo
                                               std::size_t map_points_per_frame) {
   if (!job.scenario.output.html) return nullptr;
   const io::ViewerFacts facts{job.scenario.name, simulator.settings().frequency_hz, job.frames.first,
-                              job.frames.count(), map_points_per_frame};
+                              map_points_per_frame};
   return std::make_unique<io::ViewerWriter>(folder, simulator.scene(), facts, job.scenario.output.viewer);
 }
 
 void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary) {
   if (viewer == nullptr) return;
   for (const std::string& notice : viewer->finish()) summary.add_late_warning("viewer.html: " + notice);
+}
+
+io::RunIdentity run_identity(const Job& job, const ScenarioOptions& options) {
+  const io::ScenarioOverrides& given = options.overrides;
+  std::string text = "--frames " + std::to_string(job.frames.first) + ':' + std::to_string(job.frames.last);
+  const auto add = [&](const char* option, const auto& value) {
+    if constexpr (std::is_convertible_v<decltype(*value), std::string>) {
+      if (value) text += ' ' + (option + (' ' + *value));
+    } else {
+      if (value) text += ' ' + (option + (' ' + std::to_string(*value)));
+    }
+  };
+  add("--discovery", given.discovery);
+  add("--cache", given.cache);
+  add("--rays", given.rays);
+  add("--seed", given.seed);
+  add("--output", given.output);
+  add("--output", options.map_output);
+  return {DCEM_VERSION, io::content_hash(job.scenario.files), text};
+}
+
+void require_effect(const ScenarioOptions& options, const Simulator& simulator) {
+  if (simulator.discovery() == Discovery::sampled) return;
+  const std::string why = " has no effect: discovery is exact, so that no ray is shot";
+  if (options.overrides.rays) throw UsageError("--rays" + why, "--discovery sampled as well, or no --rays");
+  const DiffuseSettings& diffuse = simulator.settings().propagation.diffuse;
+  if (!options.overrides.seed || (diffuse.enabled && diffuse.phases == DiffusePhases::seeded)) return;
+  throw UsageError("--seed" + why, "--discovery sampled as well, or no --seed");
+}
+
+ResultFolder::ResultFolder(std::filesystem::path folder, const char* summary, const char* other_summary)
+    : files_(std::move(folder)),
+      summary_(summary),
+      former_(io::read_former_result(files_.path() / summary)),
+      other_(io::read_former_result(files_.path() / other_summary)) {}
+
+void ResultFolder::require_free(const std::string& name) const {
+  if (!other_ || std::find(other_->files.begin(), other_->files.end(), name) == other_->files.end()) return;
+  throw io::InputError((files_.path() / name).string(),
+                       "belongs to the results of another command in this folder; expected another folder (-o)");
+}
+
+void ResultFolder::commit(io::RunSummary& summary, const std::string& identity) {
+  io::AtomicFile& file = files_.open(summary_);
+  summary.set_files(identity, files_.names());
+  file.write(summary.json());
+  std::vector<std::string> former = former_ ? former_->files : std::vector<std::string>{};
+  if (other_) {
+    const auto is_others = [&](const std::string& name) {
+      return std::find(other_->files.begin(), other_->files.end(), name) != other_->files.end();
+    };
+    std::erase_if(former, is_others);
+  }
+  files_.commit(former);
 }
 
 io::ProgressMode progress_mode(const ScenarioOptions& options) {

@@ -2,9 +2,11 @@
 /// What `dcem run`, `dcem map` and `dcem verify` have in common.
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "dcem/io/run_journal.hpp"
 #include "dcem/io/summary.hpp"
 #include "dcem/io/viewer_writer.hpp"
 #include "dcem/sim/simulator.hpp"
@@ -44,7 +46,32 @@ std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Jo
 /// Writes the page; what it leaves out is a warning of the summary.
 void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary);
 
-/// The progress bar's mode, which is never when the user wants quiet.
+/// How progress is shown, which is not at all when the user wants quiet.
 io::ProgressMode progress_mode(const ScenarioOptions& options);
+
+/// What a run goes on with has to be of the same.
+io::RunIdentity run_identity(const Job& job, const ScenarioOptions& options);
+
+/// Throws UsageError for an option that changes nothing: rays and their seed where no ray is shot.
+void require_effect(const ScenarioOptions& options, const Simulator& simulator);
+
+/// The folder of the results of one command, with those of a former run of it there.
+class ResultFolder {
+ public:
+  /// `summary` is the name of the command's own summary, `other_summary` that of the command that may share the folder.
+  ResultFolder(std::filesystem::path folder, const char* summary, const char* other_summary);
+
+  io::OutputFolder& files() { return files_; }
+  const std::optional<io::FormerResult>& former() const { return former_; }
+  /// Throws InputError where the result of the other command has a file of this name.
+  void require_free(const std::string& name) const;
+  /// Writes the summary, and all files in place of those of the former run.
+  void commit(io::RunSummary& summary, const std::string& identity);
+
+ private:
+  io::OutputFolder files_;
+  std::string summary_;
+  std::optional<io::FormerResult> former_, other_;
+};
 
 }  // namespace dcem::program

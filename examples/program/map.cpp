@@ -1,30 +1,20 @@
 /// `dcem map`: a coverage map per grid or list of points, transmitter and frame, and what all transmitters together do.
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <set>
 
-#include "dcem/channel/map_combination.hpp"
-#include "dcem/channel/thermal_noise.hpp"
-#include "dcem/io/combined_map_writer.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
-#include "dcem/io/map_distribution.hpp"
 #include "dcem/io/map_writer.hpp"
 #include "dcem/io/placement_watch.hpp"
 #include "dcem/io/sampling_text.hpp"
 #include "job.hpp"
+#include "map_files.hpp"
+#include "stop_signal.hpp"
 
 namespace dcem::program {
 namespace {
-
-constexpr const char* best_server_part = "best_server";
-constexpr const char* sinr_part = "sinr";
-constexpr const char* distribution_part = "distribution";
-
-/// One frame's number for the file names, or nothing where there is only one frame.
-std::optional<std::size_t> numbered(const Job& job, std::size_t frame) {
-  return job.frames.count() > 1 ? std::optional(frame) : std::nullopt;
-}
 
 /// What maps are asked of: grids, and lists of points.
 struct MapOrders {
@@ -70,7 +60,7 @@ void check_names(const Scene& scene, const MapOrders& orders, const std::string&
   });
 }
 
-/// While a map is folded to cells there are both.
+/// While a map is folded to cells there are both. The maps of a frame are there together.
 void check_memory(const Scene& scene, const MapOrders& orders, const std::string& file) {
   const double point_bytes = static_cast<double>(scene.transmitters().size()) * sizeof(RadioMapPoint);
   for (const ReceiverGrid& grid : orders.grids) {
@@ -80,6 +70,17 @@ void check_memory(const Scene& scene, const MapOrders& orders, const std::string
   for (const ReceiverList& list : orders.lists) {
     require_memory(file, "list '" + list.id + "'", list.receivers.size(), point_bytes);
   }
+  require_memory(file, "the maps of a frame", orders.points(), point_bytes);
+}
+
+void check_orders(const Scene& scene, const MapOrders& orders, const std::string& file) {
+  if (orders.points() == 0) {
+    throw io::InputError(file,
+                         "no receiver is a grid or a list of points; expected one with the key 'grid', 'positions_m' "
+                         "or 'points_csv' to make a map of");
+  }
+  check_names(scene, orders, file);
+  check_memory(scene, orders, file);
 }
 
 void add_figures(const RadioMap& map, io::FrameFigures& figures) {
@@ -91,96 +92,39 @@ void add_figures(const RadioMap& map, io::FrameFigures& figures) {
   }
 }
 
-/// Writes the files of the maps of one frame. Pictures and rasters are of grids alone.
-class MapFiles {
- public:
-  /// `notes` stand at the foot of each picture.
-  MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& simulator, const Frame& frame,
-           std::vector<std::string> notes)
-      : folder_(folder),
-        notes_(std::move(notes)),
-        wanted_(job.scenario.output.map),
-        scene_(simulator.scene()),
-        frame_(frame),
-        number_(numbered(job, frame.index)),
-        time_s_(number_ ? std::optional(frame.time_s) : std::nullopt),
-        frequency_hz_(simulator.settings().frequency_hz) {
-    if (job.scenario.noise) noise_dbm_ = noise_power_dbm(*job.scenario.noise);
-  }
+/// Thrown out of the midst of a map when it is to end.
+struct StopNow {};
 
-  void write(const std::vector<RadioMap>& maps) {
-    for (const RadioMap& map : maps) write_one(map);
-    if (maps.empty()) return;
-    const CombinedMap combined = combine_maps(maps, noise_dbm_);
-    write_best_server(combined);
-    if (io::has_sinr(combined, noise_dbm_.has_value())) write_sinr(combined);
-    const auto chart = [&](io::AtomicFile& file) { file.write(io::map_distribution_svg(maps, combined, time_s_)); };
-    if (wanted_.svg) put(name_of(combined, distribution_part) + ".svg", chart);
-  }
-
- private:
-  template <typename Write>
-  void put(const std::string& name, Write&& write) {
-    io::AtomicFile& file = folder_.open(name);
-    write(file);
-    file.close();
-  }
-
-  std::string name_of(const CombinedMap& map, const char* part) const {
-    return io::map_name(map.places.id(), part, number_);
-  }
-
-  void write_one(const RadioMap& map) {
-    const std::string name = io::map_name(map.places.id(), map.transmitter, number_);
-    if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_map_csv(file, map, frequency_hz_); });
-    if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_map_npz(file, map, frequency_hz_); });
-    if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_map_asc(file, map); });
-    const auto draw = [&](auto& file) {
-      io::write_heat_map_png(noted(io::map_picture(map, scene_, frame_, frequency_hz_, time_s_)), file);
-    };
-    if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
-  }
-
-  void write_best_server(const CombinedMap& map) {
-    const std::string name = name_of(map, best_server_part);
-    if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_best_server_csv(file, map); });
-    if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_best_server_npz(file, map); });
-    if (wanted_.asc && map.places.is_grid())
-      put(name + ".asc", [&](auto& file) { io::write_best_server_asc(file, map); });
-    const auto draw = [&](auto& file) {
-      io::write_heat_map_png(noted(io::best_server_picture(map, scene_, frame_, frequency_hz_, time_s_)), file);
-    };
-    if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
-  }
-
-  void write_sinr(const CombinedMap& map) {
-    const std::string name = name_of(map, sinr_part);
-    if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_sinr_csv(file, map); });
-    if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_sinr_npz(file, map); });
-    if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_sinr_asc(file, map); });
-    const auto draw = [&](auto& file) {
-      const bool has_noise = noise_dbm_.has_value();
-      io::write_heat_map_png(noted(io::sinr_picture(map, scene_, frame_, frequency_hz_, has_noise, time_s_)), file);
-    };
-    if (wanted_.png && map.places.is_grid()) put(name + ".png", draw);
-  }
-
-  /// A picture that says what must be known of its values.
-  io::HeatMap noted(io::HeatMap picture) const {
-    picture.notes = notes_;
-    return picture;
-  }
-
-  io::OutputFolder& folder_;
-  const std::vector<std::string> notes_;
-  const io::MapOutputs wanted_;
-  const Scene& scene_;
-  const Frame& frame_;
-  const std::optional<std::size_t> number_;  ///< in the names of files; absent where there is one frame
-  const std::optional<double> time_s_;
-  const double frequency_hz_;
-  std::optional<double> noise_dbm_;
+/// The maps of one frame. None is written before all are there.
+struct FrameMaps {
+  FrameResult result;
+  io::FrameFigures figures;
+  std::vector<std::vector<RadioMap>> maps;  ///< by grid or list, then by transmitter
 };
+
+/// Nothing where a signal came before all points were done.
+std::optional<FrameMaps> solve_maps(const MapOrders& orders, Simulator& simulator, const Frame& frame,
+                                    io::ProgressBar& bar, const StopRequest& stop) {
+  FrameMaps solved{simulator.advance(frame), {}, {}};
+  solved.figures = io::figures_of(solved.result);
+  const auto tell = [&](std::size_t points) {
+    if (stop.signal() != 0) throw StopNow{};
+    bar.advance(points);
+  };
+  const auto make = [&](const auto& places) {
+    const auto start = std::chrono::steady_clock::now();
+    solved.maps.push_back(simulator.radio_maps(places, tell, &solved.figures.work));
+    solved.figures.solve_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    for (const RadioMap& map : solved.maps.back()) add_figures(map, solved.figures);
+  };
+  try {
+    for (const ReceiverGrid& grid : orders.grids) make(grid);
+    for (const ReceiverList& list : orders.lists) make(list);
+  } catch (const StopNow&) {
+    return std::nullopt;
+  }
+  return solved;
+}
 
 Device receiver_at(const ReceiverGrid& grid, std::size_t point) {
   return grid_receiver(grid, point / grid.columns(), point % grid.columns());
@@ -193,85 +137,132 @@ Device receiver_at(const ReceiverList& list, std::size_t point) {
 template <typename Places>
 SamplingReport check_points(const Simulator& simulator, const Frame& frame, const Places& places, const RadioMap& map) {
   constexpr std::size_t most_points = 16;
-  if (simulator.discovery() == Discovery::exact) return {};
   std::vector<std::size_t> open;
   for (std::size_t point = 0; point < map.points.size(); ++point) {
     if (!map.points[point].obstructed) open.push_back(point);
   }
+  const std::size_t count = std::min(most_points, open.size());
   std::vector<Device> receivers;
-  for (std::size_t number = 0; number < std::min(most_points, open.size()); ++number) {
-    receivers.push_back(receiver_at(places, open[number * open.size() / std::min(most_points, open.size())]));
+  for (std::size_t number = 0; number < count; ++number) {
+    receivers.push_back(receiver_at(places, open[number * open.size() / count]));
   }
   return check_sampling(simulator, frame, receivers, simulator.solve(receivers), most_points);
 }
 
-io::FrameFigures map_frame(io::OutputFolder& folder, const Job& job, const MapOrders& orders, Simulator& simulator,
-                           const Frame& frame, io::ViewerWriter* viewer, io::ProgressBar& bar,
-                           std::optional<SamplingReport>& sampling) {
-  const FrameResult result = simulator.advance(frame);
-  io::FrameFigures figures = io::figures_of(result);
-  if (viewer != nullptr) viewer->add(frame, result);
-  const auto make = [&](const auto& places) {
-    const auto start = std::chrono::steady_clock::now();
-    const auto maps = simulator.radio_maps(
-        places, [&](std::size_t points) { bar.advance(points); }, &figures.work);
-    figures.solve_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+/// The same of the first map of a frame.
+SamplingReport check_first_map(const Simulator& simulator, const Frame& frame, const MapOrders& orders,
+                               const FrameMaps& solved) {
+  if (simulator.discovery() == Discovery::exact || solved.maps.front().empty()) return {};
+  const RadioMap& map = solved.maps.front().front();
+  return orders.grids.empty() ? check_points(simulator, frame, orders.lists.front(), map)
+                              : check_points(simulator, frame, orders.grids.front(), map);
+}
+
+void write_maps(const FrameMaps& solved, io::OutputFolder& folder, const Job& job, const Simulator& simulator,
+                const Frame& frame, io::ViewerWriter* viewer, const std::vector<std::string>& notes) {
+  if (viewer != nullptr) viewer->add(frame, solved.result);
+  for (const std::vector<RadioMap>& maps : solved.maps) {
     for (const RadioMap& map : maps) {
-      add_figures(map, figures);
       if (viewer != nullptr && map.places.is_grid()) viewer->add(map);
     }
-    if (!sampling && !maps.empty()) sampling = check_points(simulator, frame, places, maps.front());
-    MapFiles(folder, job, simulator, frame, sampling ? io::sampling_notes(*sampling) : std::vector<std::string>{})
-        .write(maps);
-  };
-  for (const ReceiverGrid& grid : orders.grids) make(grid);
-  for (const ReceiverList& list : orders.lists) make(list);
-  return figures;
+    MapFiles(folder, job, simulator, frame, notes).write(maps);
+  }
+}
+
+/// Makes the maps frame by frame until a signal comes; returns the first frame that is not there.
+std::size_t map_frames(const Job& job, const ScenarioOptions& options, const MapOrders& orders, Simulator& simulator,
+                       io::OutputFolder& folder, io::ViewerWriter* viewer, io::RunSummary& summary,
+                       io::PlacementWatch& watch, const StopRequest& stop) {
+  io::FrameSource frames(job.scenario);
+  io::ProgressBar bar("points", orders.points() * job.frames.count(), progress_mode(options));
+  std::optional<Frame> last;
+  std::optional<SamplingReport> sampling;
+  for (std::size_t index = job.frames.first; index < job.frames.last; ++index) {
+    const Frame frame = frames.frame(simulator.scene(), index);
+    const std::optional<FrameMaps> solved =
+        stop.signal() == 0 ? solve_maps(orders, simulator, frame, bar, stop) : std::nullopt;
+    if (!solved) {
+      if (last) simulator.move_to(*last);  // the summary tells of the scene as it stood in the last whole frame
+      return index;
+    }
+    watch.look(frame);
+    if (!sampling) sampling = check_first_map(simulator, frame, orders, *solved);
+    write_maps(*solved, folder, job, simulator, frame, viewer, io::sampling_notes(*sampling));
+    summary.add(solved->figures);
+    summary.set_sampling(*sampling);
+    last = frame;
+  }
+  return job.frames.last;
+}
+
+/// `dcem map --output csv,png,html`: which files of each map are wanted, and whether the page is.
+void choose_outputs(const std::string& list, io::OutputSettings& output) {
+  output.map = {false, false, false, false, false};
+  output.html = false;
+  const std::vector<std::pair<std::string, bool*>> kinds{{"csv", &output.map.csv}, {"png", &output.map.png},
+                                                         {"npz", &output.map.npz}, {"asc", &output.map.asc},
+                                                         {"svg", &output.map.svg}, {"html", &output.html}};
+  for (const std::string& word : words_of(list)) {
+    const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == word; });
+    if (kind == kinds.end()) {
+      throw UsageError("--output: '" + word + "' is no file of a map", "some of csv, png, npz, asc, svg and html");
+    }
+    *kind->second = true;
+  }
+  if (output.html && !io::viewer_is_built_in()) {
+    throw UsageError("--output html: this build has no viewer", "three.js (libjs-three) when DCEM was built");
+  }
+}
+
+std::vector<Device> listed_points(const std::vector<ReceiverList>& lists) {
+  std::vector<Device> points;
+  for (const ReceiverList& list : lists) points.insert(points.end(), list.receivers.begin(), list.receivers.end());
+  return points;
+}
+
+[[noreturn]] void end_interrupted(int signal, const Job& job, std::size_t next_frame) {
+  const std::string by = "interrupted by " + signal_name(signal);
+  if (next_frame == job.frames.first) {
+    throw Interrupted(signal, by + " before the first frame was whole: nothing is written");
+  }
+  throw Interrupted(signal, by + ": " + job.folder.string() + " holds the maps of frames " +
+                                std::to_string(job.frames.first) + " to " + std::to_string(next_frame - 1) + " of " +
+                                std::to_string(job.frames.first) + " to " + std::to_string(job.frames.last - 1));
 }
 
 }  // namespace
 
 void map_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
+  if (options.map_output) choose_outputs(*options.map_output, job.scenario.output);
   const std::vector<ReceiverList> lists = io::take_point_lists(job.scenario);
   const MapOrders orders{job.scenario.grids, lists};
-  if (orders.points() == 0) {
-    throw io::InputError(
-        options.scenario,
-        "no receiver is a grid or a list of points; expected one with the key 'grid', 'positions_m' or "
-        "'points_csv' to make a map of");
-  }
-  check_names(job.scenario.scene, orders, options.scenario);
-  check_memory(job.scenario.scene, orders, options.scenario);
-  io::FrameSource frames(job.scenario);
+  check_orders(job.scenario.scene, orders, options.scenario);
   Simulator simulator = make_simulator(job, options);
-  io::OutputFolder folder(job.folder);
-  const std::size_t points = orders.points();
-  io::RunSummary summary(run_facts(job, simulator, simulator.plan(), points), simulator.scene());
+  require_effect(options, simulator);
+  ResultFolder folder(job.folder, "map_summary.json", "summary.json");
+  if (job.scenario.output.html) folder.require_free("viewer.html");
+  io::RunSummary summary(run_facts(job, simulator, simulator.plan(), orders.points()), simulator.scene());
   print_warnings(job.scenario.warnings, options);
-  const auto viewer = make_viewer(folder, job, simulator, orders.cells() * simulator.scene().transmitters().size());
-  std::vector<Device> points_of_lists;
-  for (const ReceiverList& list : lists) {
-    points_of_lists.insert(points_of_lists.end(), list.receivers.begin(), list.receivers.end());
-  }
-  io::PlacementWatch watch(options.scenario, simulator, points_of_lists, job.scenario.grids);
-  std::optional<SamplingReport> sampling;  // of the first map
+  const auto viewer =
+      make_viewer(folder.files(), job, simulator, orders.cells() * simulator.scene().transmitters().size());
+  const StopRequest stop;
+  const std::vector<Device> listed = listed_points(lists);
+  io::PlacementWatch watch(options.scenario, simulator, listed, job.scenario.grids);
+  const std::size_t next_frame =
+      map_frames(job, options, orders, simulator, folder.files(), viewer.get(), summary, watch, stop);
+  for (const std::string& line : watch.warnings()) summary.add_late_warning(line);
+  const bool is_cut = next_frame < job.frames.last;
+  if (is_cut && next_frame == job.frames.first) end_interrupted(stop.signal(), job, next_frame);
+  if (is_cut) summary.set_interruption({signal_name(stop.signal()), next_frame, job.frames.last});
   {
-    io::ProgressBar bar("points", points * job.frames.count(), progress_mode(options));
-    for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
-      const Frame instant = frames.frame(simulator.scene(), frame);
-      const io::FrameFigures figures = map_frame(folder, job, orders, simulator, instant, viewer.get(), bar, sampling);
-      watch.look(instant);
-      summary.add(figures);
-    }
+    const io::ProgressStage stage("writing results", progress_mode(options));
+    finish_viewer(viewer.get(), summary);
+    folder.commit(summary, run_identity(job, options).text());
   }
-  if (sampling) summary.set_sampling(*sampling);
-  for (const std::string& warning : watch.warnings()) summary.add_late_warning(warning);
-  finish_viewer(viewer.get(), summary);
-  folder.open("map_summary.json").write(summary.json());
-  folder.commit();
   print_warnings(summary.late_warnings(), options);
-  if (!options.quiet) std::cout << summary.table(folder.path());
+  if (!options.quiet) std::cout << summary.table(job.folder) << std::flush;
+  if (is_cut) end_interrupted(stop.signal(), job, next_frame);
 }
 
 }  // namespace dcem::program

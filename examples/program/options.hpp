@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "dcem/io/inspection.hpp"
 #include "dcem/io/progress.hpp"
@@ -25,6 +26,9 @@ class CheckFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The words of KEY[,KEY...].
+std::vector<std::string> words_of(const std::string& list);
+
 /// Frames first, first + 1, …, last − 1.
 struct FrameRange {
   std::size_t first = 0;
@@ -38,6 +42,8 @@ struct ScenarioOptions {
   std::optional<unsigned> threads;  ///< absent: as the scenario says, which is all cores
   std::string frames;               ///< "A:B"; empty: all
   io::ScenarioOverrides overrides;
+  std::optional<std::string> map_output;  ///< "csv,png,…": of `dcem map`, in place of the file's `output`
+  bool resume = false;
   io::ProgressMode progress = io::ProgressMode::automatic;
   bool quiet = false;
 };

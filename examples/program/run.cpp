@@ -1,44 +1,19 @@
 /// `dcem run`: every frame of a scenario, all links.
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/placement_watch.hpp"
 #include "dcem/io/result_writer.hpp"
+#include "dcem/io/run_journal.hpp"
 #include "dcem/sim/discovery.hpp"
 #include "job.hpp"
+#include "stop_signal.hpp"
 
 namespace dcem::program {
 namespace {
-
-/// Writes a frame; what the settings of an output cannot do with its delays is an error of the scenario.
-void write_frame(io::ResultWriter& writer, const FrameResult& result, const ScenarioOptions& options) {
-  try {
-    writer.write(result);
-  } catch (const std::invalid_argument& error) {
-    const std::string problem = error.what();
-    const bool says_what = problem.find("; expected ") != std::string::npos;
-    throw io::InputError(options.scenario, problem + (says_what ? "" : "; expected wider bins"));
-  }
-}
-
-void solve_frames(Simulator& simulator, const Job& job, const ScenarioOptions& options, io::FrameSource& frames,
-                  io::ResultWriter& writer, io::ViewerWriter* viewer, io::PlacementWatch& watch,
-                  io::RunSummary& summary) {
-  io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
-  for (std::size_t frame = job.frames.first; frame < job.frames.last; ++frame) {
-    const Frame instant = frames.frame(simulator.scene(), frame);
-    const FrameResult result = simulator.advance(instant);
-    write_frame(writer, result, options);
-    if (viewer != nullptr) viewer->add(instant, result);
-    watch.look(instant);
-    summary.add(io::figures_of(result));
-    bar.advance();
-    const bool is_last = frame + 1 == job.frames.last;
-    if (is_last) summary.set_sampling(check_sampling(simulator, instant, simulator.scene().receivers(), result.links));
-  }
-}
 
 io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
                              const ScenarioOptions& options) {
@@ -57,17 +32,195 @@ io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Sim
   }
 }
 
+std::string frames_text(std::size_t first, std::size_t beyond) {
+  return "frames " + std::to_string(first) + " to " + std::to_string(beyond - 1);
+}
+
+/// A run from frame to frame. What it has written after some frames depends on these frames alone, so that it may end
+/// behind any of them, and go on there.
+class Run {
+ public:
+  /// The scene's first `devices` receivers are of the scenario's own, the others are points of its grids.
+  Run(Job& job, const ScenarioOptions& options, Simulator& simulator, ResultFolder& folder, std::size_t devices)
+      : job_(job),
+        options_(options),
+        simulator_(simulator),
+        frames_(job.scenario),
+        writer_(make_writer(folder.files(), job, simulator, options)),
+        viewer_(make_viewer(folder.files(), job, simulator)),
+        summary_(run_facts(job, simulator, simulator.plan(), simulator.scene().receivers().size()), simulator.scene()),
+        watch_(options.scenario, simulator, simulator.scene().receivers().first(devices), job.scenario.grids),
+        next_(job.frames.first),
+        needs_paths_(io::needs_paths(job.scenario.output)) {}
+
+  /// Takes over the frames of a journal. Nothing is changed where a signal comes meanwhile.
+  void replay(io::JournalReader& journal, const StopRequest& stop) {
+    io::ProgressBar bar("frames kept", journal.frames(), progress_mode(options_));
+    while (auto entry = journal.next()) {
+      if (stop.signal() != 0) {
+        throw Interrupted(stop.signal(), "interrupted by " + signal_name(stop.signal()) +
+                                             " before the first new frame: everything is as it was");
+      }
+      const Frame instant = frames_.frame(simulator_.scene(), next_);
+      const TreeUpdateReport tree = simulator_.pass(instant, entry->figures.work);
+      if (entry->figures.index != next_ || tree != entry->figures.tree) {
+        throw io::InputError((job_.folder / io::journal_name).string(),
+                             "does not fit frame " + std::to_string(next_) + "; expected the journal of this run");
+      }
+      watch_.look(instant);
+      summary_.add(entry->figures);
+      last_frame_ = instant;
+      needs_paths_ ? write(instant, entry->take_result()) : writer_.write_lines(entry->link_lines);
+      ++next_;
+      bar.advance();
+    }
+  }
+
+  /// Solves the frames that are left, until a signal comes.
+  void solve(io::RunJournal* journal, const StopRequest& stop) {
+    io::ProgressBar bar("frames", job_.frames.last - next_, progress_mode(options_));
+    for (; next_ < job_.frames.last && stop.signal() == 0; ++next_) {
+      const Frame instant = frames_.frame(simulator_.scene(), next_);
+      FrameResult result = simulator_.advance(instant);
+      watch_.look(instant);
+      if (needs_paths_) {
+        write(instant, result);
+        if (journal != nullptr) journal->add(result);
+      } else {
+        const std::string lines = writer_.link_lines(result);
+        writer_.write_lines(lines);
+        if (journal != nullptr) journal->add(result, lines);
+      }
+      summary_.add(io::figures_of(result));
+      last_frame_ = instant;
+      last_links_ = std::move(result.links);
+      bar.advance();
+    }
+  }
+
+  std::size_t next_frame() const { return next_; }
+
+  /// Writes what is complete only now.
+  io::RunSummary& finish() {
+    const io::ProgressStage stage("writing results", progress_mode(options_));
+    if (job_.scenario.output.plots && next_ - job_.frames.first < 2) {
+      summary_.add_late_warning("output.plots: one frame alone has its power delay profile and no pictures over time");
+    }
+    check_last_frame();
+    for (const std::string& line : watch_.warnings()) summary_.add_late_warning(line);
+    writer_.finish();
+    finish_viewer(viewer_.get(), summary_);
+    return summary_;
+  }
+
+ private:
+  /// What the settings of an output cannot do with the delays of a frame is an error of the scenario.
+  void write(const Frame& instant, const FrameResult& result) {
+    try {
+      writer_.write(result);
+    } catch (const std::invalid_argument& error) {
+      const std::string problem = error.what();
+      const bool says_what = problem.find("; expected ") != std::string::npos;
+      throw io::InputError(options_.scenario, problem + (says_what ? "" : "; expected wider bins"));
+    }
+    if (viewer_ != nullptr) viewer_->add(instant, result);
+  }
+
+  /// What rays lack on some links of the last frame.
+  void check_last_frame() {
+    if (simulator_.discovery() == Discovery::exact || !last_frame_) return;
+    const auto receivers = simulator_.scene().receivers();
+    if (!last_links_) last_links_ = simulator_.solve(receivers);  // the frame was in the journal
+    summary_.set_sampling(check_sampling(simulator_, *last_frame_, receivers, *last_links_));
+  }
+
+  const Job& job_;
+  const ScenarioOptions& options_;
+  Simulator& simulator_;
+  io::FrameSource frames_;
+  io::ResultWriter writer_;
+  std::unique_ptr<io::ViewerWriter> viewer_;
+  io::RunSummary summary_;
+  io::PlacementWatch watch_;
+  std::optional<Frame> last_frame_;
+  std::optional<std::vector<LinkResult>> last_links_;
+  std::size_t next_;
+  const bool needs_paths_;
+};
+
 /// What the pictures leave out is said, not left to be found out.
 void warn_of_plots(Job& job, std::size_t links) {
   const io::OutputSettings& output = job.scenario.output;
-  if (!output.plots) return;
-  std::vector<std::string>& warnings = job.scenario.warnings;
-  if (links > output.plots_max_links) {
-    warnings.push_back("output.plots: the first " + std::to_string(output.plots_max_links) + " of " +
-                       std::to_string(links) + " links have pictures (output.plots.max_links)");
+  if (!output.plots || links <= output.plots_max_links) return;
+  job.scenario.warnings.push_back("output.plots: the first " + std::to_string(output.plots_max_links) + " of " +
+                                  std::to_string(links) + " links have pictures (output.plots.max_links)");
+}
+
+/// With --resume: the journal to go on with; nothing where a run begins anew, since its frames need what the frames
+/// before have remembered.
+std::optional<io::JournalReader> open_journal(const Job& job, const ScenarioOptions& options,
+                                              const io::RunIdentity& identity, const Simulator& simulator) {
+  if (!options.resume) return std::nullopt;
+  if (simulator.cache() == CacheMode::off) {
+    return std::optional<io::JournalReader>(std::in_place, job.folder, identity, options.scenario);
   }
-  if (job.frames.count() < 2) {
-    warnings.push_back("output.plots: one frame alone has its power delay profile and no pictures over time");
+  print_warnings({"--resume: the run begins again with frame " + std::to_string(job.frames.first) +
+                  ", because with cache seed a frame needs what those before it have remembered"},
+                 options);
+  return std::nullopt;
+}
+
+bool is_complete(const Job& job, const ResultFolder& folder, const io::RunIdentity& identity) {
+  const auto& former = folder.former();
+  return former && !former->is_interrupted && former->identity == identity.text() &&
+         !std::filesystem::exists(job.folder / io::journal_name);
+}
+
+/// Where the run was ended by a signal: what is there, and what is not.
+[[noreturn]] void end_interrupted(int signal, const Job& job, std::size_t next_frame, bool has_journal) {
+  const std::string by = "interrupted by " + signal_name(signal);
+  if (next_frame == job.frames.first) {
+    throw Interrupted(signal, by + " before the first frame was whole: nothing is written");
+  }
+  const std::string how = has_journal ? "'dcem run' with the same options and --resume goes on"
+                                      : "with cache seed it cannot go on, only begin again";
+  throw Interrupted(signal, by + ": " + job.folder.string() + " holds " + frames_text(job.frames.first, next_frame) +
+                                " of " + frames_text(job.frames.first, job.frames.last) + "; " + how);
+}
+
+/// The journal that the run writes; none where it would be of no use.
+std::optional<io::RunJournal> begin_journal(const Job& job, const io::RunIdentity& identity, const Simulator& simulator,
+                                            const std::optional<io::JournalReader>& former) {
+  if (former) return std::optional<io::RunJournal>(std::in_place, job.folder, former->bytes());
+  std::error_code ignored;
+  std::filesystem::remove(job.folder / io::journal_name, ignored);
+  if (simulator.cache() != CacheMode::off || job.frames.count() < 2) return std::nullopt;
+  return std::optional<io::RunJournal>(std::in_place, job.folder, identity);
+}
+
+/// Writes what is there as the result, where that is a frame at least, and says so where frames are left.
+void write_result(Run& run, const Job& job, const ScenarioOptions& options, ResultFolder& folder,
+                  const io::RunIdentity& identity, io::RunJournal* journal, int signal) {
+  const bool is_cut = run.next_frame() < job.frames.last;
+  if (is_cut && run.next_frame() == job.frames.first) end_interrupted(signal, job, run.next_frame(), false);
+  io::RunSummary& summary = run.finish();
+  if (is_cut) summary.set_interruption({signal_name(signal), run.next_frame(), job.frames.last});
+  folder.commit(summary, identity.text());
+  if (journal != nullptr) is_cut ? journal->keep() : journal->remove();
+  print_warnings(summary.late_warnings(), options);
+  if (!options.quiet) std::cout << summary.table(job.folder) << std::flush;
+  if (is_cut) end_interrupted(signal, job, run.next_frame(), journal != nullptr);
+}
+
+/// Solves the frames that are left.
+void go_on(Run& run, const Job& job, const ScenarioOptions& options, ResultFolder& folder,
+           const io::RunIdentity& identity, io::RunJournal* journal, const StopRequest& stop) {
+  try {
+    run.solve(journal, stop);
+    write_result(run, job, options, folder, identity, journal, stop.signal());
+  } catch (const io::OutputError&) {
+    if (journal != nullptr) journal->keep();  // a disk that is full today has room tomorrow
+    throw;
   }
 }
 
@@ -75,26 +228,25 @@ void warn_of_plots(Job& job, std::size_t links) {
 
 void run_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
-  const std::size_t devices = job.scenario.scene.receivers().size();  // the rest are points of grids
+  const std::size_t devices = job.scenario.scene.receivers().size();
   expand_grids(job.scenario, options.scenario);
-  io::FrameSource frames(job.scenario);
   Simulator simulator = make_simulator(job, options);
-  const auto receivers = simulator.scene().receivers();
-  io::OutputFolder folder(job.folder);
-  io::ResultWriter writer = make_writer(folder, job, simulator, options);
-  warn_of_plots(job, io::plotted_links(simulator.scene(), receivers));
-  io::RunSummary summary(run_facts(job, simulator, simulator.plan(), receivers.size()), simulator.scene());
+  require_effect(options, simulator);
+  const io::RunIdentity identity = run_identity(job, options);
+  ResultFolder folder(job.folder, "summary.json", "map_summary.json");
+  if (job.scenario.output.html) folder.require_free("viewer.html");
+  if (options.resume && is_complete(job, folder, identity)) {
+    std::cerr << job.folder.string() << ": the run is complete; nothing is left to resume\n";
+    return;
+  }
+  warn_of_plots(job, io::plotted_links(simulator.scene(), simulator.scene().receivers()));
+  std::optional<io::JournalReader> former = open_journal(job, options, identity, simulator);
+  Run run(job, options, simulator, folder, devices);
   print_warnings(job.scenario.warnings, options);
-  const auto viewer = make_viewer(folder, job, simulator);
-  io::PlacementWatch watch(options.scenario, simulator, receivers.first(devices), job.scenario.grids);
-  solve_frames(simulator, job, options, frames, writer, viewer.get(), watch, summary);
-  for (const std::string& warning : watch.warnings()) summary.add_late_warning(warning);
-  writer.finish();
-  finish_viewer(viewer.get(), summary);
-  folder.open("summary.json").write(summary.json());
-  folder.commit();
-  print_warnings(summary.late_warnings(), options);
-  if (!options.quiet) std::cout << summary.table(folder.path());
+  const StopRequest stop;
+  if (former) run.replay(*former, stop);
+  std::optional<io::RunJournal> journal = begin_journal(job, identity, simulator, former);
+  go_on(run, job, options, folder, identity, journal ? &*journal : nullptr, stop);
 }
 
 }  // namespace dcem::program

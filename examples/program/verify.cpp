@@ -5,6 +5,7 @@
 #include "dcem/io/text_table.hpp"
 #include "dcem/sim/verify/verifier.hpp"
 #include "job.hpp"
+#include "stop_signal.hpp"
 
 namespace dcem::program {
 namespace {
@@ -56,17 +57,27 @@ void verify_scenario(const ScenarioOptions& options) {
   expand_grids(job.scenario, options.scenario);
   io::FrameSource frames(job.scenario);
   Simulator simulator = make_simulator(job, options);
+  require_effect(options, simulator);
   Verifier verifier(simulator.scene(), simulator.settings());
   print_warnings(job.scenario.warnings, options);
-  io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
-  for (std::size_t index = job.frames.first; index < job.frames.last; ++index) {
-    const Frame frame = frames.frame(simulator.scene(), index);
-    verifier.check(frame, simulator.advance(frame));
-    bar.advance();
+  const StopRequest stop;
+  std::size_t next = job.frames.first;
+  {
+    io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
+    for (; next < job.frames.last && stop.signal() == 0; ++next) {
+      const Frame frame = frames.frame(simulator.scene(), next);
+      verifier.check(frame, simulator.advance(frame));
+      bar.advance();
+    }
   }
   const VerificationReport& report = verifier.report();
   if (!options.quiet) std::cout << table_of(report, simulator);
-  if (report.passed()) return;
+  if (report.passed()) {
+    if (next == job.frames.last) return;
+    throw Interrupted(stop.signal(), "interrupted by " + signal_name(stop.signal()) + ": " +
+                                         std::to_string(report.frames) + " of " + std::to_string(job.frames.count()) +
+                                         " frames are verified");
+  }
   std::string problem = std::to_string(report.paths_different + report.paths_extra) + " paths and " +
                         std::to_string(report.frames_with_other_links) + " lists of links are not as reported";
   for (const std::string& difference : report.differences) problem += "; " + difference;

@@ -2,9 +2,13 @@
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
@@ -256,6 +260,68 @@ TEST_CASE("names of a folder's files are plain and differ") {
   for (const char* name : {"a.csv", "", ".", "..", "b/c.csv", "../c.csv", "/tmp/c.csv"}) {
     CHECK_THROWS_AS(folder.open(name), std::invalid_argument);
   }
+}
+
+TEST_CASE("a folder is that of one run at a time") {
+  const TemporaryFolder base;
+  {
+    const OutputFolder first(base / "out");
+    CHECK(contains(message_of([&] { OutputFolder second(base / "out"); }),
+                   "/out: another run is writing there; expected "));
+    const OutputFolder other(base / "other");
+  }
+  CHECK_NOTHROW(OutputFolder(base / "out"));
+}
+
+TEST_CASE("what a killed program left aside is removed; what is in use, and what is somebody else's, is not") {
+  const TemporaryFolder base;
+  const AtomicFile mine(base / "mine.csv");
+  // A process that has ended, and been waited for, is no more.
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  const std::string dead = std::to_string(child), alive = std::to_string(::getppid());
+  const Names others{".links.csv." + alive + "-0.part",
+                     ".links.csv." + dead + ".part",
+                     ".links.csv.part",
+                     ".part",
+                     ".x." + dead + "-0.parts",
+                     ".x.-5-0.part",
+                     "links.csv." + dead + "-0.part"};
+  for (const std::string& name : others) std::ofstream(base / name) << "x";
+  const std::string own = std::to_string(::getpid());
+  for (const std::string& name :
+       {".links.csv." + dead + "-0.part", "..dcem-commit." + dead + "-17.part", ".mine.csv." + own + "-99999.part"}) {
+    std::ofstream(base / name) << "x";
+  }
+  const OutputFolder folder(base.path());
+  Names left = base.names();
+  CHECK(std::erase_if(left, [](const std::string& name) { return name.starts_with(".mine.csv."); }) == 1);
+  Names expected = others;
+  std::sort(expected.begin(), expected.end());
+  CHECK(left == expected);
+}
+
+TEST_CASE("a program that is killed while its files take their names leaves no mixture for the next run") {
+  const TemporaryFolder base;
+  for (const char* name : {"new.csv", "old.csv", "notes.txt"}) std::ofstream(base / name) << "x";
+  std::ofstream(base / ".dcem-commit") << "new.csv\nold.csv\nabsent.csv\n../" << base.path().filename().string()
+                                       << "/notes.txt\n";
+  { const OutputFolder folder(base.path()); }
+  CHECK(base.names() == Names{"notes.txt"});
+}
+
+TEST_CASE("a commit takes away the former result, and nothing else") {
+  const TemporaryFolder base;
+  for (const char* name : {"old.csv", "both.csv", "notes.txt"}) std::ofstream(base / name) << "x";
+  std::filesystem::create_directory(base / "folder");
+  std::filesystem::create_symlink("notes.txt", base / "link");
+  OutputFolder folder(base.path());
+  folder.open("both.csv").write("new");
+  CHECK(folder.names() == Names{"both.csv"});
+  folder.commit({"old.csv", "both.csv", "folder", "link", "absent", "../x"});
+  CHECK(base.names() == Names{"both.csv", "folder", "link", "notes.txt"});
+  CHECK(file_bytes(base / "both.csv") == "new");
 }
 
 }  // namespace test_atomic_file

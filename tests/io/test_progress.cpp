@@ -106,4 +106,41 @@ TEST_CASE("many threads: every piece counts, and the line is drawn at most ten t
   CHECK(static_cast<double>(std::count(text.begin(), text.end(), '\r')) <= 10.0 * elapsed_s + 2.0);
 }
 
+TEST_CASE("for programs progress is one object a line") {
+  CHECK(dcem::io::progress_json("frames", 3, 100, 1.5) ==
+        R"({"stage":"frames","done":3,"total":100,"elapsed_s":1.500,"remaining_s":48.500})");
+  CHECK(dcem::io::progress_json("frames", 0, 100, 1.5) ==
+        R"({"stage":"frames","done":0,"total":100,"elapsed_s":1.500,"remaining_s":null})");
+  CHECK(dcem::io::progress_json("search", 7, {}, 0.0) ==
+        R"({"stage":"search","done":7,"total":null,"elapsed_s":0.000,"remaining_s":null})");
+  std::ostringstream stream;
+  {
+    ProgressBar bar("frames", 5, ProgressMode::json, stream);
+    CHECK(stream.str().starts_with(R"({"stage":"frames","done":0,"total":5,)"));  // before anything is done
+    bar.advance(2);
+    CHECK(stream.str().find(R"("done":2,"total":5,)") != std::string::npos);  // the first piece is told at once
+    bar.advance(3);
+  }
+  const std::string text = stream.str();
+  CHECK(text.find('\r') == std::string::npos);
+  CHECK(text.find(R"({"stage":"frames","done":5,"total":5,)", text.rfind('{')) != std::string::npos);
+  CHECK(text.ends_with("}\n"));
+}
+
+TEST_CASE("a stage of unknown length is shown from its start, and gone at its end") {
+  std::ostringstream people, programs, nobody;
+  {
+    const dcem::io::ProgressStage shown("reading", ProgressMode::always, people);
+    const dcem::io::ProgressStage told("reading", ProgressMode::json, programs);
+    const dcem::io::ProgressStage hidden("reading", ProgressMode::never, nobody);
+    CHECK(people.str() == "\rreading ...  0:00");
+    CHECK(programs.str().starts_with(R"({"stage":"reading","done":0,"total":1,)"));
+  }
+  CHECK(people.str().ends_with("\r" + std::string(17, ' ') + "\r"));
+  CHECK(programs.str().ends_with(",\"remaining_s\":0.000}\n"));
+  const std::string lines = programs.str();
+  CHECK(std::count(lines.begin(), lines.end(), '\n') == 2);
+  CHECK(nobody.str().empty());
+}
+
 }  // namespace test_progress

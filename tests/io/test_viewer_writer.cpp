@@ -107,7 +107,7 @@ Page page_of(std::size_t frames, int paths, const io::ViewerSettings& settings =
   const TemporaryFolder folder;
   Scene scene = small_scene();
   io::OutputFolder output(folder.path());
-  io::ViewerWriter writer(output, scene, {"drive", 28e9, 0, frames, 0}, settings);
+  io::ViewerWriter writer(output, scene, {"drive", 28e9, 0, 0}, settings);
   for (std::size_t index = 0; index < frames; ++index) {
     const Frame frame = scene.frame_at(0.1 * static_cast<double>(index), index);
     scene.apply(frame);
@@ -185,10 +185,10 @@ TEST_CASE("frames are thinned evenly and the page says so") {
   DCEM_NEEDS_VIEWER();
   const Page page = page_of(100, 1, {400'000, 20});
   const auto indices = page.array<std::uint32_t>("frame_index");
-  REQUIRE(indices.size() == 20);
-  for (std::size_t place = 0; place < indices.size(); ++place) CHECK(indices[place] == 5 * place);
+  REQUIRE(indices.size() == 13);
+  for (std::size_t place = 0; place < indices.size(); ++place) CHECK(indices[place] == 8 * place);
   REQUIRE(page.notices.size() == 1);
-  CHECK(page.notices[0] == "one of every 5 of 100 frames is shown");
+  CHECK(page.notices[0] == "one of every 8 of 100 frames is shown");
   CHECK(page.head().find(page.notices[0]) != std::string::npos);
 }
 
@@ -233,7 +233,7 @@ TEST_CASE("a map stands in the page point by point, with what is inside an objec
   const TemporaryFolder folder;
   Scene scene = small_scene();
   io::OutputFolder output(folder.path());
-  io::ViewerWriter writer(output, scene, {"area", 28e9, 0, 1, 6}, {});
+  io::ViewerWriter writer(output, scene, {"area", 28e9, 0, 6}, {});
   const Frame frame = scene.frame_at(0.0, 0);
   writer.add(frame, FrameResult{});
   RadioMap map{ReceiverGrid{"area", {400040, 10, 1.5}, {2.0, 1.0}, {3, 2}, {}}, "mast", std::vector<RadioMapPoint>(6)};
@@ -262,7 +262,7 @@ TEST_CASE("a build without three.js refuses to make a page") {
   const TemporaryFolder folder;
   const Scene scene = small_scene();
   io::OutputFolder output(folder.path());
-  CHECK_THROWS_AS(io::ViewerWriter(output, scene, {"drive", 28e9, 0, 1, 0}, {}), std::invalid_argument);
+  CHECK_THROWS_AS(io::ViewerWriter(output, scene, {"drive", 28e9, 0, 0}, {}), std::invalid_argument);
 }
 
 }  // namespace test_viewer_writer

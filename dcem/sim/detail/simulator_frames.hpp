@@ -37,7 +37,7 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   result.links = std::move(solved.links);
   result.work = solved.work;
   result.cache += solved.cache;
-  index_.note_rays({result.work.nodes_visited, result.work.primitives_tested}, result.work.rays + result.work.legs);
+  note_rays(result.work);
   result.solve_time_s = solve_watch.seconds();
   return result;
 }
@@ -49,6 +49,19 @@ TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
   forget_replaced(changes, not_reported);
   frame_ = frame;
   return update_index(changes);
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+TreeUpdateReport BasicSimulator<Surface, Index>::pass(const Frame& frame, const WorkCounters& spent) {
+  if (cache_ != CacheMode::off) throw std::logic_error("pass: the cache remembers what only advance() finds");
+  const TreeUpdateReport report = move_to(frame);
+  TraversalCounters not_reported;
+  for (std::size_t index = 0; index < halves_.size(); ++index) {
+    const DeviceState state = scene_.device_state(scene_.transmitters()[index], frame_);
+    if (state.present) halves_[index].pass(link_end(state, not_reported), scene_.receivers().size());
+  }
+  note_rays(spent);
+  return report;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>

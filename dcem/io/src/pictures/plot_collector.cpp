@@ -9,8 +9,8 @@
 namespace dcem::io {
 namespace {
 
-std::size_t profile_frame_of(const ResultFacts& facts, const OutputSettings& output) {
-  if (!output.plots_pdp_frame) return facts.frames / 2;
+std::optional<std::size_t> profile_frame_of(const ResultFacts& facts, const OutputSettings& output) {
+  if (!output.plots_pdp_frame) return std::nullopt;
   const std::size_t frame = *output.plots_pdp_frame;
   if (frame >= facts.first_frame && frame - facts.first_frame < facts.frames) return frame - facts.first_frame;
   throw std::invalid_argument("output.plots.pdp_frame: frame " + std::to_string(frame) +
@@ -97,10 +97,12 @@ void PlotCollector::write_over_time(const Link& link) {
 void PlotCollector::write() {
   for (const Link& link : links_) {
     if (link.plots.frames() > 1) write_over_time(link);
-    if (profile_frame_ >= link.plots.frames()) continue;  // a caller that stopped early
-    const std::string number = std::to_string(first_frame_ + profile_frame_);
+    // Of the frames that there are: a run may have been ended before its last.
+    const std::size_t frame = profile_frame_.value_or(link.plots.frames() / 2);
+    if (frame >= link.plots.frames()) continue;
+    const std::string number = std::to_string(first_frame_ + frame);
     write_file("pdp_" + link.name + "_" + number + ".svg",
-               [&](AtomicFile& file) { file.write(line_chart_svg(link.plots.profile_at(profile_frame_))); });
+               [&](AtomicFile& file) { file.write(line_chart_svg(link.plots.profile_at(frame))); });
   }
 }
 

@@ -37,7 +37,7 @@ class PlotCollector {
 
   OutputFolder& folder_;
   const Scene& scene_;
-  std::size_t profile_frame_ = 0;  // counted from the first of the run
+  std::optional<std::size_t> profile_frame_;  // counted from the first of the run; absent: the middle one
   std::size_t first_frame_ = 0;
   std::vector<Link> links_;  // by transmitter, then receiver
 };

@@ -20,6 +20,10 @@ AtomicFile* open_sheet(OutputFolder& folder, bool wanted, const char* name) {
 
 }  // namespace
 
+bool needs_paths(const OutputSettings& output) {
+  return output.paths || output.pdp || output.doppler || output.cfr || output.npz || output.plots || output.html;
+}
+
 void ResultWriter::Sheet::flush(std::size_t limit) {
   if (file == nullptr || text.size() < limit) return;
   file->write(text);
@@ -54,7 +58,7 @@ void ResultWriter::write(const FrameResult& frame) {
   };
   for (const LinkResult& link : frame.links) {
     if (output_.paths) lines_->append(paths_.text, frame, link);
-    if (output_.links) append_link(frame, link);
+    if (output_.links) append_link(links_.text, frame, link);
     if (output_.pdp) dcem::detail::naming("output.pdp.bin_s", [&] { append_profile(frame, link); });
     if (output_.doppler) dcem::detail::naming("output.doppler.bin_hz", [&] { append_doppler(frame, link); });
     flush_all(sheet_bytes);
@@ -63,6 +67,18 @@ void ResultWriter::write(const FrameResult& frame) {
   if (responses_) responses_->add(frame);
   if (arrays_) arrays_->add(frame);
   if (plots_) plots_->add(frame);
+}
+
+std::string ResultWriter::link_lines(const FrameResult& frame) const {
+  std::string lines;
+  if (!output_.links) return lines;
+  for (const LinkResult& link : frame.links) append_link(lines, frame, link);
+  return lines;
+}
+
+void ResultWriter::write_lines(std::string_view link_lines) {
+  links_.text += link_lines;
+  links_.flush(1);
 }
 
 void ResultWriter::finish() {
@@ -77,10 +93,10 @@ CsvLine ResultWriter::begin_line(Sheet& sheet, const FrameResult& frame, const L
   return line;
 }
 
-void ResultWriter::append_link(const FrameResult& frame, const LinkResult& link) {
+void ResultWriter::append_link(std::string& text, const FrameResult& frame, const LinkResult& link) const {
   const LinkStatistics& values = link.statistics;
   const std::vector<PowerSample> samples = power_samples(link.paths, link.diffuse);
-  CsvLine line(links_.text);
+  CsvLine line(text);
   line.count(frame.index).number(frame.time_s);
   line.prepared(csv_transmitters_[link.transmitter]).prepared(csv_receivers_[link.receiver]);
   line.flag(values.line_of_sight).count(values.path_count).flag(link.complete);

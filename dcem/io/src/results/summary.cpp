@@ -1,6 +1,7 @@
 #include "dcem/io/summary.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -145,6 +146,13 @@ FrameFigures sum_of(const std::vector<FrameFigures>& frames) {
   return sum;
 }
 
+Json interruption_json(const std::optional<Interruption>& interruption) {
+  if (!interruption) return nullptr;
+  return {{"signal", interruption->signal},
+          {"next_frame", interruption->next_frame},
+          {"frames_left", interruption->beyond_frame - interruption->next_frame}};
+}
+
 std::string mean_text(std::size_t sum, std::size_t count) {
   return count == 0 ? "-" : format_fixed(static_cast<double>(sum) / static_cast<double>(count), 1);
 }
@@ -211,6 +219,9 @@ std::string RunSummary::json() const {
   const double covered_s = facts_.time.step_s * static_cast<double>(frames_.size());
   std::string text = json_text({{"version", facts_.version},
                                 {"scenario", facts_.scenario},
+                                {"identity", identity_},
+                                {"files", files_},
+                                {"interrupted", interruption_json(interruption_)},
                                 {"scene", scene_json(scene_, facts_.receivers)},
                                 {"settings", settings_json(facts_)},
                                 {"warnings", warnings()},
@@ -269,6 +280,20 @@ std::string RunSummary::table(const std::filesystem::path& folder) const {
   table.add_row({"threads", std::to_string(resolve_thread_count(facts_.settings.threads))});
   table.add_row({"results", folder.string()});
   return table.str();
+}
+
+std::optional<FormerResult> read_former_result(const std::filesystem::path& summary) {
+  std::ifstream stream(summary);
+  const Json document = Json::parse(stream, nullptr, false);
+  if (!document.is_object() || !document.contains("version") || !document.contains("totals")) return std::nullopt;
+  FormerResult former;
+  former.is_interrupted = document.contains("interrupted") && !document["interrupted"].is_null();
+  if (document.contains("identity") && document["identity"].is_string()) former.identity = document["identity"];
+  if (!document.contains("files") || !document["files"].is_array()) return former;
+  for (const Json& name : document["files"]) {
+    if (name.is_string()) former.files.push_back(name);
+  }
+  return former;
 }
 
 }  // namespace dcem::io

@@ -7,6 +7,7 @@
 #include "dcem/field/medium_loss.hpp"
 #include "dcem/io/src/scenario/keys/blocks.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
+#include "dcem/io/src/text/read_log.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 #include "dcem/sim/discovery.hpp"
 
@@ -107,11 +108,14 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
 }  // namespace
 
 Scenario load_scenario(const std::filesystem::path& file, const ScenarioOverrides& overrides) {
+  const ReadLog log;
   const JsonDocument document(file);
   const JsonDocument command_line("command line", command_line_values(overrides, document.root().raw()));
   check_is_scenario(document.root());
-  return read_scenario(file, document.root().object(keys::scenario_block()),
-                       command_line.root().object(keys::command_line_block()));
+  Scenario scenario = read_scenario(file, document.root().object(keys::scenario_block()),
+                                    command_line.root().object(keys::command_line_block()));
+  scenario.files = log.files();
+  return scenario;
 }
 
 std::vector<ReceiverList> take_point_lists(Scenario& scenario) {

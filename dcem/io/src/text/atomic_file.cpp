@@ -1,12 +1,11 @@
 #include "dcem/io/atomic_file.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <system_error>
 #include <utility>
+
+#include "dcem/io/src/text/folder_claim.hpp"
 
 namespace dcem::io {
 namespace {
@@ -16,13 +15,6 @@ namespace fs = std::filesystem;
 std::string describe(int error_number) {
   if (error_number == 0) return "could not be written to its end";
   return "cannot be written (" + std::generic_category().message(error_number) + ")";
-}
-
-// Process number and a counter: two programs, or two files of one program, never share a temporary name.
-fs::path temporary_beside(const fs::path& target) {
-  static std::atomic<unsigned> counter{0};
-  const std::string suffix = "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".part";
-  return target.parent_path() / ("." + target.filename().string() + suffix);
 }
 
 void check_target(const fs::path& target) {
@@ -42,10 +34,14 @@ OutputError::OutputError(const fs::path& path, const std::string& problem, const
 
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   check_target(target_);
-  const fs::path temporary = temporary_beside(target_);
+  const fs::path temporary = take_temporary_beside(target_);
   errno = 0;
   stream_.open(temporary, std::ios::binary | std::ios::trunc);
-  if (!stream_) fail(errno);
+  if (!stream_) {
+    const int error_number = errno;
+    give_up_temporary(temporary);
+    fail(error_number);
+  }
   temporary_ = temporary;
 }
 
@@ -60,6 +56,7 @@ AtomicFile::~AtomicFile() {
   stream_.close();
   std::error_code ignored;
   fs::remove(temporary_, ignored);
+  give_up_temporary(temporary_);
 }
 
 void AtomicFile::fail(int error_number) const {
@@ -88,6 +85,7 @@ void AtomicFile::commit() {
   std::error_code error;
   fs::rename(temporary_, target_, error);
   if (error) fail(error.value());
+  give_up_temporary(temporary_);
   temporary_.clear();
 }
 
@@ -95,6 +93,8 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   if (folder_.empty()) folder_ = ".";
   try {
     create_folders();
+    claim_ = std::make_unique<FolderClaim>(folder_);
+    remove_leftovers(folder_);
     const AtomicFile probe(folder_ / "dcem-probe");
   } catch (...) {
     remove_created_folders();
@@ -108,7 +108,7 @@ OutputFolder::~OutputFolder() {
 }
 
 AtomicFile& OutputFolder::open(const std::string& name) {
-  if (name.empty() || name == "." || name == ".." || fs::path(name).filename() != fs::path(name)) {
+  if (!is_plain_name(name)) {
     throw std::invalid_argument("OutputFolder: '" + name + "' is not a plain file name");
   }
   const fs::path target = folder_ / name;
@@ -119,8 +119,20 @@ AtomicFile& OutputFolder::open(const std::string& name) {
   return *files_.back();
 }
 
-void OutputFolder::commit() {
+std::vector<std::string> OutputFolder::names() const {
+  std::vector<std::string> names;
+  for (const auto& file : files_) names.push_back(file->target().filename().string());
+  return names;
+}
+
+void OutputFolder::commit(const std::vector<std::string>& former) {
   for (const auto& file : files_) file->close();
+  std::vector<std::string> touched = names();
+  touched.insert(touched.end(), former.begin(), former.end());
+  const CommitNote note(folder_, touched);
+  // Before the first new name: a folder never holds files of two results. The last file, the summary, says of what it
+  // is.
+  remove_files(folder_, former);
   rename_all();
   committed_ = true;
 }

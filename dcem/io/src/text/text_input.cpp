@@ -13,6 +13,7 @@
 
 #include "dcem/core/error.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/text/read_log.hpp"
 
 namespace dcem::io {
 
@@ -46,6 +47,7 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) throw InputError(file.string(), "is not there; " + expectation);
   if (std::filesystem::is_directory(file, ignored)) throw InputError(file.string(), "is a folder; " + expectation);
+  ReadLog::note(file);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());

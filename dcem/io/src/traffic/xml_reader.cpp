@@ -8,6 +8,7 @@
 
 #include "dcem/core/error.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/src/text/read_log.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
 namespace dcem::io {
@@ -22,6 +23,7 @@ void check_readable(const std::filesystem::path& file, const std::string& expect
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) throw InputError(file.string(), "is not there; " + expectation);
   if (std::filesystem::is_directory(file, ignored)) throw InputError(file.string(), "is a folder; " + expectation);
+  ReadLog::note(file);
 }
 
 }  // namespace

@@ -95,9 +95,7 @@ ViewedLink link_of(const Scene& scene, const LinkResult& link, std::size_t most_
 
 }  // namespace
 
-ViewerFrames::ViewerFrames(std::size_t frames, std::size_t map_points_per_frame, const ViewerSettings& settings)
-    : settings_(settings) {
-  step_ = std::max<std::size_t>(1, (frames + settings.max_frames - 1) / settings.max_frames);
+ViewerFrames::ViewerFrames(std::size_t map_points_per_frame, const ViewerSettings& settings) : settings_(settings) {
   while (map_points_per_frame / (map_step_ * map_step_) > 10 * settings.max_rays) ++map_step_;
 }
 

@@ -57,16 +57,17 @@ struct ViewedFrame {
 };
 
 /// Frames of a run as they come, never more than the settings allow. What is kept in the end does not depend on the
-/// moment at which something had to go: of every link the strongest paths, as many for all links, and every so many
-/// frames.
+/// moment at which something had to go, nor on how many frames were to come: of every link the strongest paths, as many
+/// for all links, and every so many frames.
 class ViewerFrames {
  public:
-  ViewerFrames(std::size_t frames, std::size_t map_points_per_frame, const ViewerSettings& settings);
+  ViewerFrames(std::size_t map_points_per_frame, const ViewerSettings& settings);
 
   void add(const Scene& scene, const Frame& frame, const FrameResult& result);
   void add(const RadioMap& map);
 
   const std::vector<ViewedFrame>& frames() const { return frames_; }
+  std::size_t seen() const { return seen_; }  ///< frames, those that were left out among them
   /// What was left out, a line each.
   std::vector<std::string> notices() const;
 

@@ -327,7 +327,7 @@ Json head_json(const Scene& scene, const ViewerFacts& facts, const ViewerFrames&
             {"scenario", facts.scenario},
             {"frequency_hz", facts.frequency_hz},
             {"first_frame", facts.first_frame},
-            {"frames", facts.frames},
+            {"frames", frames.seen()},
             {"centre_m", {centre_m.x, centre_m.y, centre_m.z}},
             {"notices", frames.notices()},
             {"viridis", viridis_json()}};

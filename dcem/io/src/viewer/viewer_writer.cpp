@@ -16,7 +16,7 @@ ViewerWriter::ViewerWriter(OutputFolder& folder, const Scene& scene, ViewerFacts
     : file_(folder.open("viewer.html")),
       scene_(scene),
       facts_(std::move(facts)),
-      frames_(std::make_unique<ViewerFrames>(facts_.frames, facts_.map_points_per_frame, settings)) {
+      frames_(std::make_unique<ViewerFrames>(facts_.map_points_per_frame, settings)) {
   if (!viewer_is_built_in())
     throw std::invalid_argument("viewer: this build has none; expected three.js at build time");
 }

@@ -1,0 +1,110 @@
+#pragma once
+/// The journal of a run: what each frame brought, written as it goes, so that a run that was ended goes on where it
+/// was. docs/design/long_runs.md has the reasons.
+///
+/// A journal belongs to the program and the machine that wrote it. It is one file, which only grows, frame by frame;
+/// what was not written to its end, because the program was killed, is found out and left out.
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dcem/io/summary.hpp"
+#include "dcem/sim/frame_result.hpp"
+
+namespace dcem::io {
+
+/// The name of the file within the folder of results.
+inline constexpr std::string_view journal_name = "run.journal";
+
+/// A number that differs where the bytes or the number of these files do. Throws InputError where one cannot be read.
+std::uint64_t content_hash(std::span<const std::filesystem::path> files);
+
+/// What must be the same for a run to go on.
+struct RunIdentity {
+  std::string version;       ///< of the program
+  std::uint64_t inputs = 0;  ///< `content_hash` of the scenario and of all files it names
+  std::string options;       ///< those that change results, on one line
+
+  friend bool operator==(const RunIdentity&, const RunIdentity&) = default;
+  /// All of it as one short text.
+  [[nodiscard]] std::string text() const;
+};
+
+/// A frame. Where `links.csv` is all that is asked for, its lines are kept instead of the links.
+struct JournalEntry {
+  FrameFigures figures;
+  std::string link_lines;
+  std::vector<LinkResult> links;
+
+  /// The result as it was. Takes the links.
+  FrameResult take_result();
+};
+
+/// Writes a journal.
+class RunJournal {
+ public:
+  /// Starts a journal, in place of one that is there. Throws `OutputError`.
+  RunJournal(const std::filesystem::path& folder, const RunIdentity& identity);
+  /// Goes on behind the first `bytes` of the one that is there. Throws `OutputError`.
+  RunJournal(const std::filesystem::path& folder, std::uint64_t bytes);
+  RunJournal(const RunJournal&) = delete;
+  RunJournal& operator=(const RunJournal&) = delete;
+  /// Removes a journal that was started here, unless it is kept: a run that fails leaves nothing.
+  ~RunJournal();
+
+  /// Appends a frame; it is there, should the program be killed, as soon as this returns. Throws `OutputError`.
+  void add(const FrameResult& frame);
+  /// The same with the lines of `links.csv` in place of the links.
+  void add(const FrameResult& frame, const std::string& link_lines);
+
+  /// For `--resume`: the file stays when this object goes, if a frame is in it.
+  void keep() { is_kept_ = is_kept_ || has_frames_; }
+  /// When the run is whole.
+  void remove();
+
+ private:
+  void put(char kind, std::string_view bytes);
+  void end_frame();
+
+  std::filesystem::path file_;
+  std::ofstream stream_;
+  bool is_kept_, has_frames_ = false;
+};
+
+/// Reads a journal.
+class JournalReader {
+ public:
+  /// Throws InputError where there is no journal, and where it is that of another run: `scenario` is the file that is
+  /// named then.
+  JournalReader(const std::filesystem::path& folder, const RunIdentity& identity, const std::string& scenario);
+
+  /// Whole frames in it.
+  std::size_t frames() const { return frames_; }
+  /// Up to the end of the last of them.
+  std::uint64_t bytes() const { return bytes_; }
+  /// The next one; nothing behind the last. Throws InputError where the file has changed meanwhile.
+  std::optional<JournalEntry> next();
+
+ private:
+  struct Piece {
+    char kind = 0;
+    std::string bytes;
+  };
+
+  void check_head(const RunIdentity& identity, const std::string& scenario);
+  void count_frames();
+  std::optional<Piece> next_piece();
+
+  std::filesystem::path file_;
+  std::ifstream stream_;
+  std::uint64_t size_ = 0, bytes_ = 0;
+  std::size_t frames_ = 0, read_ = 0;
+};
+
+}  // namespace dcem::io

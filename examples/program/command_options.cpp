@@ -1,0 +1,165 @@
+#include "command_options.hpp"
+
+#include <map>
+
+#include "dcem/core/instruction_set.hpp"
+
+namespace dcem::program {
+namespace {
+
+const std::map<std::string, io::ProgressMode> progress_modes{{"auto", io::ProgressMode::automatic},
+                                                             {"always", io::ProgressMode::always},
+                                                             {"never", io::ProgressMode::never},
+                                                             {"json", io::ProgressMode::json}};
+const std::map<std::string, io::UpAxis> up_axes{{"y", io::UpAxis::y}, {"z", io::UpAxis::z}};
+const std::map<std::string, InstructionSet> instruction_sets{
+    {"baseline", InstructionSet::baseline}, {"avx2", InstructionSet::avx2}, {"avx512", InstructionSet::avx512}};
+const std::vector<std::string> run_outputs{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots", "html"};
+const std::vector<std::string> map_outputs{"csv", "png", "npz", "asc", "svg", "html"};
+
+// An option that takes one of a few words.
+template <typename Value>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, const std::string& does,
+                        const std::map<std::string, Value>& choices, Value& chosen) {
+  std::vector<std::string> words;
+  for (const auto& choice : choices) words.push_back(choice.first);
+  return command
+      .add_option_function<std::string>(
+          name, [&](const std::string& word) { chosen = choices.at(word); }, does)
+      ->check(CLI::IsMember(words));
+}
+
+void choose_instructions(const std::string& word) {
+  try {
+    select_instruction_set(instruction_sets.at(word));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what(), "a level that this processor has");
+  }
+}
+
+std::string comma_list(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+void add_common_options(CLI::App& command, ScenarioOptions& options) {
+  command.add_option("scenario", options.scenario, "The scenario file (JSON)")->required()->type_name("SCENARIO.json");
+  command.add_option("--threads", options.threads, "Number of threads (default: all cores); never changes a result")
+      ->check(CLI::Range(1U, 4096U))
+      ->type_name("N");
+  command.add_option("--frames", options.frames, "Only the frames A to B - 1")->type_name("A:B");
+  command.add_option("--discovery", options.overrides.discovery, "How paths are found: exact or sampled")
+      ->check(CLI::IsMember({"exact", "sampled"}))
+      ->type_name("MODE");
+  command.add_option("--rays", options.overrides.rays, "Rays per receiver; for sampled discovery alone")
+      ->type_name("N");
+  command
+      .add_option("--seed", options.overrides.seed,
+                  "Turns the sphere of rays, and draws seeded phases; for sampled discovery and diffuse power alone")
+      ->type_name("S");
+  command
+      .add_option_function<std::string>(
+          "--instructions", choose_instructions,
+          "Instructions that trace rays (default: the best that the processor has); never changes a result")
+      ->check(CLI::IsMember({"baseline", "avx2", "avx512"}))
+      ->type_name("LEVEL");
+  CLI::Option* progress =
+      add_choice(command, "--progress",
+                 "Progress on the error stream: a bar, auto (on a terminal), always or never; or json, lines "
+                 "with stage, done, total, elapsed_s, remaining_s",
+                 progress_modes, options.progress);
+  progress->type_name("WHEN");
+  command.add_flag("--quiet", options.quiet, "No table, no progress and no warnings")->excludes(progress);
+}
+
+void add_cache_option(CLI::App& command, ScenarioOptions& options) {
+  command
+      .add_option("--cache", options.overrides.cache,
+                  "What is remembered between frames: off or seed (exact is not in this version)")
+      ->check(CLI::IsMember({"off", "seed", "exact"}))
+      ->type_name("MODE");
+}
+
+void add_folder_option(CLI::App& command, std::string& folder, const std::string& absent) {
+  command.add_option("-o", folder, "Folder for the results (default: " + absent + ")")->type_name("DIR");
+}
+
+/// One of the words of an option that takes some, divided by commas; they stand in the help and in completions.
+std::string list_type(const std::vector<std::string>& words) {
+  std::string type = "KEY[,KEY...]:{";
+  for (const std::string& word : words) type += (type.back() == '{' ? "" : ",") + word;
+  return type + '}';
+}
+
+}  // namespace
+
+std::vector<std::string> words_of(const std::string& list) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+    end = list.find(',', begin);
+    words.push_back(CLI::detail::trim_copy(list.substr(begin, end == std::string::npos ? end : end - begin)));
+  }
+  return words;
+}
+
+void add_run_options(CLI::App& command, ScenarioOptions& options) {
+  add_common_options(command, options);
+  add_cache_option(command, options);
+  add_folder_option(command, options.folder, "out/<scenario name>");
+  const auto choose = [&](const std::string& list) {
+    for (const std::string& word : words_of(list)) {
+      if (word == "map")
+        throw UsageError("--output: map has no effect on 'dcem run'", "some of " + comma_list(run_outputs));
+    }
+    options.overrides.output = list;
+  };
+  command
+      .add_option_function<std::string>("--output", choose,
+                                        "Result files, in place of those that the scenario asks for")
+      ->type_name(list_type(run_outputs));
+  command.add_flag("--resume", options.resume,
+                   "Go on with a run that was ended; scenario and options must be those of that run");
+}
+
+void add_map_options(CLI::App& command, ScenarioOptions& options) {
+  add_common_options(command, options);
+  add_folder_option(command, options.folder, "out/<scenario name>");
+  command.add_option("--output", options.map_output, "Files of each map, in place of those that the scenario asks for")
+      ->type_name(list_type(map_outputs));
+}
+
+void add_verify_options(CLI::App& command, ScenarioOptions& options) {
+  add_common_options(command, options);
+  add_cache_option(command, options);
+}
+
+void add_inspect_options(CLI::App& command, InspectOptions& options) {
+  command.add_option("scene", options.obj, "The scene (OBJ)")->required()->type_name("SCENE.obj");
+  command.add_flag("--json", options.json, "JSON instead of tables");
+  add_choice(command, "--up", "The file's axis that points up: y or z (default: z)", up_axes, options.settings.obj.up)
+      ->type_name("AXIS");
+  command.add_option("--unit-m", options.settings.obj.unit_m, "Length of one file unit in metres (default: 1)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("X");
+  command.add_option("--frequency-hz", options.settings.frequency_hz, "Evaluate the materials at this frequency")
+      ->check(CLI::PositiveNumber)
+      ->type_name("F");
+}
+
+void add_compare_options(CLI::App& command, CompareOptions& options) {
+  command.add_option("first", options.first, "A map (CSV)")->required()->type_name("A.csv");
+  command.add_option("second", options.second, "The map it is compared with (CSV)")->required()->type_name("B.csv");
+  add_folder_option(command, options.folder, "out/compare");
+  command.add_option("--column", options.column, "The power to compare (default: power_incoherent_dbm)")
+      ->type_name("NAME");
+  command.add_option("--second-column", options.second_column, "Its name in the second file, where that differs")
+      ->type_name("NAME");
+}
+
+void add_keys_options(CLI::App& command, KeysOptions& options) {
+  command.add_option("word", options.word, "Only keys whose path or meaning holds this")->type_name("WORD");
+  command.add_flag("--markdown", options.markdown, "All of them as a page in Markdown")->excludes("word");
+}
+
+}  // namespace dcem::program

@@ -1,0 +1,218 @@
+/// What the command line takes: help, options without effect, completion.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/io/program_case.hpp"
+
+namespace test_command_line {
+
+using namespace dcem::test;
+
+namespace {
+
+using Words = std::set<std::string>;
+
+/// "--threads" and the like, as the help has them at the start of its lines.
+Words options_in_help(const std::string& help) {
+  static const std::regex line(R"((?:^|\n)  (-[^ ]+))"), name("--?[a-z][a-z-]*");
+  Words names;
+  for (std::sregex_iterator at(help.begin(), help.end(), line), end; at != end; ++at) {
+    const std::string text = (*at)[1];
+    for (std::sregex_iterator one(text.begin(), text.end(), name); one != end; ++one) names.insert(one->str());
+  }
+  return names;
+}
+
+Words commands_in_help(const std::string& help) {
+  static const std::regex line(R"(\n  ([a-z]+) )");
+  Words names;
+  const std::string list = help.substr(help.find("Subcommands:"));
+  for (std::sregex_iterator at(list.begin(), list.end(), line), end; at != end; ++at) names.insert((*at)[1]);
+  return names;
+}
+
+Words operator+(Words words, const Words& more) {
+  words.insert(more.begin(), more.end());
+  return words;
+}
+
+const Words common{"-h",     "--help", "--threads",      "--frames",   "--discovery",
+                   "--rays", "--seed", "--instructions", "--progress", "--quiet"};
+
+std::string script_of(const TemporaryFolder& folder, const std::string& shell) {
+  const Outcome outcome = dcem_program(folder, "completion " + shell);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(outcome.error.empty());
+  return outcome.output;
+}
+
+/// What bash offers behind these words, the last of which is not yet finished.
+std::string offered(const TemporaryFolder& folder, const std::string& line) {
+  const std::string command = "cd " + quoted(folder.path()) + " && bash -c 'compopt() { :; }; source dcem.bash; " +
+                              "COMP_WORDS=(dcem " + line + "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _dcem; " +
+                              "echo \"${COMPREPLY[*]}\"' > offered";
+  CHECK(std::system(command.c_str()) == 0);
+  std::string words = file_bytes(folder / "offered");
+  if (!words.empty()) words.pop_back();
+  return words;
+}
+
+bool has_program(const std::string& name) {
+  return std::system(("command -v " + name + " > /dev/null 2>&1").c_str()) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("the help of each command lists exactly what it takes") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  const std::vector<std::pair<std::string, Words>> expected{
+      {"run", common + Words{"--cache", "-o", "--output", "--resume"}},
+      {"map", common + Words{"-o", "--output"}},
+      {"verify", common + Words{"--cache"}},
+      {"inspect", {"-h", "--help", "--json", "--up", "--unit-m", "--frequency-hz"}},
+      {"compare", {"-h", "--help", "-o", "--column", "--second-column"}},
+      {"completion", {"-h", "--help"}}};
+  const Words commands = commands_in_help(dcem_program(folder, "--help").output);
+  for (const auto& one : expected) {
+    CAPTURE(one.first);
+    CHECK(commands.contains(one.first));
+    CHECK(options_in_help(dcem_program(folder, one.first + " --help").output) == one.second);
+  }
+  const std::string run = dcem_program(folder, "run --help").output, map = dcem_program(folder, "map --help").output;
+  CHECK(run.find("{paths,links,pdp,cfr,doppler,npz,plots,html}") != std::string::npos);
+  CHECK(map.find("{csv,png,npz,asc,svg,html}") != std::string::npos);
+  CHECK(dcem_program(folder, "inspect --help").output.find("not in this version") == std::string::npos);
+}
+
+TEST_CASE("an option that would change nothing is refused, not ignored") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver + "," + grid_receiver);  // asks for exact discovery
+  for (const std::string command : {"run", "map", "verify"}) {
+    check_refused(folder, command + " street.json --rays 100", "--rays has no effect");
+    check_refused(folder, command + " street.json --seed 7", "--seed has no effect");
+    check_refused(folder, command + " street.json --quiet --progress json", "--quiet");
+  }
+  check_refused(folder, "map street.json --cache off", "--cache");
+  check_refused(folder, "map street.json --resume", "--resume");
+  check_refused(folder, "verify street.json --resume", "--resume");
+  check_refused(folder, "verify street.json -o out", "-o");
+  check_refused(folder, "verify street.json --output links", "--output");
+  for (const char* key : {"links", "map", "pdp", ""}) {
+    check_refused(folder, "map street.json --output 'csv," + std::string(key) + "'", "is no file of a map");
+  }
+  check_refused(folder, "run street.json --output links,map", "map has no effect on 'dcem run'");
+  check_refused(folder, "completion tcsh", "tcsh");
+  // Where rays are shot they have an effect.
+  const Outcome sampled =
+      dcem_program(folder, "run street.json --discovery sampled --rays 100 --seed 7 --quiet --frames 0:1 -o out");
+  CHECK(sampled.exit_code == 0);
+}
+
+TEST_CASE("--output of a map picks its files") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, grid_receiver);
+  REQUIRE(dcem_program(folder, "map street.json --frames 0:1 --quiet --output npz,asc -o out").exit_code == 0);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "out")) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  CHECK(names == std::vector<std::string>{"map_area_best_server.asc", "map_area_best_server.npz", "map_area_bs.asc",
+                                          "map_area_bs.npz", "map_summary.json"});
+}
+
+TEST_CASE("completions know every command and every option, since they come from where the help comes from") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  const Words commands = commands_in_help(dcem_program(folder, "--help").output);
+  REQUIRE(commands.size() >= 6);
+  for (const std::string shell : {"bash", "zsh", "fish"}) {
+    CAPTURE(shell);
+    const std::string script = script_of(folder, shell);
+    for (const std::string& command : commands) {
+      CAPTURE(command);
+      CHECK(std::regex_search(script, std::regex("\\b" + command + "\\b")));
+      const Words options = options_in_help(dcem_program(folder, command + " --help").output);
+      CHECK(options.size() >= 2);
+      // The part of the script that is about this command.
+      const std::string begin = shell == "bash"  ? "    " + command + ") options="
+                                : shell == "zsh" ? "      " + command + ")\n"
+                                                 : "";
+      const std::size_t first = script.find(begin);
+      REQUIRE(first != std::string::npos);
+      const std::string part = shell == "fish" ? script : script.substr(first, script.find(";;", first) - first);
+      for (const std::string& option : options) {
+        CAPTURE(option);
+        const std::string in_fish = "__fish_seen_subcommand_from " + command + "'[^\n]*" +
+                                    (option.starts_with("--") ? " -l " + option.substr(2) : " -s " + option.substr(1)) +
+                                    "\\b";
+        CHECK(std::regex_search(part, std::regex(shell == "fish" ? in_fish : "[' \"]" + option + "['\\[ \"]")));
+      }
+    }
+  }
+}
+
+TEST_CASE("bash completes commands, options, words and lists of words") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write(folder / "dcem.bash", script_of(folder, "bash"));
+  if (!has_program("bash")) return;
+  CHECK(offered(folder, "ver") == "verify");
+  CHECK(offered(folder, "--v") == "--version");
+  CHECK(offered(folder, "run --res") == "--resume");
+  CHECK(offered(folder, "map --res").empty());
+  CHECK(offered(folder, "run street.json --discovery \"\"") == "exact sampled");
+  CHECK(offered(folder, "run street.json --progress j") == "json");
+  CHECK(offered(folder, "run street.json --output p") == "paths pdp plots");
+  CHECK(offered(folder, "run street.json --output links,pd") == "links,pdp");
+  CHECK(offered(folder, "map street.json --output links,pd").empty());
+  CHECK(offered(folder, "completion \"\"") == "bash zsh fish");
+  CHECK(offered(folder, "run str").empty());  // the shell then offers files
+}
+
+TEST_CASE("zsh and fish read their scripts") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  for (const std::string shell : {"zsh", "fish"}) {
+    if (!has_program(shell)) {
+      MESSAGE("skipped: there is no " << shell);
+      continue;
+    }
+    write(folder / "script", script_of(folder, shell));
+    CHECK(std::system((shell + " -n " + quoted(folder / "script")).c_str()) == 0);
+  }
+}
+
+TEST_CASE("programs hear of every stage, in order") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver + "," + grid_receiver);
+  const auto stages_of = [&](const std::string& arguments) {
+    const Outcome outcome = dcem_program(folder, arguments + " --progress json");
+    CHECK(outcome.exit_code == 0);
+    static const std::regex line(
+        R"re(\{"stage":"([a-z ]+)","done":[0-9]+,"total":[0-9]+,"elapsed_s":[0-9]+\.[0-9]{3},"remaining_s":(?:null|[0-9]+\.[0-9]{3})\}\n)re");
+    CHECK(std::regex_replace(outcome.error, line, "").empty());
+    std::vector<std::string> stages;
+    for (std::sregex_iterator at(outcome.error.begin(), outcome.error.end(), line), end; at != end; ++at) {
+      if (stages.empty() || stages.back() != (*at)[1]) stages.push_back((*at)[1]);
+    }
+    return stages;
+  };
+  using Stages = std::vector<std::string>;
+  CHECK(stages_of("run street.json -o r") == Stages{"reading scenario", "building tree", "frames", "writing results"});
+  CHECK(stages_of("map street.json --frames 0:1 --output csv -o m") ==
+        Stages{"reading scenario", "building tree", "points", "writing results"});
+  CHECK(stages_of("verify street.json --frames 0:1") == Stages{"reading scenario", "building tree", "frames"});
+}
+
+}  // namespace test_command_line
