@@ -220,6 +220,14 @@ std::vector<Device> listed_points(const std::vector<ReceiverList>& lists) {
   return points;
 }
 
+/// Pictures and rasters are of grids alone.
+void require_files(const MapOrders& orders, const io::OutputSettings& output) {
+  const io::MapOutputs& map = output.map;
+  if (!orders.grids.empty() || map.csv || map.npz || map.svg || output.html) return;
+  throw UsageError("--output has no effect: png and asc are of grids, and the scenario has lists of points alone",
+                   "some of csv, npz, svg and html");
+}
+
 [[noreturn]] void end_interrupted(int signal, const Job& job, std::size_t next_frame) {
   const std::string by = "interrupted by " + signal_name(signal);
   if (next_frame == job.frames.first) {
@@ -238,6 +246,7 @@ void map_scenario(const ScenarioOptions& options) {
   const std::vector<ReceiverList> lists = io::take_point_lists(job.scenario);
   const MapOrders orders{job.scenario.grids, lists};
   check_orders(job.scenario.scene, orders, options.scenario);
+  if (options.map_output) require_files(orders, job.scenario.output);
   Simulator simulator = make_simulator(job, options);
   require_effect(options, simulator);
   ResultFolder folder(job.folder, "map_summary.json", "summary.json");

@@ -108,6 +108,8 @@ TEST_CASE("an option that would change nothing is refused, not ignored") {
   for (const char* key : {"links", "map", "pdp", ""}) {
     check_refused(folder, "map street.json --output 'csv," + std::string(key) + "'", "is no file of a map");
   }
+  write_scenario(folder, R"({"id":"probe","positions_m":[[1,2,3]]})");
+  check_refused(folder, "map street.json --output png,asc", "--output has no effect");
   check_refused(folder, "run street.json --output links,map", "map has no effect on 'dcem run'");
   check_refused(folder, "completion tcsh", "tcsh");
   // Where rays are shot they have an effect.

@@ -343,7 +343,8 @@ TEST_CASE("maps without a value, or of equal values, are sound") {
       {"obstructed", R"("origin_m":[-5,10,1.5],"spacing_m":[2,1e-6],"count":[6,4])"},
       {"equal", R"("origin_m":[-5,2,1.5],"spacing_m":[1e-6,1e-6],"count":[6,4])"},
       {"single", R"("origin_m":[-5,2,1.5],"spacing_m":[1,1],"count":[1,1])"}};
-  for (const auto& [name, grid] : grids) {
+  for (const auto& one : grids) {
+    const std::string &name = one.first, &grid = one.second;
     CAPTURE(name);
     write_scenario(folder, R"({"id":"area","grid":{)" + grid + "}}");
     const Outcome outcome = dcem_program(folder, "map street.json --frames 0:1 --quiet -o " + name);
