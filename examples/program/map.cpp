@@ -9,6 +9,7 @@
 #include "dcem/io/map_writer.hpp"
 #include "dcem/io/placement_watch.hpp"
 #include "dcem/io/sampling_text.hpp"
+#include "dcem/io/slow_map.hpp"
 #include "job.hpp"
 #include "map_files.hpp"
 #include "stop_signal.hpp"
@@ -251,6 +252,10 @@ void map_scenario(const ScenarioOptions& options) {
   require_effect(options, simulator);
   ResultFolder folder(job.folder, "map_summary.json", "summary.json");
   if (job.scenario.output.html) folder.require_free("viewer.html");
+  if (const auto hint = io::slow_map_hint(simulator.settings().propagation, simulator.plan(),
+                                          simulator.scene().surface_count(), orders.points())) {
+    job.scenario.warnings.push_back(*hint);
+  }
   io::RunSummary summary(run_facts(job, simulator, simulator.plan(), orders.points()), simulator.scene());
   print_warnings(job.scenario.warnings, options);
   const auto viewer =

@@ -137,7 +137,7 @@ void PathCollector::add_interactions(NpzWriter& npz) const {
 }
 
 void PathCollector::write() {
-  NpzWriter npz;
+  NpzWriter npz(NpzCompression::deflate);  // lists are padded to the longest one
   add_fields(npz);
   add_angles(npz);
   add_interactions(npz);
