@@ -147,7 +147,9 @@ SamplingReport check_points(const Simulator& simulator, const Frame& frame, cons
   for (std::size_t number = 0; number < count; ++number) {
     receivers.push_back(receiver_at(places, open[number * open.size() / count]));
   }
-  return check_sampling(simulator, frame, receivers, simulator.solve(receivers), most_points);
+  WorkCounters work;
+  const std::vector<LinkResult> links = simulator.solve(receivers, &work);
+  return check_sampling(simulator, frame, {receivers, links, work.sequences_proposed}, most_points);
 }
 
 /// The same of the first map of a frame.

@@ -70,6 +70,7 @@ class Run {
       watch_.look(instant);
       summary_.add(entry->figures);
       last_frame_ = instant;
+      last_sequences_ = entry->figures.work.sequences_proposed;
       needs_paths_ ? write(instant, entry->take_result()) : writer_.write_lines(entry->link_lines);
       ++next_;
       bar.advance();
@@ -94,6 +95,7 @@ class Run {
       summary_.add(io::figures_of(result));
       last_frame_ = instant;
       last_links_ = std::move(result.links);
+      last_sequences_ = result.work.sequences_proposed;
       bar.advance();
     }
   }
@@ -131,7 +133,7 @@ class Run {
     if (simulator_.discovery() == Discovery::exact || !last_frame_) return;
     const auto receivers = simulator_.scene().receivers();
     if (!last_links_) last_links_ = simulator_.solve(receivers);  // the frame was in the journal
-    summary_.set_sampling(check_sampling(simulator_, *last_frame_, receivers, *last_links_));
+    summary_.set_sampling(check_sampling(simulator_, *last_frame_, {receivers, *last_links_, last_sequences_}));
   }
 
   const Job& job_;
@@ -144,6 +146,7 @@ class Run {
   io::PlacementWatch watch_;
   std::optional<Frame> last_frame_;
   std::optional<std::vector<LinkResult>> last_links_;
+  std::uint64_t last_sequences_ = 0;
   std::size_t next_;
   const bool needs_paths_;
 };

@@ -37,6 +37,13 @@ TEST_CASE("a warning names what is sampled, how it was checked, and what is miss
   SamplingReport exact = report();
   exact.exact = true;
   CHECK(contains(io::sampling_warning(exact, "all"), "searched again exactly"));
+  SamplingReport too_long;
+  too_long.rays = 2000;
+  too_long.is_too_long = true;
+  CHECK(io::sampling_warning(too_long, "all paths") ==
+        "sampled: all paths are looked for by 2000 rays; what they lack is not known: a second search would take too "
+        "long");
+  CHECK(io::sampling_notes(too_long).size() == 2);
 }
 
 TEST_CASE("what rays look for follows from the orders and the plan") {

@@ -1,7 +1,7 @@
 #pragma once
 /// What a search by rays lacks, told from some of its links that are searched again, better: exactly where that is
-/// offered, otherwise with ten times as many rays, which finds most of what is easy to find and so tells the least that
-/// is missing.
+/// offered, otherwise with up to ten times as many rays, which finds most of what is easy to find and so tells the
+/// least that is missing. The second search is bounded: it tries some millions of sequences at most, a few seconds.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -26,6 +26,7 @@ struct SamplingReport {
   bool exact = false;                ///< the second search misses nothing
   std::uint32_t rays = 0;            ///< of the search that is checked, per receiver
   std::uint32_t reference_rays = 0;  ///< of the second one, where it is not exact
+  bool is_too_long = false;          ///< a second search would be longer than the bound: no link was checked
   std::vector<CheckedLink> links{};  ///< by transmitter, then receiver; empty where nothing is left to rays
 
   /// The share of the paths that rays found; 1 where there are none.
@@ -36,11 +37,17 @@ struct SamplingReport {
   std::size_t links_not_reached() const;
 };
 
-/// Checks links of the simulator's current frame, which were solved for `receivers`: those of at most `most_receivers`
-/// of them, evenly spread. Makes a second simulator, which needs as much memory and time as the first one did. Nothing
-/// is done where no kind of path is left to rays.
-SamplingReport check_sampling(const Simulator& simulator, const Frame& frame, std::span<const Device> receivers,
-                              std::span<const LinkResult> links, std::size_t most_receivers = 8);
+/// Links of a simulator's current frame, and how many sequences were proposed for them.
+struct SolvedLinks {
+  std::span<const Device> receivers;
+  std::span<const LinkResult> links;  ///< of these receivers
+  std::uint64_t sequences = 0;
+};
+
+/// Checks the links of at most `most_receivers` receivers, evenly spread. Makes a second simulator, which needs as much
+/// memory as the first one did. Nothing is done where no kind of path is left to rays.
+SamplingReport check_sampling(const Simulator& simulator, const Frame& frame, const SolvedLinks& solved,
+                              std::size_t most_receivers = 8);
 
 }  // namespace dcem
 

@@ -16,25 +16,39 @@ namespace detail {
 
 /// An exact search takes up to a second a link in a city with three interactions.
 inline constexpr std::size_t most_exact_links = 64;
-inline constexpr std::uint32_t reference_factor = 10, most_reference_rays = 100'000'000;
+/// Of the second search. A thread tries about a million in a second.
+inline constexpr std::uint64_t most_reference_sequences = 4'000'000;
+inline constexpr std::uint64_t most_reference_factor = 10, least_reference_factor = 2;
+inline constexpr std::uint64_t most_reference_rays = 100'000'000;
 
-/// The settings of the second search.
-inline SimulationSettings reference_settings(const Simulator& simulator, std::size_t links, SamplingReport& report) {
-  SimulationSettings settings = simulator.settings();
-  PropagationSettings& propagation = settings.propagation;
-  propagation.cache = CacheMode::off;
-  propagation.diffuse.enabled = false;
-  PropagationSettings by_halves = propagation;
+/// How the second search is made.
+struct ReferencePlan {
+  PropagationSettings propagation;
+  std::size_t receivers = 0;
+};
+
+/// Many receivers with ten times as many rays, or fewer with fewer; none where even that is too long.
+inline ReferencePlan plan_reference(const Simulator& simulator, std::size_t most_receivers,
+                                    std::uint64_t sequences_of_one, SamplingReport& report) {
+  ReferencePlan plan{simulator.settings().propagation, most_receivers};
+  plan.propagation.cache = CacheMode::off;
+  plan.propagation.diffuse.enabled = false;
+  PropagationSettings by_halves = plan.propagation;
   by_halves.discovery = Discovery::automatic;
-  report.exact = links <= most_exact_links && plan_search(by_halves, simulator.scene()).discovery == Discovery::exact;
+  report.exact = most_receivers * simulator.scene().transmitters().size() <= most_exact_links &&
+                 plan_search(by_halves, simulator.scene()).discovery == Discovery::exact;
   if (report.exact) {
-    propagation = by_halves;
-  } else {
-    propagation.rays = propagation.rays > most_reference_rays / reference_factor ? most_reference_rays
-                                                                                 : reference_factor * propagation.rays;
-    report.reference_rays = propagation.rays;
+    plan.propagation = by_halves;
+    return plan;
   }
-  return settings;
+  const std::uint64_t affordable = most_reference_sequences / std::max<std::uint64_t>(1, sequences_of_one);
+  const std::uint64_t factor = std::min(affordable, most_reference_factor);
+  plan.receivers = factor < least_reference_factor
+                       ? 0
+                       : static_cast<std::size_t>(std::min<std::uint64_t>(most_receivers, affordable / factor));
+  plan.propagation.rays = static_cast<std::uint32_t>(std::min(most_reference_rays, factor * plan.propagation.rays));
+  report.reference_rays = plan.propagation.rays;
+  return plan;
 }
 
 /// Every so many receivers, from the middle of the first part of the list.
@@ -80,30 +94,34 @@ DCEM_INLINE std::size_t SamplingReport::links_not_reached() const {
   }));
 }
 
-DCEM_INLINE SamplingReport check_sampling(const Simulator& simulator, const Frame& frame,
-                                          std::span<const Device> receivers, std::span<const LinkResult> links,
+DCEM_INLINE SamplingReport check_sampling(const Simulator& simulator, const Frame& frame, const SolvedLinks& solved,
                                           std::size_t most_receivers) {
   SamplingReport report;
-  if (simulator.discovery() == Discovery::exact || receivers.empty() || links.empty()) return report;
-  report.rays = simulator.settings().propagation.rays;
   std::vector<std::size_t> present;
-  for (std::size_t index = 0; index < receivers.size(); ++index) {
-    if (simulator.is_present(receivers[index])) present.push_back(index);
+  for (std::size_t index = 0; index < solved.receivers.size(); ++index) {
+    if (simulator.is_present(solved.receivers[index])) present.push_back(index);
   }
+  if (simulator.discovery() == Discovery::exact || present.empty() || solved.links.empty()) return report;
+  report.rays = simulator.settings().propagation.rays;
+  const detail::ReferencePlan plan = detail::plan_reference(simulator, std::min(most_receivers, present.size()),
+                                                            solved.sequences / present.size(), report);
+  report.is_too_long = plan.receivers == 0;
+  if (report.is_too_long) return report;
   std::vector<std::size_t> chosen;
   std::vector<Device> devices;
-  for (const std::size_t at : detail::evenly_spread(present.size(), most_receivers)) {
+  for (const std::size_t at : detail::evenly_spread(present.size(), plan.receivers)) {
     chosen.push_back(present[at]);
-    devices.push_back(receivers[present[at]]);
+    devices.push_back(solved.receivers[present[at]]);
   }
-  const std::size_t count = chosen.size() * simulator.scene().transmitters().size();
-  Simulator reference(simulator.scene(), detail::reference_settings(simulator, count, report));
+  SimulationSettings settings = simulator.settings();
+  settings.propagation = plan.propagation;
+  Simulator reference(simulator.scene(), settings);
   reference.move_to(frame);
   for (const LinkResult& again : reference.solve(devices)) {
-    const auto same = std::find_if(links.begin(), links.end(), [&](const LinkResult& link) {
+    const auto same = std::find_if(solved.links.begin(), solved.links.end(), [&](const LinkResult& link) {
       return link.transmitter == again.transmitter && link.receiver == chosen[again.receiver];
     });
-    if (same != links.end()) report.links.push_back(detail::checked(*same, again));
+    if (same != solved.links.end()) report.links.push_back(detail::checked(*same, again));
   }
   return report;
 }

@@ -45,7 +45,9 @@ struct Town {
 
   SamplingReport check(const Simulator& simulator, std::size_t most_receivers = 24) const {
     const Frame frame = simulator.scene().frame_at(0.0, 0);
-    return check_sampling(simulator, frame, receivers, simulator.solve(receivers), most_receivers);
+    WorkCounters work;
+    const std::vector<LinkResult> links = simulator.solve(receivers, &work);
+    return check_sampling(simulator, frame, {receivers, links, work.sequences_proposed}, most_receivers);
   }
 };
 
@@ -91,6 +93,23 @@ TEST_CASE("beyond what exact search covers ten times as many rays are the measur
   REQUIRE(report.links.size() == 4 * town.scenario.scene.transmitters().size());
   CHECK(report.recall() < 1.0);
   CHECK(report.missing_db(1.0) > 0.0);
+}
+
+TEST_CASE("a second search takes fewer receivers, then fewer rays, and is left out, rather than take long") {
+  const Town town;
+  const Simulator simulator = town.simulator(Discovery::automatic, 500, 4);
+  const Frame frame = simulator.scene().frame_at(0.0, 0);
+  const std::vector<LinkResult> links = simulator.solve(town.receivers);
+  const auto report_of = [&](std::uint64_t sequences_of_one) {
+    return check_sampling(simulator, frame, {town.receivers, links, sequences_of_one * town.receivers.size()}, 4);
+  };
+  const std::size_t transmitters = town.scenario.scene.transmitters().size();
+  CHECK(report_of(200'000).links.size() == 2 * transmitters);  // ten times 200,000 for each of two
+  CHECK(report_of(200'000).reference_rays == 5000);
+  CHECK(report_of(1'000'000).links.size() == transmitters);
+  CHECK(report_of(1'000'000).reference_rays == 2000);  // four times as many for one
+  CHECK(report_of(3'000'000).is_too_long);
+  CHECK(report_of(3'000'000).links.empty());
 }
 
 }  // namespace test_sampling_check

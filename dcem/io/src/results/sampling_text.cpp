@@ -31,18 +31,23 @@ std::string sampled_kinds(const PropagationSettings& propagation, const SearchPl
 }
 
 std::string sampling_warning(const SamplingReport& report, const std::string& sampled) {
+  const std::string looked_for = "sampled: " + sampled + " are looked for by " + std::to_string(report.rays) + " rays";
+  if (report.is_too_long) return looked_for + "; what they lack is not known: a second search would take too long";
   const std::string again = report.exact ? "exactly" : "with " + std::to_string(report.reference_rays);
-  std::string text = sampled + " are looked for by " + std::to_string(report.rays) + " rays, which found " +
-                     percent(report.recall()) + " of the paths of " + std::to_string(report.links.size()) +
-                     " links that were searched again " + again + "; their powers lack " +
-                     decibels(report.missing_db(0.5)) + " in the median, " + decibels(report.missing_db(common_share)) +
-                     " at 95 %";
+  std::string text = looked_for + ", which found " + percent(report.recall()) + " of the paths of " +
+                     std::to_string(report.links.size()) + " links that were searched again " + again +
+                     "; their powers lack " + decibels(report.missing_db(0.5)) + " in the median, " +
+                     decibels(report.missing_db(common_share)) + " at 95 %";
   const std::size_t empty = report.links_not_reached();
   if (empty > 0) text += "; on " + std::to_string(empty) + " of them no path was found though there is one";
-  return "sampled: " + text;
+  return text;
 }
 
 std::vector<std::string> sampling_notes(const SamplingReport& report) {
+  if (report.is_too_long) {
+    return {"sampled: " + std::to_string(report.rays) + " rays; what they lack is not known",
+            "(a second search would take too long)"};
+  }
   if (report.links.empty()) return {};
   return {"sampled: " + std::to_string(report.rays) + " rays find " + percent(report.recall()) + " of the paths;",
           "powers lack " + decibels(report.missing_db(0.5)) + " in the median, " +

@@ -95,6 +95,7 @@ Json cache_json(const CacheCounters& cache) {
 }
 
 Json sampling_json(const SamplingReport& report) {
+  if (report.is_too_long) return {{"rays", report.rays}, {"links", 0}};
   return {{"rays", report.rays},
           {"searched_again", report.exact ? "exact" : "sampled"},
           {"rays_again", report.exact ? Json(nullptr) : Json(report.reference_rays)},
@@ -196,7 +197,7 @@ std::vector<std::string> RunSummary::warnings() const {
 
 std::vector<std::string> RunSummary::late_warnings() const {
   std::vector<std::string> lines = late_warnings_;
-  if (!sampling_.links.empty()) lines.push_back(sampling_warning(sampling_, facts_.sampled_kinds));
+  if (says_something(sampling_)) lines.push_back(sampling_warning(sampling_, facts_.sampled_kinds));
   const FrameFigures sum = sum_of(frames_);
   if (sum.work.diffuse_links_unfinished > 0) lines.push_back("diffuse power: " + diffuse_text(sum));
   return lines;
@@ -225,7 +226,7 @@ std::string RunSummary::json() const {
                                 {"scene", scene_json(scene_, facts_.receivers)},
                                 {"settings", settings_json(facts_)},
                                 {"warnings", warnings()},
-                                {"sampling", sampling_.links.empty() ? Json(nullptr) : sampling_json(sampling_)},
+                                {"sampling", says_something(sampling_) ? sampling_json(sampling_) : Json(nullptr)},
                                 {"totals",
                                  {{"frames", frames_.size()},
                                   {"links", sum.links},
