@@ -1,6 +1,7 @@
 #pragma once
-/// Devices, grids and vehicles in places where they can hardly be meant to be: kilometres outside the scene, below it,
-/// inside what lets nothing through. A watch looks at each frame and says at the end what it saw, once for all frames.
+/// Devices, grids and vehicles in places where they can hardly be meant to be: kilometres outside the scenery, under
+/// the ground, inside what lets nothing through. A watch looks at each frame and says at the end what it saw, once for
+/// all frames. It knows the scenery and guesses at what is meant: a warning is no error.
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -31,36 +32,41 @@ class PlacementWatch {
 
  private:
   using Shell = std::pair<BodyId, std::uint32_t>;
-  enum class Problem { far_outside, below_all, below_ground, shut_in, shut_in_alone, drives_through };
+  enum class Problem { far_outside, under_ground, shut_in, shut_in_alone, drives_through };
   /// What is wrong with whom, and the rest of the sentence.
   struct Sighting {
     Problem problem;
     std::string subject, detail;
+    double extent_m = 0.0;  ///< the detail is that of the frame with the largest one
     std::vector<std::size_t> frames;
   };
 
-  void look_at_places(const Vec3& position_m, const std::string& subject);
-  void look_at_receiver(const Device& device, const std::string& subject);
+  void note_rooms();
+  void look_at_place(const Vec3& position_m, const std::string& subject);
+  void look_at_receiver(const Device& device);
   void look_at_transmitter(const Device& device);
   void look_at_grid(const ReceiverGrid& grid);
   void look_at_object(BodyId body);
-  void note(Problem problem, const std::string& subject, const std::string& detail);
-  bool is_below_ground(const Vec3& position_m) const;
-  /// Shells around a point that let nothing through, without those of a body that is not there for its links.
-  std::vector<Shell> closed_shells(const Vec3& point_m, const DeviceState* of) const;
+  void note(Problem problem, const std::string& subject, const std::string& detail, double extent_m = 0.0);
+  bool is_far(const Vec3& position_m, const std::string& subject);
+  bool is_under_ground(const Vec3& position_m) const;
+  bool ground_is_hit(const Vec3& from_m, const Vec3& direction, double farthest_m) const;
+  /// Shells around a device that let nothing through, but those of what it rides on or is mounted on.
+  std::vector<Shell> closed_shells(const DeviceState& of) const;
   bool lets_through(const Shell& shell) const;
-  double share_of_receivers_in(const Shell& shell) const;
+  bool moves_along(BodyId one, BodyId other) const;
+  double share_of_receivers_in(const Shell& shell, const std::set<Shell>& elsewhere) const;
   std::string name_of(const Shell& shell) const;
 
   std::string file_;
   const Simulator& simulator_;
   std::span<const Device> receivers_;
   std::span<const ReceiverGrid> grids_;
+  Aabb<double> box_;                            ///< of the scenery
   std::vector<std::optional<Vec3>> middles_m_;  ///< of all bodies, in their own coordinates
   const Frame* frame_ = nullptr;                ///< while it is looked at
-  Aabb<double> box_;                            ///< of everything in the current frame
-  std::set<Shell> rooms_;                       ///< shells that hold a transmitter
-  mutable std::map<Shell, bool> lets_through_;
+  std::vector<std::set<Shell>> rooms_;          ///< by transmitter: shells that hold it or carry it
+  mutable std::map<Shell, bool> transmits_;
   std::vector<Sighting> sightings_;  ///< in the order in which they were seen first
   std::map<std::pair<Problem, std::string>, std::size_t> numbers_;
 };

@@ -12,16 +12,11 @@ namespace dcem::io {
 /// What rays look for, as in "paths of more than 3 interactions".
 std::string sampled_kinds(const PropagationSettings& propagation, const SearchPlan& plan);
 
-/// Whether there is something to say.
-inline bool says_something(const SamplingReport& report) {
-  return report.is_too_long || !report.links.empty();
-}
-
-/// One line: what is sampled, and what is missing on the links that were searched again. Precondition: there is
-/// something to say.
+/// One line: what is sampled, and what is missing on the links that were searched again. Precondition: something is
+/// sampled.
 std::string sampling_warning(const SamplingReport& report, const std::string& sampled);
 
-/// The same for the foot of a picture, in lines of some 60 characters; none where there is nothing to say.
+/// The same for the foot of a picture, in lines of some 60 characters; none where nothing is sampled.
 std::vector<std::string> sampling_notes(const SamplingReport& report);
 
 }  // namespace dcem::io

@@ -29,6 +29,7 @@
 #include "dcem/sim/discovery.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/settings.hpp"
+#include "dcem/sim/shell_at_point.hpp"
 
 namespace dcem {
 
@@ -64,10 +65,8 @@ class BasicSimulator {
   /// `LinkResult::receiver` is the index in `receivers`. Nothing is remembered.
   std::vector<LinkResult> solve(std::span<const Device> receivers, WorkCounters* work = nullptr) const;
 
-  /// Closed shells that hold a point in the current frame: (body, number of the shell within it), ascending.
-  std::vector<std::pair<BodyId, std::uint32_t>> shells_around(const Vec3& point_m) const {
-    return dcem::shells_around(Tracer(scene_, index_), index_, point_m);
-  }
+  /// Closed shells that hold a point in the current frame or on which it lies, ascending.
+  std::vector<ShellAtPoint> shells_at(const Vec3& point_m) const;
 
   /// Whether a device is there in the current frame.
   bool is_present(const Device& device) const { return scene_.device_state(device, frame_).present; }

@@ -1,12 +1,10 @@
 #pragma once
 /// The whole line: scene and settings in, links out, frame by frame.
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "dcem/channel/radio_map.hpp"
@@ -16,6 +14,7 @@
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/search_plan.hpp"
 #include "dcem/sim/settings.hpp"
+#include "dcem/sim/shell_at_point.hpp"
 
 namespace dcem {
 
@@ -50,9 +49,8 @@ class Simulator {
   /// `LinkResult::receiver` is the index in `receivers`. Nothing is remembered.
   std::vector<LinkResult> solve(std::span<const Device> receivers, WorkCounters* work = nullptr) const;
 
-  /// Closed shells that hold a point in the current frame: (body, number of the shell within it), ascending. Body 0 is
-  /// the scenery.
-  std::vector<std::pair<BodyId, std::uint32_t>> shells_around(const Vec3& point_m) const;
+  /// Closed shells that hold a point in the current frame or on which it lies, ascending.
+  std::vector<ShellAtPoint> shells_at(const Vec3& point_m) const;
 
   /// Whether a device is there in the current frame.
   bool is_present(const Device& device) const;

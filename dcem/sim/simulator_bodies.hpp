@@ -55,8 +55,8 @@ DCEM_INLINE TreeUpdateReport Simulator::pass(const Frame& frame, const WorkCount
 DCEM_INLINE std::vector<LinkResult> Simulator::solve(std::span<const Device> receivers, WorkCounters* work) const {
   return body_->simulator.solve(receivers, work);
 }
-DCEM_INLINE std::vector<std::pair<BodyId, std::uint32_t>> Simulator::shells_around(const Vec3& point_m) const {
-  return body_->simulator.shells_around(point_m);
+DCEM_INLINE std::vector<ShellAtPoint> Simulator::shells_at(const Vec3& point_m) const {
+  return body_->simulator.shells_at(point_m);
 }
 DCEM_INLINE bool Simulator::is_present(const Device& device) const {
   return body_->simulator.is_present(device);

@@ -152,13 +152,19 @@ SamplingReport check_points(const Simulator& simulator, const Frame& frame, cons
   return check_sampling(simulator, frame, {receivers, links, work.sequences_proposed}, most_points);
 }
 
-/// The same of the first map of a frame.
-SamplingReport check_first_map(const Simulator& simulator, const Frame& frame, const MapOrders& orders,
-                               const FrameMaps& solved) {
-  if (simulator.discovery() == Discovery::exact || solved.maps.front().empty()) return {};
-  const RadioMap& map = solved.maps.front().front();
-  return orders.grids.empty() ? check_points(simulator, frame, orders.lists.front(), map)
-                              : check_points(simulator, frame, orders.grids.front(), map);
+/// The same of the first map of a frame that has a point to look at.
+SamplingReport check_maps(const Simulator& simulator, const Frame& frame, const MapOrders& orders,
+                          const FrameMaps& solved) {
+  SamplingReport report;
+  if (simulator.discovery() == Discovery::exact) return report;
+  std::size_t number = 0;
+  const auto check = [&](const auto& places) {
+    const std::vector<RadioMap>& maps = solved.maps[number++];
+    if (report.links.empty() && !maps.empty()) report = check_points(simulator, frame, places, maps.front());
+  };
+  for (const ReceiverGrid& grid : orders.grids) check(grid);
+  for (const ReceiverList& list : orders.lists) check(list);
+  return report;
 }
 
 void write_maps(const FrameMaps& solved, io::OutputFolder& folder, const Job& job, const Simulator& simulator,
@@ -189,7 +195,7 @@ std::size_t map_frames(const Job& job, const ScenarioOptions& options, const Map
       return index;
     }
     watch.look(frame);
-    if (!sampling) sampling = check_first_map(simulator, frame, orders, *solved);
+    if (!sampling) sampling = check_maps(simulator, frame, orders, *solved);
     write_maps(*solved, folder, job, simulator, frame, viewer, io::sampling_notes(*sampling));
     summary.add(solved->figures);
     summary.set_sampling(*sampling);

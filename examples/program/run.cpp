@@ -69,8 +69,7 @@ class Run {
       }
       watch_.look(instant);
       summary_.add(entry->figures);
-      last_frame_ = instant;
-      last_sequences_ = entry->figures.work.sequences_proposed;
+      check(instant, nullptr, entry->figures.work.sequences_proposed, stop);
       needs_paths_ ? write(instant, entry->take_result()) : writer_.write_lines(entry->link_lines);
       ++next_;
       bar.advance();
@@ -82,7 +81,7 @@ class Run {
     io::ProgressBar bar("frames", job_.frames.last - next_, progress_mode(options_));
     for (; next_ < job_.frames.last && stop.signal() == 0; ++next_) {
       const Frame instant = frames_.frame(simulator_.scene(), next_);
-      FrameResult result = simulator_.advance(instant);
+      const FrameResult result = simulator_.advance(instant);
       watch_.look(instant);
       if (needs_paths_) {
         write(instant, result);
@@ -93,9 +92,7 @@ class Run {
         if (journal != nullptr) journal->add(result, lines);
       }
       summary_.add(io::figures_of(result));
-      last_frame_ = instant;
-      last_links_ = std::move(result.links);
-      last_sequences_ = result.work.sequences_proposed;
+      check(instant, &result.links, result.work.sequences_proposed, stop);
       bar.advance();
     }
   }
@@ -108,7 +105,6 @@ class Run {
     if (job_.scenario.output.plots && next_ - job_.frames.first < 2) {
       summary_.add_late_warning("output.plots: one frame alone has its power delay profile and no pictures over time");
     }
-    check_last_frame();
     for (const std::string& line : watch_.warnings()) summary_.add_late_warning(line);
     writer_.finish();
     finish_viewer(viewer_.get(), summary_);
@@ -128,12 +124,19 @@ class Run {
     if (viewer_ != nullptr) viewer_->add(instant, result);
   }
 
-  /// What rays lack on some links of the last frame.
-  void check_last_frame() {
-    if (simulator_.discovery() == Discovery::exact || !last_frame_) return;
+  /// What rays lack on some links, in three of the frames. Not where the run is to end, whatever it has still to say.
+  void check(const Frame& instant, const std::vector<LinkResult>* links, std::uint64_t sequences,
+             const StopRequest& stop) {
+    const std::size_t first = job_.frames.first, last = job_.frames.last - 1;
+    const bool is_chosen = next_ == first || next_ == (first + last) / 2 || next_ == last;
+    if (simulator_.discovery() == Discovery::exact || !is_chosen || stop.signal() != 0) return;
     const auto receivers = simulator_.scene().receivers();
-    if (!last_links_) last_links_ = simulator_.solve(receivers);  // the frame was in the journal
-    summary_.set_sampling(check_sampling(simulator_, *last_frame_, {receivers, *last_links_, last_sequences_}));
+    std::vector<LinkResult> own;
+    if (links == nullptr) own = simulator_.solve(receivers);  // the journal has lines alone; nothing is remembered
+    SamplingReport report = check_sampling(simulator_, instant, {receivers, links ? *links : own, sequences});
+    if (simulator_.cache() == CacheMode::seed) report.rays_steady = steady_rays(simulator_.settings().propagation);
+    sampling_.add(report);
+    summary_.set_sampling(sampling_);
   }
 
   const Job& job_;
@@ -144,9 +147,7 @@ class Run {
   std::unique_ptr<io::ViewerWriter> viewer_;
   io::RunSummary summary_;
   io::PlacementWatch watch_;
-  std::optional<Frame> last_frame_;
-  std::optional<std::vector<LinkResult>> last_links_;
-  std::uint64_t last_sequences_ = 0;
+  SamplingReport sampling_;
   std::size_t next_;
   const bool needs_paths_;
 };

@@ -136,7 +136,7 @@ TEST_CASE("nothing is said of a village in which all is in its place") {
 TEST_CASE("devices kilometres outside are named, but not what flies above") {
   Wanted wanted;
   wanted.receiver_m = "[5100, 0, 1.5]";
-  CHECK(contains(warning_of(wanted), "village.json: receiver 'ue' is 4.8 km outside the box of the scene"));
+  CHECK(contains(warning_of(wanted), "village.json: receiver 'ue' is up to 4.8 km outside the box of the scenery"));
   wanted.receiver_m = "[5100, 0, 500000]";
   CHECK(warnings_of(wanted).empty());
   wanted.receiver_m = "[1200, 0, 1.5]";  // 900 m
@@ -146,9 +146,9 @@ TEST_CASE("devices kilometres outside are named, but not what flies above") {
 TEST_CASE("devices below everything, and under the ground, are named") {
   Wanted wanted;
   wanted.transmitter_m = "[0, 0, -8]";
-  CHECK(contains(warning_of(wanted), "transmitter 'bs' is 3.00 m below everything in the scene"));
+  CHECK(contains(warning_of(wanted), "transmitter 'bs' is up to 3.00 m below everything in the scenery"));
   wanted.transmitter_m = "[0, 0, -1.5]";  // above the lower ground, but not over it
-  CHECK(contains(warning_of(wanted), "transmitter 'bs' has a surface above and nothing below and beside it"));
+  CHECK(contains(warning_of(wanted), "transmitter 'bs' has a broad surface above and nothing below and beside it"));
 }
 
 TEST_CASE("a room without a floor is no ground") {
@@ -195,19 +195,51 @@ TEST_CASE("a vehicle that drives through a house is named with its frames, and o
                        "motion": {"position_m": [1, 30.3, 0.1], "velocity_mps": [5, 0, 0]}})";
   // x is 21 in frame 4 and 36 in frame 7; in frame 8 it is 41, outside again.
   CHECK(contains(warning_of(wanted),
-                 "object 'car1' is with its middle inside a closed part of the scenery (of 'wall'); "
-                 "is its way meant? (frames 4 to 7)"));
+                 "object 'car1' is with its middle inside a closed part of the scenery (of 'wall'), which "
+                 "lets nothing through; is its way meant? (frames 4 to 7)"));
   wanted.objects = R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall",
                        "motion": {"position_m": [1, 15.3, 0.1], "velocity_mps": [5, 0, 0]}})";
+  CHECK(warnings_of(wanted).empty());
+}
+
+TEST_CASE("vehicles far outside are named, also where devices ride on them; what flies high is not") {
+  Wanted wanted;
+  wanted.objects =
+      R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall", "motion": {"position_m": [50000, 0, 0.1]}})";
+  CHECK(contains(warning_of(wanted), "object 'car1' is up to 49.7 km outside the box of the scenery"));
+  wanted.objects.clear();
+  wanted.receiver_m = "[1000000, 0, 550000]";  // a satellite at 29 degrees
+  CHECK(warnings_of(wanted).empty());
+}
+
+TEST_CASE("what is mounted on a wall or a ceiling is not inside") {
+  Wanted wanted;
+  for (const char* place : {"[20, 30, 5]", "[40, 30, 5]", "[30, 20, 5]", "[30, 30, 10]"}) {  // on faces of the house
+    CAPTURE(place);
+    wanted.receiver_m = place;
+    CHECK(warnings_of(wanted).empty());
+  }
+  wanted.receiver_m = "[10, 5, 1.5]";
+  wanted.transmitter_m = "[20, 31, 6]";
+  CHECK(warnings_of(wanted).empty());
+}
+
+TEST_CASE("nothing is under the ground beneath a bridge, a canopy or the vehicle that carries it") {
+  Wanted wanted;
+  ObjText bridge;
+  bridge.add_box(Vec3(-100, -5, 6), Vec3(100, 5, 7));
+  wanted.obj = bridge.text();
+  wanted.transmitter_m = "[0, 0, 3]";
+  wanted.receiver_m = "[30, 2, 1.5]";
   CHECK(warnings_of(wanted).empty());
 }
 
 TEST_CASE("a grid far away or under everything is named; its points may lie in houses") {
   Wanted wanted;
   wanted.grid = "[4000, 0, 1.5]";
-  CHECK(contains(warning_of(wanted), "grid 'area' is 3.7 km outside the box of the scene"));
+  CHECK(contains(warning_of(wanted), "grid 'area' is up to 3.7 km outside the box of the scenery"));
   wanted.grid = "[0, 0, -9]";
-  CHECK(contains(warning_of(wanted), "grid 'area' is 4.00 m below everything in the scene"));
+  CHECK(contains(warning_of(wanted), "grid 'area' is up to 4.00 m below everything in the scenery"));
   wanted.grid = "[16, 16, 1.5]";
   CHECK(warnings_of(wanted).empty());
 }
@@ -229,7 +261,7 @@ TEST_CASE("of many that are misplaced alike five are named") {
   watch.look(simulator.scene().frame_at(0.0, 0));
   const std::vector<std::string> all = watch.warnings();
   REQUIRE(all.size() == 6);
-  CHECK(all.back() == "village.json: 4 more are placed as receiver 'ue[0]' is");
+  CHECK(all.back() == "village.json: 4 more are far outside the scenery");
 }
 
 TEST_CASE("a mesh in millimetres, in degrees, or with another axis up is noticed; a city in metres is not") {

@@ -17,6 +17,7 @@ namespace {
 
 SamplingReport report() {
   SamplingReport report;
+  report.is_sampled = true;
   report.rays = 2000;
   report.reference_rays = 20'000;
   report.links = {{4, 5, 0.04}, {2, 3, 1.25}, {0, 2, 0.0}};
@@ -32,18 +33,35 @@ bool contains(const std::string& text, const std::string& part) {
 TEST_CASE("a warning names what is sampled, how it was checked, and what is missing") {
   CHECK(io::sampling_warning(report(), "paths of more than 3 interactions") ==
         "sampled: paths of more than 3 interactions are looked for by 2000 rays, which found 60 % of the paths of 3 "
-        "links that were searched again with 20000; their powers lack 0.04 dB in the median, 1.2 dB at 95 %; on 1 of "
-        "them no path was found though there is one");
+        "links "
+        "searched again with 20000 rays; powers lack 0.04 dB in the median, 1.2 dB at most; on 1 no path was found "
+        "though "
+        "there is one");
   SamplingReport exact = report();
   exact.exact = true;
-  CHECK(contains(io::sampling_warning(exact, "all"), "searched again exactly"));
-  SamplingReport too_long;
-  too_long.rays = 2000;
-  too_long.is_too_long = true;
-  CHECK(io::sampling_warning(too_long, "all paths") ==
-        "sampled: all paths are looked for by 2000 rays; what they lack is not known: a second search would take too "
-        "long");
-  CHECK(io::sampling_notes(too_long).size() == 2);
+  exact.rays_steady = 200;
+  exact.links.assign(20, {2, 3, 1.25});
+  const std::string said = io::sampling_warning(exact, "all");
+  CHECK(contains(said, "2000 rays (200 and what is remembered from the second frame on), which found 67 %"));
+  CHECK(contains(said, "20 links searched again exactly; powers lack 1.2 dB in the median, 1.2 dB at 95 %"));
+}
+
+TEST_CASE("what was not checked, what was not found at all and what is not there are said as what they are") {
+  SamplingReport unchecked = report();
+  unchecked.links.clear();
+  CHECK(contains(io::sampling_warning(unchecked, "all"), "2000 rays; what they lack was not checked"));
+  CHECK(io::sampling_notes(unchecked).size() == 1);
+  SamplingReport blind = report();
+  blind.links = {{0, 2, 0.0}};
+  const std::string said = io::sampling_warning(blind, "all");
+  CHECK(contains(said, "found 0 % of the paths of 1 link searched again"));
+  CHECK(contains(said, "on 1 no path was found though there is one"));
+  CHECK_FALSE(contains(said, "dB"));
+  CHECK(contains(io::sampling_notes(blind)[1], "no path found on 1 of 1 link that have one"));
+  SamplingReport empty = report();
+  empty.links = {{0, 0, 0.0}};
+  CHECK(contains(io::sampling_warning(empty, "all"),
+                 "on 1 link searched again with 20000 rays no path was found either"));
 }
 
 TEST_CASE("what rays look for follows from the orders and the plan") {

@@ -43,6 +43,24 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
+std::vector<ShellAtPoint> BasicSimulator<Surface, Index>::shells_at(const Vec3& point_m) const {
+  const Tracer tracer(scene_, index_);
+  std::vector<ShellAtPoint> shells;
+  for (const auto& [body, number] : shells_around(tracer, index_, point_m)) shells.push_back({body, number, false});
+  TraversalCounters counters;
+  for (const FacetId facet : tracer.facets_near(point_m, scene_.settings().weld_tolerance_m, {}, counters)) {
+    const BodyId body = scene_.facet(facet).body;
+    const std::uint32_t number = scene_.shell_of_triangle(scene_.facet(facet).first_triangle);
+    if (number == 0) continue;
+    std::erase(shells, ShellAtPoint{body, number, false});
+    shells.push_back({body, number, true});
+  }
+  std::sort(shells.begin(), shells.end());
+  shells.erase(std::unique(shells.begin(), shells.end()), shells.end());
+  return shells;
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
 TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
   const ChangeSet changes = scene_.apply(frame);
   CacheCounters not_reported;

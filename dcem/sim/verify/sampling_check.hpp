@@ -4,6 +4,7 @@
 /// least that is missing. The second search is bounded: it tries some millions of sequences at most, a few seconds.
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,18 +24,21 @@ struct CheckedLink {
 };
 
 struct SamplingReport {
+  bool is_sampled = false;           ///< some kinds of paths are left to rays
   bool exact = false;                ///< the second search misses nothing
   std::uint32_t rays = 0;            ///< of the search that is checked, per receiver
-  std::uint32_t reference_rays = 0;  ///< of the second one, where it is not exact
-  bool is_too_long = false;          ///< a second search would be longer than the bound: no link was checked
-  std::vector<CheckedLink> links{};  ///< by transmitter, then receiver; empty where nothing is left to rays
+  std::uint32_t rays_steady = 0;     ///< the same in frames that remember those before; 0 where nothing is remembered
+  std::uint32_t reference_rays = 0;  ///< of the second search, where it is not exact
+  std::vector<CheckedLink> links{};  ///< empty where no second search was made: it may be too long
 
-  /// The share of the paths that rays found; 1 where there are none.
-  double recall() const;
-  /// The `share` quantile of what links lack, dB, of those on which rays found something.
-  double missing_db(double share) const;
+  /// The share of the paths that rays found; nothing where there are none.
+  std::optional<double> recall() const;
+  /// The `share` quantile of what links lack, dB, of those on which rays found something; nothing where there are none.
+  std::optional<double> missing_db(double share) const;
   /// Links on which rays found nothing although there is a path.
   std::size_t links_not_reached() const;
+  /// Adds the links of another check of the same run.
+  void add(const SamplingReport& other);
 };
 
 /// Links of a simulator's current frame, and how many sequences were proposed for them.

@@ -1,11 +1,14 @@
 #pragma once
 /// Bodies of sampling_check.hpp.
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/core/statistics.hpp"
 #include "dcem/core/units.hpp"
 #include "dcem/sim/discovery.hpp"
+#include "dcem/sim/search_size.hpp"
 #include "dcem/sim/simulator.hpp"
 #include "dcem/sim/verify/sampling_check.hpp"
 #include "dcem/sim/verify/verification_report.hpp"
@@ -27,6 +30,14 @@ struct ReferencePlan {
   std::size_t receivers = 0;
 };
 
+/// Whether an exact search is offered and bounded: that from halves is, trying all sequences need not be.
+inline bool is_soon_exact(const PropagationSettings& propagation, const Scene& scene, std::size_t links) {
+  const SearchPlan plan = plan_search(propagation, scene);
+  if (plan.discovery != Discovery::exact) return false;
+  return !plan.exhaustive || estimated_sequences(propagation, scene) * static_cast<double>(links) <=
+                                 static_cast<double>(most_reference_sequences);
+}
+
 /// Many receivers with ten times as many rays, or fewer with fewer; none where even that is too long.
 inline ReferencePlan plan_reference(const Simulator& simulator, std::size_t most_receivers,
                                     std::uint64_t sequences_of_one, SamplingReport& report) {
@@ -35,8 +46,8 @@ inline ReferencePlan plan_reference(const Simulator& simulator, std::size_t most
   plan.propagation.diffuse.enabled = false;
   PropagationSettings by_halves = plan.propagation;
   by_halves.discovery = Discovery::automatic;
-  report.exact = most_receivers * simulator.scene().transmitters().size() <= most_exact_links &&
-                 plan_search(by_halves, simulator.scene()).discovery == Discovery::exact;
+  const std::size_t links = most_receivers * simulator.scene().transmitters().size();
+  report.exact = links <= most_exact_links && is_soon_exact(by_halves, simulator.scene(), links);
   if (report.exact) {
     plan.propagation = by_halves;
     return plan;
@@ -51,11 +62,13 @@ inline ReferencePlan plan_reference(const Simulator& simulator, std::size_t most
   return plan;
 }
 
-/// Every so many receivers, from the middle of the first part of the list.
-inline std::vector<std::size_t> evenly_spread(std::size_t size, std::size_t most) {
+/// Every so many, from the middle of the first part of the list.
+inline std::vector<std::size_t> evenly_spread(const std::vector<std::size_t>& list, std::size_t most) {
   std::vector<std::size_t> chosen;
-  const std::size_t count = std::min(size, most);
-  for (std::size_t number = 0; number < count; ++number) chosen.push_back((2 * number + 1) * size / (2 * count));
+  const std::size_t count = std::min(list.size(), most);
+  for (std::size_t number = 0; number < count; ++number) {
+    chosen.push_back(list[(2 * number + 1) * list.size() / (2 * count)]);
+  }
   return chosen;
 }
 
@@ -74,18 +87,18 @@ inline CheckedLink checked(const LinkResult& found, const LinkResult& again) {
 
 }  // namespace detail
 
-DCEM_INLINE double SamplingReport::recall() const {
+DCEM_INLINE std::optional<double> SamplingReport::recall() const {
   std::size_t found = 0, there = 0;
   for (const CheckedLink& link : links) found += link.paths_found, there += link.paths_there;
-  return there > 0 ? static_cast<double>(found) / static_cast<double>(there) : 1.0;
+  return there > 0 ? std::optional(static_cast<double>(found) / static_cast<double>(there)) : std::nullopt;
 }
 
-DCEM_INLINE double SamplingReport::missing_db(double share) const {
+DCEM_INLINE std::optional<double> SamplingReport::missing_db(double share) const {
   std::vector<double> missing_db;
   for (const CheckedLink& link : links) {
     if (link.paths_found > 0) missing_db.push_back(link.missing_db);
   }
-  return quantile(std::move(missing_db), share);
+  return missing_db.empty() ? std::nullopt : std::optional(quantile(std::move(missing_db), share));
 }
 
 DCEM_INLINE std::size_t SamplingReport::links_not_reached() const {
@@ -94,25 +107,32 @@ DCEM_INLINE std::size_t SamplingReport::links_not_reached() const {
   }));
 }
 
+DCEM_INLINE void SamplingReport::add(const SamplingReport& other) {
+  if (links.empty()) {
+    *this = other;
+  } else if (other.exact == exact && !other.links.empty()) {
+    links.insert(links.end(), other.links.begin(), other.links.end());
+    reference_rays = std::min(reference_rays, other.reference_rays);
+  }
+}
+
 DCEM_INLINE SamplingReport check_sampling(const Simulator& simulator, const Frame& frame, const SolvedLinks& solved,
                                           std::size_t most_receivers) {
   SamplingReport report;
+  if (simulator.discovery() == Discovery::exact) return report;
+  report.is_sampled = true;
+  report.rays = simulator.settings().propagation.rays;
   std::vector<std::size_t> present;
   for (std::size_t index = 0; index < solved.receivers.size(); ++index) {
     if (simulator.is_present(solved.receivers[index])) present.push_back(index);
   }
-  if (simulator.discovery() == Discovery::exact || present.empty() || solved.links.empty()) return report;
-  report.rays = simulator.settings().propagation.rays;
+  if (present.empty() || solved.links.empty()) return report;
   const detail::ReferencePlan plan = detail::plan_reference(simulator, std::min(most_receivers, present.size()),
                                                             solved.sequences / present.size(), report);
-  report.is_too_long = plan.receivers == 0;
-  if (report.is_too_long) return report;
-  std::vector<std::size_t> chosen;
+  if (plan.receivers == 0) return report;
+  const std::vector<std::size_t> chosen = detail::evenly_spread(present, plan.receivers);
   std::vector<Device> devices;
-  for (const std::size_t at : detail::evenly_spread(present.size(), plan.receivers)) {
-    chosen.push_back(present[at]);
-    devices.push_back(solved.receivers[present[at]]);
-  }
+  for (const std::size_t index : chosen) devices.push_back(solved.receivers[index]);
   SimulationSettings settings = simulator.settings();
   settings.propagation = plan.propagation;
   Simulator reference(simulator.scene(), settings);

@@ -47,6 +47,17 @@ Vec3 facing_m2(const TriangleMesh& mesh) {
   return sum_m2;
 }
 
+/// A tenth of the triangles stands upright: a mountain has none.
+bool has_walls(const TriangleMesh& mesh) {
+  const auto upright = std::ranges::count_if(mesh.triangles, [&](const TriangleMesh::Triangle& triangle) {
+    const Vec3& first_m = mesh.vertices_m[triangle.vertices[0]];
+    const Vec3 normal =
+        glm::cross(mesh.vertices_m[triangle.vertices[1]] - first_m, mesh.vertices_m[triangle.vertices[2]] - first_m);
+    return std::abs(normal.z) < 0.05 * glm::length(normal);
+  });
+  return 10 * static_cast<std::size_t>(upright) >= mesh.triangles.size();
+}
+
 bool is_flat_along_y(const TriangleMesh& mesh, const Vec3& size_m) {
   if (size_m.z < upright_height_m || flatness * size_m.y > std::min(size_m.x, size_m.z)) return false;
   const Vec3 area_m2 = facing_m2(mesh);
@@ -65,7 +76,7 @@ std::vector<std::string> mesh_doubts(const TriangleMesh& mesh) {
   const Aabb<double> box = box_of(mesh);
   const Vec3 size_m = box.max - box.min;
   const double width_m = std::max(size_m.x, size_m.y);
-  if (size_m.z >= millimetres_height_m && median_edge_m(mesh) >= millimetres_edge_m) {
+  if (size_m.z >= millimetres_height_m && median_edge_m(mesh) >= millimetres_edge_m && has_walls(mesh)) {
     return {"the mesh is " + size_text(size_m) + " in size; is it in millimetres (unit_m 0.001)?"};
   }
   if (width_m < degrees_width_m && size_m.z > degrees_slenderness * width_m) {

@@ -8,7 +8,7 @@
 namespace dcem::io {
 
 /// What looks odd about a scene, a sentence each, in metres and with z up as it was read:
-/// * millimetres taken for metres: 2 km high or more, with edges of half a kilometre or more;
+/// * millimetres taken for metres: 2 km high or more, with edges of half a kilometre or more, walls among them;
 /// * degrees of longitude and latitude taken for metres: less than 2 m wide, and ten times as high;
 /// * another axis up: flattest along y by a factor of four, with most of its area facing along y, and higher than
 ///   150 m.

@@ -12,22 +12,27 @@
 namespace dcem::io {
 namespace {
 
-constexpr double far_m = 1000.0;            ///< outside the scene
-constexpr double below_m = 0.01;            ///< under its lowest point: more than dirt
-constexpr double wall_reach_m = 200.0;      ///< as far as the walls of a room may be
+constexpr double far_m = 1000.0;            ///< outside the scenery
+constexpr double flying_height_m = 3000.0;  ///< above it: aeroplanes, platforms, satellites
+constexpr double flying_slope = 0.087;      ///< tan 5°: lower ones hardly reach it
+constexpr double below_m = 0.01;            ///< more than dirt
+constexpr double broad_m = 30.0;            ///< a ground goes on so far on all sides, a deck or a canopy does not
+constexpr double room_m = 200.0;            ///< so far away the walls of a room may be
+constexpr double moving_mps = 0.1;
 constexpr std::size_t most_named = 5;       ///< of each kind of misplacement
 constexpr std::size_t most_watched = 1000;  ///< receivers that are looked at in each frame; of more, the first ones
-constexpr std::size_t most_asked = 200;     ///< receivers and points that are asked whether they share a shell
+constexpr std::size_t most_asked = 200;     ///< receivers, and points of each grid, that are asked where they are
 
 double outside_m(const Aabb<double>& box, const Vec3& point_m, int axis) {
   return std::max({0.0, box.min[axis] - point_m[axis], point_m[axis] - box.max[axis]});
 }
 
-/// Horizontally. What flies or orbits is seen at more than 45 degrees and may be that far away.
+/// How far away horizontally, 0 within a kilometre. What flies may be that far away.
 double far_away_m(const Aabb<double>& box, const Vec3& point_m) {
   const double across_m = std::hypot(outside_m(box, point_m, 0), outside_m(box, point_m, 1));
-  const bool is_high = point_m.z - box.max.z > across_m;
-  return across_m > far_m && !is_high ? across_m : 0.0;
+  const double height_m = point_m.z - box.max.z;
+  const bool flies = height_m > across_m || (height_m > flying_height_m && height_m > flying_slope * across_m);
+  return across_m > far_m && !flies ? across_m : 0.0;
 }
 
 /// Nothing where there is no surface.
@@ -47,61 +52,78 @@ std::string metres(double length_m) {
 PlacementWatch::PlacementWatch(std::string file, const Simulator& simulator, std::span<const Device> receivers,
                                std::span<const ReceiverGrid> grids)
     : file_(std::move(file)), simulator_(simulator), receivers_(receivers), grids_(grids) {
+  for (const Vec3& vertex : simulator.scene().body(BodyId{}).mesh.vertices_m) box_.extend(vertex);
   for (const Body& body : simulator.scene().bodies()) middles_m_.push_back(middle_of(body.mesh));
 }
 
 void PlacementWatch::look(const Frame& frame) {
-  frame_ = &frame;
-  const Scene& scene = simulator_.scene();
-  box_ = {};
-  for (const Aabb<double>& triangle : scene.triangle_boxes()) box_.extend(triangle);
   if (box_.empty()) return;
-  rooms_.clear();
-  for (const Device& device : scene.transmitters()) look_at_transmitter(device);
-  for (const Device& device : receivers_.first(std::min(receivers_.size(), most_watched))) {
-    look_at_receiver(device, "receiver " + in_quotes(device.id));
-  }
+  frame_ = &frame;
+  note_rooms();
+  for (const Device& device : simulator_.scene().transmitters()) look_at_transmitter(device);
+  for (const Device& device : receivers_.first(std::min(receivers_.size(), most_watched))) look_at_receiver(device);
   for (const ReceiverGrid& grid : grids_) look_at_grid(grid);
-  for (std::uint32_t body = 1; body < scene.bodies().size(); ++body) look_at_object(BodyId(body));
+  for (std::uint32_t body = 1; body < simulator_.scene().bodies().size(); ++body) look_at_object(BodyId(body));
 }
 
-void PlacementWatch::look_at_places(const Vec3& position_m, const std::string& subject) {
-  if (const double away_m = far_away_m(box_, position_m); away_m > 0.0) {
-    note(Problem::far_outside, subject,
-         "is " + metres(away_m) + " outside the box of the scene; is it in other coordinates or another unit?");
-  } else if (position_m.z < box_.min.z - below_m) {
-    note(Problem::below_all, subject,
-         "is " + metres(box_.min.z - position_m.z) + " below everything in the scene; is its height meant?");
-  } else if (is_below_ground(position_m)) {
-    note(Problem::below_ground, subject,
-         "has a surface above and nothing below and beside it; is it under the ground?");
+void PlacementWatch::note_rooms() {
+  rooms_.clear();
+  for (const Device& device : simulator_.scene().transmitters()) {
+    const DeviceState state = simulator_.scene().device_state(device, *frame_);
+    std::set<Shell>& own = rooms_.emplace_back();
+    if (!state.present) continue;
+    for (const ShellAtPoint& shell : simulator_.shells_at(state.position_m)) own.emplace(shell.body, shell.number);
   }
+}
+
+bool PlacementWatch::is_far(const Vec3& position_m, const std::string& subject) {
+  const double away_m = far_away_m(box_, position_m);
+  if (away_m == 0.0) return false;
+  note(Problem::far_outside, subject,
+       "is up to " + metres(away_m) + " outside the box of the scenery; is it in other coordinates or another unit?",
+       away_m);
+  return true;
+}
+
+void PlacementWatch::look_at_place(const Vec3& position_m, const std::string& subject) {
+  if (is_far(position_m, subject) || !is_under_ground(position_m)) return;
+  const double depth_m = box_.min.z - position_m.z;
+  note(Problem::under_ground, subject,
+       depth_m > below_m ? "is up to " + metres(depth_m) + " below everything in the scenery; is its height meant?"
+                         : "has a broad surface above and nothing below and beside it; is it under the ground?",
+       depth_m);
 }
 
 void PlacementWatch::look_at_transmitter(const Device& device) {
   const DeviceState state = simulator_.scene().device_state(device, *frame_);
   if (!state.present) return;
   const std::string subject = "transmitter " + in_quotes(device.id);
-  look_at_places(state.position_m, subject);
-  for (const Shell& shell : simulator_.shells_around(state.position_m)) rooms_.insert(shell);
-  for (const Shell& shell : closed_shells(state.position_m, &state)) {
-    const double share = share_of_receivers_in(shell);
+  look_at_place(state.position_m, subject);
+  const auto number = static_cast<std::size_t>(&device - simulator_.scene().transmitters().data());
+  std::set<Shell> elsewhere;  // rooms of the other transmitters: who is there has one of those
+  for (std::size_t other = 0; other < rooms_.size(); ++other) {
+    if (other != number) elsewhere.insert(rooms_[other].begin(), rooms_[other].end());
+  }
+  for (const Shell& own : rooms_[number]) elsewhere.erase(own);
+  for (const Shell& shell : closed_shells(state)) {
+    const double share = share_of_receivers_in(shell, elsewhere);
     if (share >= 0.5) continue;
     note(Problem::shut_in_alone, subject,
-         "is inside " + name_of(shell) + ", which lets nothing through, and " +
+         "is inside " + name_of(shell) + ", and " +
              (share > 0.0 ? "only " + format_fixed(100.0 * share, 0) + " % of the receivers are" : "no receiver is") +
              " in there");
   }
 }
 
-void PlacementWatch::look_at_receiver(const Device& device, const std::string& subject) {
+void PlacementWatch::look_at_receiver(const Device& device) {
   const DeviceState state = simulator_.scene().device_state(device, *frame_);
   if (!state.present) return;
-  look_at_places(state.position_m, subject);
-  for (const Shell& shell : closed_shells(state.position_m, &state)) {
-    if (rooms_.contains(shell)) continue;
-    note(Problem::shut_in, subject,
-         "is inside " + name_of(shell) + ", which lets nothing through, and no transmitter is in there");
+  const std::string subject = "receiver " + in_quotes(device.id);
+  look_at_place(state.position_m, subject);
+  for (const Shell& shell : closed_shells(state)) {
+    const bool is_room = std::ranges::any_of(rooms_, [&](const auto& own) { return own.contains(shell); });
+    if (is_room) continue;
+    note(Problem::shut_in, subject, "is inside " + name_of(shell) + ", and no transmitter is in there");
   }
 }
 
@@ -109,14 +131,7 @@ void PlacementWatch::look_at_receiver(const Device& device, const std::string& s
 void PlacementWatch::look_at_grid(const ReceiverGrid& grid) {
   const Vec3 first_m = grid_point_m(grid, 0, 0), last_m = grid_point_m(grid, grid.rows() - 1, grid.columns() - 1);
   const Vec3 nearest_m = glm::clamp(0.5 * (box_.min + box_.max), glm::min(first_m, last_m), glm::max(first_m, last_m));
-  const std::string subject = "grid " + in_quotes(grid.id);
-  if (const double away_m = far_away_m(box_, nearest_m); away_m > 0.0) {
-    note(Problem::far_outside, subject,
-         "is " + metres(away_m) + " outside the box of the scene; is it in other coordinates or another unit?");
-  } else if (first_m.z < box_.min.z - below_m) {
-    note(Problem::below_all, subject,
-         "is " + metres(box_.min.z - first_m.z) + " below everything in the scene; is its height meant?");
-  }
+  look_at_place(nearest_m, "grid " + in_quotes(grid.id));
 }
 
 void PlacementWatch::look_at_object(BodyId body) {
@@ -126,50 +141,60 @@ void PlacementWatch::look_at_object(BodyId body) {
   const Pose& pose = state.placement.pose;
   const Vec3 middle_m = pose.position_m + rotation_matrix(pose) * *middles_m_[body.value];
   const std::string subject = (scene.body(body).is_slot ? "vehicle " : "object ") + in_quotes(scene.body_name(body));
-  for (const Shell& shell : simulator_.shells_around(middle_m)) {
-    if (shell.first == body || rooms_.contains(shell)) continue;
+  if (is_far(middle_m, subject) || glm::length(state.placement.velocity.linear_mps) < moving_mps) return;
+  for (const ShellAtPoint& at : simulator_.shells_at(middle_m)) {
+    const Shell shell{at.body, at.number};
+    const bool is_room = std::ranges::any_of(rooms_, [&](const auto& own) { return own.contains(shell); });
+    if (at.body == body || at.is_on_it || is_room || lets_through(shell) || moves_along(body, at.body)) continue;
     note(Problem::drives_through, subject, "is with its middle inside " + name_of(shell) + "; is its way meant?");
   }
 }
 
-void PlacementWatch::note(Problem problem, const std::string& subject, const std::string& detail) {
+void PlacementWatch::note(Problem problem, const std::string& subject, const std::string& detail, double extent_m) {
   const auto [number, is_new] = numbers_.try_emplace({problem, subject}, sightings_.size());
-  if (is_new) sightings_.push_back({problem, subject, detail, {}});
-  std::vector<std::size_t>& frames = sightings_[number->second].frames;
-  if (frames.empty() || frames.back() != frame_->index) frames.push_back(frame_->index);
+  if (is_new) sightings_.push_back({problem, subject, detail, extent_m, {}});
+  Sighting& sighting = sightings_[number->second];
+  if (extent_m > sighting.extent_m) sighting.detail = detail, sighting.extent_m = extent_m;
+  if (sighting.frames.empty() || sighting.frames.back() != frame_->index) sighting.frames.push_back(frame_->index);
 }
 
-/// A room has walls beside it, and a hall has no floor only where a mesh lacks it: what has a surface above, nothing
-/// below and a free way out on two sides at least is taken to be under the ground.
-bool PlacementWatch::is_below_ground(const Vec3& position_m) const {
+/// Whether the scenery has a surface that lies rather flat, from a point in a direction.
+bool PlacementWatch::ground_is_hit(const Vec3& from_m, const Vec3& direction, double farthest_m) const {
   const Scene& scene = simulator_.scene();
-  const auto hit = [&](const Vec3& direction) {
-    return simulator_.index().closest_hit(Ray<double>{position_m, direction}, HitFilter{}, nullptr);
+  const auto counts = [&](const TriangleHit& hit) {
+    const WorldFacet& facet = scene.facet(scene.facet_of_triangle(hit.triangle));
+    const bool is_flat = std::abs(facet.plane.normal.z) > 0.7 || direction.z == 0.0;
+    return facet.body == BodyId{} && hit.t <= farthest_m && is_flat;
   };
-  constexpr double slope = 1e-3;  // no direction along a wall
-  if (hit(Vec3(slope, 2.0 * slope, -1.0))) return false;
-  const auto above = hit(Vec3(slope, 2.0 * slope, 1.0));
-  if (!above || std::abs(scene.facet(scene.facet_of_triangle(above->triangle)).plane.normal.z) < 0.7) return false;
-  int ways_out = 0;
-  for (const Vec3& direction : {Vec3(1, slope, 0), Vec3(-1, slope, 0), Vec3(slope, 1, 0), Vec3(slope, -1, 0)}) {
-    const auto beside = hit(direction);
-    ways_out += !beside || beside->t > wall_reach_m ? 1 : 0;
-  }
-  return ways_out >= 2;
+  return simulator_.index().visit_hits(Ray<double>{from_m, direction}, HitFilter{}, counts, nullptr);
 }
 
-std::vector<PlacementWatch::Shell> PlacementWatch::closed_shells(const Vec3& point_m, const DeviceState* of) const {
-  std::vector<Shell> shells = simulator_.shells_around(point_m);
-  std::erase_if(shells, [&](const Shell& shell) {
-    return (of != nullptr && of->ignored_body == shell.first) || lets_through(shell);
-  });
+/// A ground is broad. A room has walls, a tunnel on two sides, and under a bridge or a canopy it is not far to the sky.
+bool PlacementWatch::is_under_ground(const Vec3& position_m) const {
+  constexpr double slope = 1e-3;  // no direction along a wall
+  constexpr double anywhere_m = 1e9;
+  const Vec3 up(slope, 2.0 * slope, 1.0);
+  if (ground_is_hit(position_m, -up, anywhere_m) || !ground_is_hit(position_m, up, anywhere_m)) return false;
+  for (const Vec3& aside : {Vec3(1, slope, 0), Vec3(-1, slope, 0), Vec3(slope, 1, 0), Vec3(slope, -1, 0)}) {
+    if (ground_is_hit(position_m, aside, room_m)) return false;
+    if (!ground_is_hit(position_m + broad_m * aside, up, anywhere_m)) return false;
+  }
+  return true;
+}
+
+std::vector<PlacementWatch::Shell> PlacementWatch::closed_shells(const DeviceState& of) const {
+  std::vector<Shell> shells;
+  for (const ShellAtPoint& at : simulator_.shells_at(of.position_m)) {
+    if (at.is_on_it || of.ignored_body == at.body || lets_through({at.body, at.number})) continue;
+    shells.emplace_back(at.body, at.number);
+  }
   return shells;
 }
 
 bool PlacementWatch::lets_through(const Shell& shell) const {
   if (simulator_.settings().propagation.max_transmissions == 0) return false;
-  const auto known = lets_through_.find(shell);
-  if (known != lets_through_.end()) return known->second;
+  const auto known = transmits_.find(shell);
+  if (known != transmits_.end()) return known->second;
   const Scene& scene = simulator_.scene();
   const auto [first, last] = scene.triangle_range(shell.first);
   bool transmits = false;
@@ -177,15 +202,28 @@ bool PlacementWatch::lets_through(const Shell& shell) const {
     transmits =
         scene.shell_of_triangle(triangle) == shell.second && scene.facet(scene.facet_of_triangle(triangle)).transmits;
   }
-  return lets_through_[shell] = transmits;
+  return transmits_[shell] = transmits;
 }
 
-double PlacementWatch::share_of_receivers_in(const Shell& shell) const {
+/// As a person in a bus does.
+bool PlacementWatch::moves_along(BodyId one, BodyId other) const {
+  const Scene& scene = simulator_.scene();
+  const Vec3& first_mps = scene.body_state(one).placement.velocity.linear_mps;
+  return glm::length(first_mps - scene.body_state(other).placement.velocity.linear_mps) < moving_mps;
+}
+
+/// Of the receivers that are in none of the shells `elsewhere`; 1 where there are none.
+double PlacementWatch::share_of_receivers_in(const Shell& shell, const std::set<Shell>& elsewhere) const {
   std::size_t asked = 0, inside = 0;
   const auto ask = [&](const Vec3& point_m) {
-    const std::vector<Shell> around = simulator_.shells_around(point_m);
+    bool is_inside = false, is_elsewhere = false;
+    for (const ShellAtPoint& at : simulator_.shells_at(point_m)) {
+      is_inside = is_inside || Shell(at.body, at.number) == shell;
+      is_elsewhere = is_elsewhere || elsewhere.contains({at.body, at.number});
+    }
+    if (is_elsewhere && !is_inside) return;
     ++asked;
-    inside += std::find(around.begin(), around.end(), shell) != around.end() ? 1U : 0U;
+    inside += is_inside ? 1U : 0U;
   };
   for (std::size_t index = 0; index < std::min(receivers_.size(), most_asked); ++index) {
     const DeviceState state = simulator_.scene().device_state(receivers_[index], *frame_);
@@ -200,16 +238,20 @@ double PlacementWatch::share_of_receivers_in(const Shell& shell) const {
   return asked == 0 ? 1.0 : static_cast<double>(inside) / static_cast<double>(asked);
 }
 
+/// The body or the material, and why nothing passes.
 std::string PlacementWatch::name_of(const Shell& shell) const {
   const Scene& scene = simulator_.scene();
-  if (shell.first.value != 0) return in_quotes(scene.body_name(shell.first));
+  const bool all_block = simulator_.settings().propagation.max_transmissions == 0;
+  const std::string why =
+      all_block ? ", which nothing may pass with max_transmissions 0" : ", which lets nothing through";
+  if (shell.first.value != 0) return in_quotes(scene.body_name(shell.first)) + why;
   const auto [first, last] = scene.triangle_range(shell.first);
   for (std::uint32_t triangle = first; triangle < last; ++triangle) {
     if (scene.shell_of_triangle(triangle) != shell.second) continue;
     const MaterialId material = scene.facet(scene.facet_of_triangle(triangle)).material;
-    return "a closed part of the scenery (of " + in_quotes(scene.material(material).name) + ")";
+    return "a closed part of the scenery (of " + in_quotes(scene.material(material).name) + ")" + why;
   }
-  return "a closed part of the scenery";
+  return "a closed part of the scenery" + why;
 }
 
 std::vector<std::string> PlacementWatch::warnings() const {
@@ -220,12 +262,14 @@ std::vector<std::string> PlacementWatch::warnings() const {
     lines.push_back(file_ + ": " + sighting.subject + " " + sighting.detail + " (" + frame_ranges(sighting.frames) +
                     ")");
   }
+  const std::map<Problem, const char*> words{{Problem::far_outside, "far outside the scenery"},
+                                             {Problem::under_ground, "under the ground"},
+                                             {Problem::shut_in, "shut in without a transmitter"},
+                                             {Problem::shut_in_alone, "shut in without a receiver"},
+                                             {Problem::drives_through, "inside of something"}};
   for (const auto& entry : named) {
     if (entry.second <= most_named) continue;
-    const auto first = std::find_if(sightings_.begin(), sightings_.end(),
-                                    [&](const Sighting& sighting) { return sighting.problem == entry.first; });
-    lines.push_back(file_ + ": " + std::to_string(entry.second - most_named) + " more are placed as " + first->subject +
-                    " is");
+    lines.push_back(file_ + ": " + std::to_string(entry.second - most_named) + " more are " + words.at(entry.first));
   }
   return lines;
 }

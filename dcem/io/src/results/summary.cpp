@@ -95,15 +95,16 @@ Json cache_json(const CacheCounters& cache) {
 }
 
 Json sampling_json(const SamplingReport& report) {
-  if (report.is_too_long) return {{"rays", report.rays}, {"links", 0}};
+  if (report.links.empty()) return {{"rays", report.rays}, {"links", 0}};
   return {{"rays", report.rays},
+          {"rays_steady", report.rays_steady > 0 ? Json(report.rays_steady) : Json(nullptr)},
           {"searched_again", report.exact ? "exact" : "sampled"},
           {"rays_again", report.exact ? Json(nullptr) : Json(report.reference_rays)},
           {"links", report.links.size()},
           {"links_not_reached", report.links_not_reached()},
-          {"recall", report.recall()},
-          {"missing_median_db", report.missing_db(0.5)},
-          {"missing_p95_db", report.missing_db(0.95)}};
+          {"recall", optional_json(report.recall())},
+          {"missing_median_db", optional_json(report.missing_db(0.5))},
+          {"missing_p95_db", optional_json(report.missing_db(0.95))}};
 }
 
 double total_time_s(const FrameFigures& frame) {
@@ -197,7 +198,7 @@ std::vector<std::string> RunSummary::warnings() const {
 
 std::vector<std::string> RunSummary::late_warnings() const {
   std::vector<std::string> lines = late_warnings_;
-  if (says_something(sampling_)) lines.push_back(sampling_warning(sampling_, facts_.sampled_kinds));
+  if (sampling_.is_sampled) lines.push_back(sampling_warning(sampling_, facts_.sampled_kinds));
   const FrameFigures sum = sum_of(frames_);
   if (sum.work.diffuse_links_unfinished > 0) lines.push_back("diffuse power: " + diffuse_text(sum));
   return lines;
@@ -226,7 +227,7 @@ std::string RunSummary::json() const {
                                 {"scene", scene_json(scene_, facts_.receivers)},
                                 {"settings", settings_json(facts_)},
                                 {"warnings", warnings()},
-                                {"sampling", says_something(sampling_) ? sampling_json(sampling_) : Json(nullptr)},
+                                {"sampling", sampling_.is_sampled ? sampling_json(sampling_) : Json(nullptr)},
                                 {"totals",
                                  {{"frames", frames_.size()},
                                   {"links", sum.links},
