@@ -1,19 +1,19 @@
 #pragma once
 /// Builds a binary tree over boxes by the surface-area heuristic (SAH).
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dcem/accel/binary/build_item.hpp"
 #include "dcem/accel/binary/node.hpp"
 #include "dcem/accel/binary/sah_settings.hpp"
+#include "dcem/accel/binary/sah_splitter.hpp"
 #include "dcem/core/error.hpp"
 #include "dcem/geometry/aabb.hpp"
 
@@ -30,7 +30,9 @@ class SahBuilder {
   using Item = BuildItem<Scalar>;
   using Node = BvhNode<Scalar>;
 
-  explicit SahBuilder(const SahSettings& settings) : settings_(settings) { require_valid_settings(settings); }
+  explicit SahBuilder(const SahSettings& settings) : settings_(settings), splitter_(settings) {
+    require_valid_settings(settings);
+  }
 
   /// Reorders `items` and returns the nodes over them: the root first, then children in pairs at (1, 2), (3, 4), …, the
   /// child with the larger surface first. A leaf's `first` is a position in `items`; below any node the positions are
@@ -52,36 +54,6 @@ class SahBuilder {
     std::size_t end;
     std::size_t size() const { return end - begin; }
   };
-  struct Split {
-    double cost = std::numeric_limits<double>::infinity();  ///< Σ area · primitives of the two sides
-    std::size_t left_count = 0;
-    int axis = 0;
-    std::uint32_t bin = 0;  ///< first bin of the right side; 0: divide the order along the axis instead
-
-    /// Of two equally cheap splits the more even one, so that boxes without area do not make a chain.
-    bool better_than(const Split& other, std::size_t total) const {
-      if (cost != other.cost) return cost < other.cost;
-      const auto imbalance = [total](std::size_t left) {
-        return left > total - left ? 2 * left - total : total - 2 * left;
-      };
-      return imbalance(left_count) < imbalance(other.left_count);
-    }
-  };
-  struct Bin {
-    Aabb<Scalar> box;
-    std::size_t count = 0;
-  };
-  /// Maps centres to bins along one axis; unusable when the centres coincide there.
-  struct BinScale {
-    Scalar low = 0;
-    Scalar scale = 0;
-    std::uint32_t bins = 0;
-    bool usable = false;
-
-    std::uint32_t operator()(Scalar center) const {
-      return std::min(bins - 1, static_cast<std::uint32_t>((center - low) * scale));
-    }
-  };
 
   static std::uint32_t median_levels(std::size_t count) {
     return static_cast<std::uint32_t>(std::bit_width(count - 1));
@@ -92,14 +64,11 @@ class SahBuilder {
   void grow(std::size_t slot, Range range, const Aabb<Scalar>& box, std::uint32_t levels);
   std::optional<std::size_t> divide(Range range, const Aabb<Scalar>& box, std::uint32_t levels);
   std::size_t divide_at_median(Range range);
-  std::size_t divide_at(Range range, const Split& split);
+  std::size_t divide_at(Range range, const SahSplit& split);
   std::size_t divide_off_empty(Range range);
-  Split best_split(Range range, const Aabb<Scalar>& centers) const;
-  void try_bins(int axis, std::span<const Item> items, const BinScale& scale, Split& best) const;
-  void try_sweep(int axis, std::span<const Item> items, Split& best) const;
-  BinScale bin_scale(const Aabb<Scalar>& centers, int axis) const;
 
   SahSettings settings_;
+  SahSplitter<Scalar> splitter_;
   std::span<Item> items_;
   std::vector<Node> nodes_;
   bool has_empty_ = false;
@@ -142,7 +111,7 @@ std::optional<std::size_t> SahBuilder<Scalar>::divide(Range range, const Aabb<Sc
     const std::size_t middle = divide_off_empty(range);
     if (middle != range.begin && middle != range.end) return middle;
   }
-  const Split split = best_split(range, center_bounds_of<Scalar>(of(range)));
+  const SahSplit split = splitter_.best(of(range), center_bounds_of<Scalar>(of(range)));
   if (split.left_count == 0) {
     return range.size() <= settings_.leaf_maximum ? std::nullopt : std::optional(divide_at_median(range));
   }
@@ -156,7 +125,7 @@ std::optional<std::size_t> SahBuilder<Scalar>::divide(Range range, const Aabb<Sc
 template <std::floating_point Scalar>
 std::size_t SahBuilder<Scalar>::divide_at_median(Range range) {
   const Vector3<Scalar> extent = center_bounds_of<Scalar>(of(range)).extent();
-  Split split;
+  SahSplit split;
   split.left_count = range.size() / 2;
   split.axis = extent.y > extent.x ? 1 : 0;
   if (extent.z > extent[split.axis]) split.axis = 2;
@@ -164,14 +133,14 @@ std::size_t SahBuilder<Scalar>::divide_at_median(Range range) {
 }
 
 template <std::floating_point Scalar>
-std::size_t SahBuilder<Scalar>::divide_at(Range range, const Split& split) {
+std::size_t SahBuilder<Scalar>::divide_at(Range range, const SahSplit& split) {
   const std::span<Item> items = of(range);
   if (split.bin == 0) {
     const auto middle = items.begin() + static_cast<std::ptrdiff_t>(split.left_count);
     std::nth_element(items.begin(), middle, items.end(),
                      [&](const Item& a, const Item& b) { return a.before(b, split.axis); });
   } else {
-    const BinScale scale = bin_scale(center_bounds_of<Scalar>(items), split.axis);
+    const auto scale = splitter_.bin_scale(center_bounds_of<Scalar>(items), split.axis);
     std::partition(items.begin(), items.end(),
                    [&](const Item& item) { return scale(item.center[split.axis]) < split.bin; });
   }
@@ -184,75 +153,6 @@ std::size_t SahBuilder<Scalar>::divide_off_empty(Range range) {
   const std::span<Item> items = of(range);
   const auto middle = std::partition(items.begin(), items.end(), [](const Item& item) { return !item.box.empty(); });
   return range.begin + static_cast<std::size_t>(middle - items.begin());
-}
-
-template <std::floating_point Scalar>
-typename SahBuilder<Scalar>::BinScale SahBuilder<Scalar>::bin_scale(const Aabb<Scalar>& centers, int axis) const {
-  const Scalar scale = static_cast<Scalar>(settings_.bins) / (centers.max[axis] - centers.min[axis]);
-  // Infinite for an extent that is zero or denormal, zero for one that overflows: neither can be binned.
-  return {centers.min[axis], scale, settings_.bins, std::isfinite(scale) && scale > 0};
-}
-
-template <std::floating_point Scalar>
-typename SahBuilder<Scalar>::Split SahBuilder<Scalar>::best_split(Range range, const Aabb<Scalar>& centers) const {
-  Split best;
-  for (int axis = 0; axis < 3; ++axis) {
-    const BinScale scale = bin_scale(centers, axis);
-    if (!scale.usable) continue;
-    if (range.size() <= settings_.sweep_limit) {
-      try_sweep(axis, of(range), best);
-    } else {
-      try_bins(axis, of(range), scale, best);
-    }
-  }
-  return best;
-}
-
-template <std::floating_point Scalar>
-void SahBuilder<Scalar>::try_bins(int axis, std::span<const Item> items, const BinScale& scale, Split& best) const {
-  std::array<Bin, 64> bins;
-  for (const Item& item : items) {
-    Bin& bin = bins[scale(item.center[axis])];
-    bin.box.extend(item.box);
-    ++bin.count;
-  }
-  std::array<double, 64> right_cost{};
-  Bin right;
-  for (std::uint32_t bin = scale.bins - 1; bin > 0; --bin) {
-    right.box.extend(bins[bin].box);
-    right.count += bins[bin].count;
-    right_cost[bin] = static_cast<double>(right.box.half_area()) * static_cast<double>(right.count);
-  }
-  Bin left;
-  for (std::uint32_t bin = 1; bin < scale.bins; ++bin) {
-    left.box.extend(bins[bin - 1].box);
-    left.count += bins[bin - 1].count;
-    if (left.count == 0 || left.count == items.size()) continue;
-    const double left_cost = static_cast<double>(left.box.half_area()) * static_cast<double>(left.count);
-    const Split split{left_cost + right_cost[bin], left.count, axis, bin};
-    if (split.better_than(best, items.size())) best = split;
-  }
-}
-
-template <std::floating_point Scalar>
-void SahBuilder<Scalar>::try_sweep(int axis, std::span<const Item> items, Split& best) const {
-  std::array<const Item*, 64> sorted;
-  const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(items.size());
-  std::ranges::transform(items, sorted.begin(), [](const Item& item) { return &item; });
-  std::sort(sorted.begin(), end, [axis](const Item* a, const Item* b) { return a->before(*b, axis); });
-  std::array<double, 64> right_cost{};
-  Aabb<Scalar> right;
-  for (std::size_t count = 1; count < items.size(); ++count) {
-    right.extend(sorted[items.size() - count]->box);
-    right_cost[items.size() - count] = static_cast<double>(right.half_area()) * static_cast<double>(count);
-  }
-  Aabb<Scalar> left;
-  for (std::size_t count = 1; count < items.size(); ++count) {
-    left.extend(sorted[count - 1]->box);
-    const double left_cost = static_cast<double>(left.half_area()) * static_cast<double>(count);
-    const Split split{left_cost + right_cost[count], count, axis, 0};
-    if (split.better_than(best, items.size())) best = split;
-  }
 }
 
 }  // namespace dcem

@@ -1,10 +1,7 @@
 #pragma once
 /// Several receivers joined with one transmitter at once over three mirrors and edges: what `TripleJoiner` does for
 /// one, with the receivers as lanes.
-#include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,6 +9,7 @@
 
 #include "dcem/paths/halves/crowd_beams.hpp"
 #include "dcem/paths/halves/crowd_gates.hpp"
+#include "dcem/paths/halves/crowd_images.hpp"
 #include "dcem/paths/halves/double_images.hpp"
 #include "dcem/paths/halves/half_joiner.hpp"
 
@@ -26,6 +24,7 @@ class CrowdTriples {
         scene_(gates.scene()),
         lanes_(gates.lanes()),
         orders_(orders),
+        images_(gates, beams),
         double_images_(scene_, lanes_) {}
 
   /// Calls `visit(sequence, point)`, the sequence from the receiver outwards, for every sequence of three mirrors, or
@@ -33,7 +32,7 @@ class CrowdTriples {
   template <typename Visit>
   void for_each_sequence(Visit&& visit) {
     if (orders_.interactions < 3 || orders_.reflections < 2) return;
-    lay_out_images();
+    images_.lay_out();
     const bool edges = orders_.diffractions >= 1;
     if (edges) lay_out_edges();
     for (std::uint32_t number = 0; number < scene_.facets().size(); ++number) {
@@ -47,33 +46,8 @@ class CrowdTriples {
   }
 
  private:
-  static constexpr std::size_t most_packs = Crowd::most_points / simd_lanes;
-  /// The images of all points in a mirror, and the lanes of those that are on the side of it that is looked at.
-  struct Images {
-    std::array<LanePoints, most_packs> packs;
-    std::array<std::uint32_t, most_packs> lanes;
-  };
-
   const BeamLists& mast() const { return gates_.mast(); }
   std::size_t pack_count() const { return gates_.packs().size(); }
-  static LanePoints mirrored_in(const HalfSpace& plane, const LanePoints& points) {
-    const Float8 twice = Float8(2.0F) * (dot(points, plane.x, plane.y, plane.z) - plane.offset);
-    return {points.x - twice * plane.x, points.y - twice * plane.y, points.z - twice * plane.z};
-  }
-
-  void lay_out_images() {
-    images_.clear();
-    for (const CrowdMirror& mirror : beams_.mirrors()) {
-      const LanePoints none(Vec3(0.0));
-      Images images{{none, none}, {}};
-      for (std::size_t pack = 0; pack < pack_count(); ++pack) {
-        images.packs[pack] = gates_.crowd().images(pack, scene_.facet(mirror.facet).plane);
-        images.lanes[pack] = gates_.lanes_beside(pack, mirror.facet, mirror.side);
-      }
-      images_.push_back(images);
-    }
-  }
-
   /// The edges that the crowd sees, as its middle does.
   void lay_out_edges() {
     std::vector<EdgePart> parts;
@@ -96,34 +70,11 @@ class CrowdTriples {
     if (near.empty() || (!edges && !mirrors)) return;
     for (const std::uint32_t place : near) {
       for (const double side : {1.0, -1.0}) {
-        if (!look_over(place, middle, side)) continue;
+        if (!images_.look_over(place, middle, side)) continue;
         if (mirrors) join_mirrors(place, middle, visit);
         if (edges) join_edges(place, middle, visit);
       }
     }
-  }
-
-  /// Works out what the images in two mirrors may see, of the points whose first image is on one side of the second
-  /// mirror; false where there are none.
-  bool look_over(std::uint32_t place, FacetId middle, double side) {
-    const CrowdMirror& mirror = beams_.mirrors()[place];
-    const Plane& plane = scene_.facet(middle).plane;
-    beside_m_.clear();
-    for (const Vec3& image_m : mirror.images_m) {
-      if (side * signed_distance_m(plane, image_m) > in_plane_guard_m) beside_m_.push_back(image_m);
-    }
-    if (beside_m_.empty()) return false;
-    common_cone(gates_.outlines().sides(middle), plane, side * plane.normal, beside_m_, lanes_.origin_m(), cone_);
-    twice_ = mirrored(plane, mirror.middle_m + lanes_.origin_m()) - lanes_.origin_m();
-    const double slack_m = 1e-3 + 2e-6 * (glm::length(twice_) + lanes_.reach_m());
-    add_mirrored(mirror.cone.first(mirror.cone.size() - 1), plane, lanes_.origin_m(), slack_m, cone_);
-    twice_error_m_ = gates_.error_with(2.0 * glm::length(twice_) + lanes_.reach_m());
-    for (std::size_t pack = 0; pack < pack_count(); ++pack) {
-      const LanePoints& images = images_[place].packs[pack];
-      twice_images_.packs[pack] = mirrored_in(lanes_.plane(middle), images);
-      twice_images_.lanes[pack] = gates_.lanes_beside(images, images_[place].lanes[pack], middle, side, twice_error_m_);
-    }
-    return true;
   }
 
   template <typename Visit>
@@ -131,14 +82,14 @@ class CrowdTriples {
     for (const std::uint32_t mirror : mast().mirrors_before(middle)) {
       const BeamMirror& first = mast().mirrors()[mirror];
       const double length_m = glm::length(first.image_m);
-      if (!may_hold(cone_, first.image_m, 1e-6F * static_cast<float>(length_m)) ||
-          !may_hold(first.cone, twice_, gates_.radius_m() + twice_error_m_))
+      if (!may_hold(images_.cone(), first.image_m, 1e-6F * static_cast<float>(length_m)) ||
+          !may_hold(first.cone, images_.middle_m(), gates_.radius_m() + images_.error_m()))
         continue;
       const LanePoints apex(first.image_m);
-      const Float8 error_m(twice_error_m_ + LaneScene::error_m(length_m));
+      const Float8 error_m(images_.error_m() + LaneScene::error_m(length_m));
       for (std::size_t pack = 0; pack < pack_count(); ++pack) {
         const LaneGate at_first =
-            lanes_.cross(first.facet, apex, twice_images_.packs[pack], error_m, twice_images_.lanes[pack]);
+            lanes_.cross(first.facet, apex, images_.in_two().packs[pack], error_m, images_.in_two().lanes[pack]);
         if (at_first.lanes != 0) join_near(place, middle, pack, {first.facet, at_first}, error_m, visit);
       }
     }
@@ -146,16 +97,16 @@ class CrowdTriples {
 
   template <typename Visit>
   void join_edges(std::uint32_t place, FacetId middle, Visit& visit) {
-    const float radius_m = gates_.radius_m() + twice_error_m_;
-    mast().for_each_part_in(cone_, twice_, radius_m, [&](std::uint32_t number) {
+    const float radius_m = gates_.radius_m() + images_.error_m();
+    mast().for_each_part_in(images_.cone(), images_.middle_m(), radius_m, [&](std::uint32_t number) {
       const EdgePart& part = mast().parts()[number];
       const WedgeId edge(part.edge);
       const WorldWedge& wedge = scene_.wedge(edge);
       if (wedge.facets[0] == middle || wedge.facets[1] == middle) return;  // that is in the wedge's own terms
       for (std::size_t pack = 0; pack < pack_count(); ++pack) {
         const LaneGate at_first =
-            lanes_.meet(part, twice_images_.packs[pack], twice_error_m_, twice_images_.lanes[pack]);
-        if (at_first.lanes != 0) join_near(place, middle, pack, {edge, at_first}, Float8(twice_error_m_), visit);
+            lanes_.meet(part, images_.in_two().packs[pack], images_.error_m(), images_.in_two().lanes[pack]);
+        if (at_first.lanes != 0) join_near(place, middle, pack, {edge, at_first}, Float8(images_.error_m()), visit);
       }
     });
   }
@@ -164,12 +115,12 @@ class CrowdTriples {
   template <typename Visit>
   void join_near(std::uint32_t place, FacetId middle, std::size_t pack, const CrowdStop& first, const Float8& error_m,
                  Visit& visit) {
-    const LaneGate at_middle =
-        lanes_.cross(middle, first.at.points, twice_images_.packs[pack], error_m + first.at.beside_m, first.at.lanes);
+    const LaneGate at_middle = lanes_.cross(middle, first.at.points, images_.in_two().packs[pack],
+                                            error_m + first.at.beside_m, first.at.lanes);
     if (at_middle.lanes == 0) return;
     const FacetId last = beams_.mirrors()[place].facet;
-    const LaneGate at_last =
-        lanes_.cross(last, at_middle.points, images_[place].packs[pack], error_m + at_middle.beside_m, at_middle.lanes);
+    const LaneGate at_last = lanes_.cross(last, at_middle.points, images_.in(place).packs[pack],
+                                          error_m + at_middle.beside_m, at_middle.lanes);
     if (at_last.lanes == 0) return;
     gates_.offer(pack, std::array{CrowdStop{last, at_last}, CrowdStop{middle, at_middle}, first}, at_last.lanes, visit);
   }
@@ -220,7 +171,7 @@ class CrowdTriples {
   void edge_between_mirrors(WedgeId edge, Visit& visit) {
     for (const std::uint32_t place : beams_.mirrors_before(edge)) {
       const CrowdMirror& near = beams_.mirrors()[place];
-      const Images& images = images_[place];
+      const PackImages& images = images_.in(place);
       const float radius_m = gates_.radius_m();
       mast().for_each_lit_part(edge, near.middle_m, radius_m, [&](const EdgePart& part, std::uint32_t mirror) {
         const BeamMirror& far = mast().mirrors()[mirror];
@@ -249,16 +200,10 @@ class CrowdTriples {
   const Scene& scene_;
   const LaneScene& lanes_;
   HalfJoiner::Orders orders_;
-  std::vector<Images> images_;  ///< by the place of the mirror
+  CrowdImages<Index> images_;
   DoubleImages double_images_;
   EdgeClusters edges_;
   std::vector<std::uint32_t> edge_numbers_;
-  std::vector<HalfSpace> cone_;
-  std::vector<Vec3> beside_m_;
-  // Of the two mirrors that are looked over.
-  Vec3 twice_{0.0};
-  float twice_error_m_ = 0.0F;
-  Images twice_images_{{LanePoints(Vec3(0.0)), LanePoints(Vec3(0.0))}, {}};
 };
 
 }  // namespace dcem

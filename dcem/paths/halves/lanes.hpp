@@ -3,9 +3,7 @@
 ///
 /// All in single precision around an origin in the middle of the scene. Each result carries how far it may be off; what
 /// a gate refuses cannot be, and what it lets pass the solver decides.
-#include <array>
-#include <cmath>
-#include <cstddef>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,102 +12,18 @@
 #include "dcem/paths/halves/cone.hpp"
 #include "dcem/paths/halves/edge_clusters.hpp"
 #include "dcem/paths/halves/facet_outlines.hpp"
+#include "dcem/paths/halves/lane_edge.hpp"
+#include "dcem/paths/halves/lane_points.hpp"
 
 namespace dcem {
 
 inline namespace DCEM_ISA {
-
-/// Eight points.
-struct LanePoints {
-  Float8 x, y, z;
-
-  explicit LanePoints(const Vec3& all)
-      : x(static_cast<float>(all.x)), y(static_cast<float>(all.y)), z(static_cast<float>(all.z)) {}
-  LanePoints(const Float8& x_of, const Float8& y_of, const Float8& z_of) : x(x_of), y(y_of), z(z_of) {}
-  /// As many points as there are, counted from an origin; the last one fills the lanes that are left.
-  LanePoints(std::span<const Vec3> points_m, const Vec3& origin_m) : x(0.0F), y(0.0F), z(0.0F) {
-    std::array<std::array<float, simd_lanes>, 3> numbers;
-    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
-      const Vec3 point_m = points_m[std::min(lane, points_m.size() - 1)] - origin_m;
-      for (int axis = 0; axis < 3; ++axis) {
-        numbers[static_cast<std::size_t>(axis)][lane] = static_cast<float>(point_m[axis]);
-      }
-    }
-    x = Float8(numbers[0]);
-    y = Float8(numbers[1]);
-    z = Float8(numbers[2]);
-  }
-
-  friend LanePoints operator-(const LanePoints& one, const LanePoints& other) {
-    return {one.x - other.x, one.y - other.y, one.z - other.z};
-  }
-};
-
-inline Float8 dot(const LanePoints& points, float x, float y, float z) {
-  return points.x * x + points.y * y + points.z * z;
-}
 
 /// Points that a gate has found, how far they may be off, and the lanes that it lets pass.
 struct LaneGate {
   LanePoints points;
   Float8 beside_m;
   std::uint32_t lanes;
-};
-
-}  // namespace DCEM_ISA
-
-/// An edge in single precision, with the normals of both faces.
-struct LaneEdge {
-  std::array<float, 3> start, direction, first_normal, last_normal;
-  bool both_faces = false;  ///< in the interior is what is behind both faces; otherwise the gate does not ask
-
-  LanePoints from_start(const LanePoints& points) const {
-    return {points.x - start[0], points.y - start[1], points.z - start[2]};
-  }
-  /// What is across the edge of points, counted from its start, that are at a place along it.
-  LanePoints across(const LanePoints& away, const Float8& place) const {
-    return {away.x - place * direction[0], away.y - place * direction[1], away.z - place * direction[2]};
-  }
-  Float8 place(const LanePoints& away) const { return dot(away, direction[0], direction[1], direction[2]); }
-  /// The lanes of points, counted from the start, that surely are behind both faces.
-  std::uint32_t behind(const LanePoints& away, float error_m) const {
-    if (!both_faces) return 0;
-    const Float8 slack(-(error_m + 1e-3F));
-    return ((dot(away, first_normal[0], first_normal[1], first_normal[2]) < slack) &
-            (dot(away, last_normal[0], last_normal[1], last_normal[2]) < slack))
-        .bits();
-  }
-};
-
-inline LaneEdge lane_edge(const Wedge& wedge, const Vec3& origin_m) {
-  const double angle_rad = wedge.exterior_angle_rad;
-  const Vec3 last = std::sin(angle_rad) * wedge.tangent - std::cos(angle_rad) * wedge.normal;
-  const auto floats = [](const Vec3& of) {
-    return std::array{static_cast<float>(of.x), static_cast<float>(of.y), static_cast<float>(of.z)};
-  };
-  return {floats(wedge.start_m - origin_m), floats(edge_direction(wedge)), floats(wedge.normal), floats(last),
-          angle_rad > pi};
-}
-
-inline namespace DCEM_ISA {
-
-/// Where along an edge the shortest ways from points to the end that sees it at `own_place_m`, `own_distance_m` away,
-/// meet it.
-struct LaneMeeting {
-  Float8 place_m, beside_m;  ///< and how far that may be off
-  Float8 between_m, sum_m;   ///< of both ends, along the edge and across it
-
-  /// The points count from the edge's start; `error_m`: how far they may be off.
-  LaneMeeting(const LaneEdge& edge, float own_place_m, float own_distance_m, const LanePoints& away, float error_m)
-      : place_m(0.0F), beside_m(0.0F), between_m(0.0F), sum_m(0.0F) {
-    const Float8 place = edge.place(away);
-    const LanePoints across = edge.across(away, place);
-    sum_m = simd::square_root(across.x * across.x + across.y * across.y + across.z * across.z) + own_distance_m;
-    between_m = place - own_place_m;
-    const Float8 inverse = Float8(1.0F) / sum_m;
-    place_m = Float8(own_place_m) + between_m * (Float8(own_distance_m) * inverse);
-    beside_m = Float8(4.0F * error_m) * (Float8(1.0F) + simd::absolute(between_m) * inverse);
-  }
 };
 
 }  // namespace DCEM_ISA

@@ -2,9 +2,8 @@
 /// From a sequence of mirrors and edges and two ends to a valid path, or none. All discoveries use this one class, so a
 /// path has the same bits whoever proposed its sequence.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -12,34 +11,22 @@
 
 #include "dcem/core/error.hpp"
 #include "dcem/paths/path.hpp"
-#include "dcem/paths/query/foliage_length.hpp"
 #include "dcem/paths/query/link_end.hpp"
 #include "dcem/paths/sequence.hpp"
 #include "dcem/paths/solve/chain_points.hpp"
 #include "dcem/paths/solve/edge_rules.hpp"
 #include "dcem/paths/solve/image_method.hpp"
+#include "dcem/paths/solve/leg_walker.hpp"
+#include "dcem/paths/solve/solver_counters.hpp"
 
 namespace dcem {
-
-struct SolverCounters {
-  std::uint64_t sequences_solved = 0;
-  std::uint64_t legs = 0;
-  TraversalCounters traversal;
-
-  SolverCounters& operator+=(const SolverCounters& other) {
-    sequences_solved += other.sequences_solved;
-    legs += other.legs;
-    traversal += other.traversal;
-    return *this;
-  }
-};
 
 /// Holds scratch memory: one per thread.
 template <typename Index>
 class PathSolver {
  public:
   PathSolver(const SceneTracer<Index>& tracer, int max_transmissions, const EdgeRules& rules = {})
-      : tracer_(tracer), max_transmissions_(static_cast<std::size_t>(max_transmissions)), rules_(rules) {}
+      : tracer_(tracer), legs_(tracer, max_transmissions), rules_(rules) {}
 
   /// The path over `sequence` (from the receiver outwards). Where facets overlap in one plane, the path that comes back
   /// is the one over the facets that stand for the others.
@@ -85,8 +72,9 @@ class PathSolver {
       if (!holds) return std::nullopt;
     }
     // Most candidates die on a leg, and of several legs on one in the middle; what touches an edge takes longer to ask.
-    if (is_blocked_between(sequence, ignored)) return std::nullopt;
-    std::optional<Path> path = follow(transmitter, receiver, sequence, ignored);
+    const std::vector<Vec3>& points_m = points_.points_m();
+    if (legs_.is_blocked_between(sequence, points_m, ignored, counters_)) return std::nullopt;
+    std::optional<Path> path = legs_.follow(transmitter, receiver, sequence, points_m, in_shadow_, counters_);
     for (std::size_t index = 0; index < sequence.size() && path; ++index) {
       const SequenceElement element = sequence[sequence.size() - 1 - index];
       if (element.is_edge() && touches_third(element.edge(), index, ignored)) return std::nullopt;
@@ -155,22 +143,6 @@ class PathSolver {
                        [&](FacetId facet) { return facet != wedge.facets[0] && facet != wedge.facets[1]; });
   }
 
-  /// Whether something opaque stands between two points of interaction, where nothing transmits.
-  bool is_blocked_between(const Sequence& sequence, const IgnoredBodies& ignored) {
-    if (max_transmissions_ > 0) return false;
-    const std::vector<Vec3>& points_m = points_.points_m();
-    for (std::size_t leg = 1; leg < sequence.size(); ++leg) {
-      const Stop start = stop_at(sequence[sequence.size() - leg]), end = stop_at(sequence[sequence.size() - 1 - leg]);
-      if (!(glm::distance(points_m[leg - 1], points_m[leg]) > in_plane_guard_m)) return true;
-      ++counters_.legs;
-      if (!tracer_.follow_leg(points_m[leg - 1], points_m[leg], start.end(), end.end(), ignored, 0, crossings_,
-                              counters_.traversal)) {
-        return true;
-      }
-    }
-    return false;
-  }
-
   /// Whether the wedge stands between two points that diffract at `here_m`. Within rounding of the shadow boundary the
   /// azimuths cannot say; there the test decides that decides of the straight leg between the two, so that exactly one
   /// of the direct and the shadowed field is taken.
@@ -187,65 +159,6 @@ class PathSolver {
     const double across_m = std::hypot(glm::dot(away_m, wedge.tangent), glm::dot(away_m, wedge.normal));
     const double azimuth = azimuth_rad(wedge, away_m);
     return across_m * std::min(azimuth, wedge.exterior_angle_rad - azimuth) > in_plane_guard_m;
-  }
-
-  /// A place where legs begin and end: what they ignore there.
-  struct Stop {
-    std::array<FacetId, 2> facets;
-    std::array<const Plane*, 2> planes;
-    LegEnd end() const { return {facets, planes}; }
-  };
-
-  Stop stop_at(SequenceElement element) const {
-    const std::array<FacetId, 2> facets =
-        element.is_edge() ? scene().wedge(element.edge()).facets : std::array{element.mirror(), element.mirror()};
-    return {facets, {&facet(facets[0]).plane, &facet(facets[1]).plane}};
-  }
-
-  /// Walks the legs between the points, collecting the sheets they cross.
-  std::optional<Path> follow(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
-                             const IgnoredBodies& ignored) {
-    const std::vector<Vec3>& points_m = points_.points_m();
-    Path path;
-    std::size_t left = max_transmissions_;
-    Vec3 from_m = transmitter.position_m;
-    Stop before{}, here{};
-    for (std::size_t leg = 0; leg <= sequence.size(); ++leg) {
-      const bool last = leg == sequence.size();
-      if (!last) here = stop_at(sequence[sequence.size() - 1 - leg]);
-      const LegEnd start = leg == 0 ? LegEnd{transmitter.mounted_on, {}} : before.end();
-      const LegEnd end = last ? LegEnd{receiver.mounted_on, {}} : here.end();
-      const Vec3 to_m = last ? receiver.position_m : points_m[leg];
-      if (!walk(from_m, to_m, start, end, ignored, left, path)) return std::nullopt;
-      if (!last) path.interactions.push_back(interaction_at(sequence[sequence.size() - 1 - leg], leg));
-      from_m = to_m;
-      before = here;
-    }
-    return path;
-  }
-
-  /// One leg: false where it is blocked, crosses too many sheets, or has no direction.
-  bool walk(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end, const IgnoredBodies& ignored,
-            std::size_t& left, Path& path) {
-    const double leg_length_m = glm::distance(from_m, to_m);
-    if (!(leg_length_m > in_plane_guard_m)) return false;
-    ++counters_.legs;
-    if (!tracer_.follow_leg(from_m, to_m, start, end, ignored, left, crossings_, counters_.traversal)) return false;
-    for (const Crossing& crossing : crossings_) {
-      path.interactions.push_back(
-          {InteractionKind::transmission, crossing.facet, from_m + crossing.t * (to_m - from_m)});
-    }
-    left -= crossings_.size();
-    path.length_m += leg_length_m;
-    add_foliage_along(scene(), from_m, to_m, ignored, path.foliage);
-    return true;
-  }
-
-  Interaction interaction_at(SequenceElement element, std::size_t index) const {
-    const Vec3& point_m = points_.points_m()[index];
-    if (!element.is_edge()) return {InteractionKind::reflection, element.mirror(), point_m};
-    return {InteractionKind::diffraction, scene().wedge(element.edge()).facets[0], point_m, element.edge(),
-            in_shadow_[index]};
   }
 
   /// The first valid sequence, before this one in order of precedence, over facets that lie on top of the path's own
@@ -299,12 +212,11 @@ class PathSolver {
   }
 
   const SceneTracer<Index>& tracer_;
-  std::size_t max_transmissions_;
+  LegWalker<Index> legs_;
   EdgeRules rules_;
   SolverCounters counters_;
   ChainPoints points_;
   std::vector<bool> in_shadow_;
-  std::vector<Crossing> crossings_;
 };
 
 }  // namespace dcem

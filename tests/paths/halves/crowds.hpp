@@ -2,6 +2,8 @@
 /// What receivers side by side find together, and what each of them finds by trying every sequence.
 #include <doctest/doctest.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -78,6 +80,23 @@ inline std::size_t check_crowd(TracedScene<>& traced, const LinkEnd& from, const
     CHECK(same_paths(together[point], expected));
     found += expected.size();
   }
+  return found;
+}
+
+/// Checks a crowd in a random town for every seed; returns how many paths there are. `asked_of(draw)`: what is asked.
+template <typename AskedOf>
+std::size_t check_town_crowds(std::uint64_t first_seed, std::uint64_t end_seed, AskedOf&& asked_of) {
+  std::size_t found = 0;
+  for (std::uint64_t seed = first_seed; seed < end_seed; ++seed) {
+    Draw draw(seed);
+    TracedScene<> traced(small_town(draw));
+    const LinkEnd from = somewhere(traced, draw);
+    const Asked asked = asked_of(draw);
+    const std::vector<Vec3> points_m = some_crowd(draw, 8.0, Vec3(-20, -20, 0.3), Vec3(20, 20, 14));
+    CAPTURE(seed);
+    found += check_crowd(traced, from, points_m, asked, draw.below(2) == 0 ? 256 : 64);
+  }
+  MESSAGE(found << " paths");
   return found;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -117,6 +118,12 @@ inline LinkEnd somewhere(TracedScene<>& traced, Draw& draw) {
   return traced.end(draw.inside(Vec3(-20, -20, 0.3), Vec3(20, 20, 14)));
 }
 
+/// An end 300 or 3000 km from the town, above the ground.
+inline LinkEnd far_away(TracedScene<>& traced, Draw& draw) {
+  const double turn = draw.between(-pi, pi), away_m = draw.below(2) == 0 ? 3e5 : 3e6;
+  return traced.end(away_m * Vec3(std::cos(turn), std::sin(turn), draw.between(0.2, 1.0)));
+}
+
 /// Sheets and houses on a grid of whole metres: ends on the same grid lie in planes of facets and on lines of edges.
 inline Scene town_on_grid(Draw& draw) {
   TriangleMesh mesh;
@@ -140,6 +147,23 @@ inline Vec3 point_on_grid(Draw& draw) {
     return static_cast<double>(low + static_cast<int>(draw.below(static_cast<std::uint64_t>(high - low + 1))));
   };
   return {whole(-8, 8), whole(-8, 8), whole(1, 6)};
+}
+
+/// Checks a link on the grid for every seed, free edges included and up to one transmission, which is drawn; returns
+/// how many paths there are.
+inline std::size_t check_grid_links(std::uint64_t first_seed, std::uint64_t end_seed, Asked asked) {
+  std::size_t found = 0;
+  asked.free_edges = true;
+  for (std::uint64_t seed = first_seed; seed < end_seed; ++seed) {
+    Draw draw(seed);
+    TracedScene<> traced(town_on_grid(draw));
+    asked.transmissions = static_cast<int>(draw.below(2));
+    CAPTURE(seed);
+    const LinkEnd from = traced.end(point_on_grid(draw)), to = traced.end(point_on_grid(draw));
+    if (from.position_m == to.position_m) continue;
+    found += check_joined(traced, from, to, asked);
+  }
+  return found;
 }
 
 }  // namespace dcem::test

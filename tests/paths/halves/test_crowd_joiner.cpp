@@ -13,17 +13,8 @@ using namespace dcem;
 using namespace dcem::test;
 
 TEST_CASE("a crowd finds every path of each of its points, and the same bits") {
-  std::size_t found = 0;
-  for (std::uint64_t seed = 0; seed < 120; ++seed) {
-    Draw draw(seed);
-    TracedScene<> traced(small_town(draw));
-    const LinkEnd from = somewhere(traced, draw);
-    const Asked asked{static_cast<int>(draw.below(3))};
-    const std::vector<Vec3> points_m = some_crowd(draw, 8.0, Vec3(-20, -20, 0.3), Vec3(20, 20, 14));
-    CAPTURE(seed);
-    found += check_crowd(traced, from, points_m, asked, draw.below(2) == 0 ? 256 : 64);
-  }
-  MESSAGE(found << " paths");
+  const std::size_t found =
+      check_town_crowds(0, 120, [](Draw& draw) { return Asked{static_cast<int>(draw.below(3))}; });
   CHECK(found > 3'000);
 }
 
@@ -53,8 +44,7 @@ TEST_CASE("a transmitter far away is joined as one nearby") {
   for (std::uint64_t seed = 6000; seed < 6040; ++seed) {
     Draw draw(seed);
     TracedScene<> traced(small_town(draw));
-    const double turn = draw.between(-pi, pi), away_m = draw.below(2) == 0 ? 3e5 : 3e6;
-    const LinkEnd from = traced.end(away_m * Vec3(std::cos(turn), std::sin(turn), draw.between(0.2, 1.0)));
+    const LinkEnd from = far_away(traced, draw);
     const std::vector<Vec3> points_m =
         points_beside(draw, draw.inside(Vec3(-20, -20, 1), Vec3(20, 20, 6)), Vec3(3, 3, 0), 8);
     CAPTURE(seed);

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "tests/paths/halves/crowds.hpp"
@@ -45,17 +44,7 @@ TEST_CASE("joined halves find every path over two edges, and the same bits") {
 }
 
 TEST_CASE("parallel edges, edges that meet, and ends on lines of edges are joined as all others") {
-  std::size_t found = 0;
-  for (std::uint64_t seed = 8100; seed < 8180; ++seed) {
-    Draw draw(seed);
-    TracedScene<> traced(town_on_grid(draw));
-    Asked asked{static_cast<int>(draw.below(2)), 0, 2, 2, true};
-    CAPTURE(seed);
-    const LinkEnd from = traced.end(point_on_grid(draw)), to = traced.end(point_on_grid(draw));
-    if (from.position_m == to.position_m) continue;
-    found += check_joined(traced, from, to, asked);
-  }
-  CHECK(found > 1'000);
+  CHECK(check_grid_links(8100, 8180, {0, 0, 2, 2}) > 1'000);
 }
 
 TEST_CASE("from either end there are the same paths over two edges") {
@@ -74,17 +63,9 @@ TEST_CASE("from either end there are the same paths over two edges") {
 }
 
 TEST_CASE("a crowd finds every path over two edges of each of its points") {
-  std::size_t found = 0;
-  for (std::uint64_t seed = 8300; seed < 8330; ++seed) {
-    Draw draw(seed);
-    TracedScene<> traced(small_town(draw));
-    const LinkEnd from = somewhere(traced, draw);
-    const Asked asked{static_cast<int>(draw.below(3)), static_cast<int>(draw.below(3)), 2, 2};
-    const std::vector<Vec3> points_m = some_crowd(draw, 8.0, Vec3(-20, -20, 0.3), Vec3(20, 20, 14));
-    CAPTURE(seed);
-    found += check_crowd(traced, from, points_m, asked, draw.below(2) == 0 ? 256 : 64);
-  }
-  MESSAGE(found << " paths");
+  const std::size_t found = check_town_crowds(8300, 8330, [](Draw& draw) {
+    return Asked{static_cast<int>(draw.below(3)), static_cast<int>(draw.below(3)), 2, 2};
+  });
   CHECK(found > 3'000);
 }
 
@@ -93,9 +74,7 @@ TEST_CASE("an end that is far away is joined over two edges as one nearby") {
   for (std::uint64_t seed = 8400; seed < 8430; ++seed) {
     Draw draw(seed);
     TracedScene<> traced(small_town(draw));
-    const double turn = draw.between(-pi, pi), away_m = draw.below(2) == 0 ? 3e5 : 3e6;
-    const LinkEnd from = traced.end(away_m * Vec3(std::cos(turn), std::sin(turn), draw.between(0.2, 1.0)));
-    const LinkEnd to = somewhere(traced, draw);
+    const LinkEnd from = far_away(traced, draw), to = somewhere(traced, draw);
     CAPTURE(seed);
     found += check_joined(traced, from, to, {0, 1, 2, 2}) + check_joined(traced, to, from, {0, 1, 2, 2});
   }

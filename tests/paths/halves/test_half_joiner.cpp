@@ -122,18 +122,7 @@ TEST_CASE("a half that is kept while bodies move is the half made anew") {
 }
 
 TEST_CASE("from the plane of a sheet its rim is seen, though the sheet is not") {
-  std::size_t found = 0;
-  for (std::uint64_t seed = 4000; seed < 4120; ++seed) {
-    Draw draw(seed);
-    TracedScene<> traced(town_on_grid(draw));
-    Asked asked{static_cast<int>(draw.below(2))};
-    asked.free_edges = true;
-    CAPTURE(seed);
-    const LinkEnd from = traced.end(point_on_grid(draw)), to = traced.end(point_on_grid(draw));
-    if (from.position_m == to.position_m) continue;
-    found += check_joined(traced, from, to, asked);
-  }
-  CHECK(found > 500);
+  CHECK(check_grid_links(4000, 4120, {}) > 500);
 }
 
 TEST_CASE("what two triangles of a facet, one on the other, leave open is seen through") {

@@ -1,18 +1,15 @@
 #pragma once
 /// Computes the numbers of a leaf of quads, several lanes at once.
-#include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <utility>
 
 #include "dcem/accel/wide/node.hpp"
 #include "dcem/accel/wide/quad.hpp"
 #include "dcem/accel/wide/update/double_lanes.hpp"
+#include "dcem/accel/wide/update/quad_edges.hpp"
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/vector.hpp"
@@ -89,8 +86,6 @@ class LeafNumbers {
   static constexpr auto larger = [](const auto& one, const auto& other) { return one > other ? one : other; };
 
   static constexpr std::size_t parts = simd_lanes / double_part_lanes;
-  /// What is smaller is no length.
-  static constexpr double least_squared = 1e-280;
   using Row = std::array<double, simd_lanes>;
   using Codes = std::array<std::int64_t, simd_lanes>;
 
@@ -106,15 +101,15 @@ class LeafNumbers {
     std::array<VectorPart, 4> corner;
     place_corners(world_m_[part], origin_m, centre_m, is_pair, corner);
     for (std::size_t index = 0; index < 4; ++index) store(corner[index], leaf.corner_m[index], first);
-    Edges edges;
+    QuadEdges edges;
     edges.set(world_m_[part]);
     VectorPart normal, other_normal;
     set_normals(part, edges, normal, other_normal);
     store(normal, leaf.normal, first);
     DoublePart bend, diameter, sound;
     normal.dot(edges.ad, bend);
-    set_diameter(edges, diameter);
-    set_soundness(edges, normal, sound);
+    edges.set_diameter(diameter);
+    edges.set_soundness(normal, sound);
     // Without a plane, or where the vertices have moved until the pair is not convex, nothing is certain, but every
     // ray near it is asked.
     bend = sound > 0.0 ? absolute(bend) * 1.0001 : diameter;
@@ -122,23 +117,6 @@ class LeafNumbers {
     bend_m_ = bend > bend_m_ ? bend : bend_m_;
     diameter_m_ = diameter > diameter_m_ ? diameter : diameter_m_;
   }
-
-  /// Ways between the corners in the world, and the products that point along the normals.
-  struct Edges {
-    VectorPart ab, ac, ad, bc, cd, bd, at_b, at_d;
-
-    [[gnu::always_inline]] void set(const std::array<VectorPart, 4>& corner) {
-      const auto& [a, b, c, d] = corner;
-      ab.set_difference(b, a);
-      ac.set_difference(c, a);
-      ad.set_difference(d, a);
-      bc.set_difference(c, b);
-      cd.set_difference(d, c);
-      bd.set_difference(d, b);
-      at_b.set_cross(ab, ac);
-      at_d.set_cross(ac, ad);
-    }
-  };
 
   [[gnu::always_inline]] static void store(const VectorPart& vector, std::array<std::array<float, simd_lanes>, 3>& rows,
                                            std::size_t first) {
@@ -163,7 +141,7 @@ class LeafNumbers {
     corner[3].set_where(is_pair, corner[3], middle);
   }
 
-  [[gnu::always_inline]] void set_normals(std::size_t part, const Edges& edges, VectorPart& normal,
+  [[gnu::always_inline]] void set_normals(std::size_t part, const QuadEdges& edges, VectorPart& normal,
                                           VectorPart& other_normal) {
     const std::array<VectorPart, 4>& world = world_m_[part];
     const std::size_t first = part * double_part_lanes;
@@ -209,42 +187,7 @@ class LeafNumbers {
     DoublePart squared, scale;
     vector.dot(vector, squared);
     set_reciprocal_root(scale, squared, 4);
-    vector.scale(squared > least_squared ? scale : DoublePart{});
-  }
-
-  [[gnu::always_inline]] static void set_diameter(const Edges& edges, DoublePart& result) {
-    DoublePart longest = DoublePart{} + least_squared, squared;
-    for (const VectorPart* way :
-         std::array<const VectorPart*, 6>{&edges.ab, &edges.ac, &edges.ad, &edges.bc, &edges.cd, &edges.bd}) {
-      way->dot(*way, squared);
-      longest = squared > longest ? squared : longest;
-    }
-    set_reciprocal_root(result, longest, 2);
-    result *= longest * 1.00001;
-  }
-
-  /// Above 0 where the quadrilateral is convex (see EdgePair) and there is a plane. The turns at opposite corners of a
-  /// quadrilateral are the normals of the triangles there, and both pairs have the same sum.
-  [[gnu::always_inline]] static void set_soundness(const Edges& edges, const VectorPart& normal, DoublePart& result) {
-    const VectorPart &at_b = edges.at_b, &at_d = edges.at_d;
-    VectorPart at_c;
-    at_c.set_cross(edges.bc, edges.cd);
-    VectorPart sum;
-    sum.x = at_b.x + at_d.x;
-    sum.y = at_b.y + at_d.y;
-    sum.z = at_b.z + at_d.z;
-    DoublePart least, turn_b, turn_c, turn_d, length;
-    sum.dot(sum, least);
-    sum.dot(at_b, turn_b);
-    sum.dot(at_c, turn_c);
-    sum.dot(at_d, turn_d);
-    const DoublePart turn_a = least - turn_c;
-    turn_b = turn_b < turn_c ? turn_b : turn_c;
-    turn_d = turn_d < turn_a ? turn_d : turn_a;
-    turn_b = turn_b < turn_d ? turn_b : turn_d;
-    normal.dot(normal, length);
-    result = turn_b >= 1e-3 * least ? least : DoublePart{};
-    result = length > 0.0 ? result : DoublePart{};
+    vector.scale(squared > least_squared_length ? scale : DoublePart{});
   }
 
   std::array<std::array<VectorPart, 4>, parts> world_m_;

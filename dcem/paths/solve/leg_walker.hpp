@@ -1,0 +1,109 @@
+#pragma once
+/// The legs of a path whose points are known: whether they are free, and what they cross.
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "dcem/paths/path.hpp"
+#include "dcem/paths/query/foliage_length.hpp"
+#include "dcem/paths/query/link_end.hpp"
+#include "dcem/paths/sequence.hpp"
+#include "dcem/paths/solve/solver_counters.hpp"
+
+namespace dcem {
+
+/// Points run from the transmitter, sequences from the receiver outwards. Holds scratch memory: one per thread.
+template <typename Index>
+class LegWalker {
+ public:
+  LegWalker(const SceneTracer<Index>& tracer, int max_transmissions)
+      : tracer_(tracer), max_transmissions_(static_cast<std::size_t>(max_transmissions)) {}
+
+  /// Whether something opaque stands between two points of interaction, where nothing transmits.
+  bool is_blocked_between(const Sequence& sequence, const std::vector<Vec3>& points_m, const IgnoredBodies& ignored,
+                          SolverCounters& counters) {
+    if (max_transmissions_ > 0) return false;
+    for (std::size_t leg = 1; leg < sequence.size(); ++leg) {
+      const Stop start = stop_at(sequence[sequence.size() - leg]), end = stop_at(sequence[sequence.size() - 1 - leg]);
+      if (!(glm::distance(points_m[leg - 1], points_m[leg]) > in_plane_guard_m)) return true;
+      ++counters.legs;
+      if (!tracer_.follow_leg(points_m[leg - 1], points_m[leg], start.end(), end.end(), ignored, 0, crossings_,
+                              counters.traversal)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// The path over the points, with the sheets that its legs cross; none where a leg is not free. `in_shadow`: of each
+  /// point, for those on edges.
+  std::optional<Path> follow(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
+                             const std::vector<Vec3>& points_m, const std::vector<bool>& in_shadow,
+                             SolverCounters& counters) {
+    const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
+    Path path;
+    std::size_t left = max_transmissions_;
+    Vec3 from_m = transmitter.position_m;
+    Stop before{}, here{};
+    for (std::size_t leg = 0; leg <= sequence.size(); ++leg) {
+      const bool last = leg == sequence.size();
+      if (!last) here = stop_at(sequence[sequence.size() - 1 - leg]);
+      const LegEnd start = leg == 0 ? LegEnd{transmitter.mounted_on, {}} : before.end();
+      const LegEnd end = last ? LegEnd{receiver.mounted_on, {}} : here.end();
+      const Vec3 to_m = last ? receiver.position_m : points_m[leg];
+      if (!walk(from_m, to_m, start, end, ignored, left, path, counters)) return std::nullopt;
+      if (!last) {
+        path.interactions.push_back(interaction_at(sequence[sequence.size() - 1 - leg], points_m[leg], in_shadow[leg]));
+      }
+      from_m = to_m;
+      before = here;
+    }
+    return path;
+  }
+
+ private:
+  const Scene& scene() const { return tracer_.scene(); }
+  const WorldFacet& facet(FacetId id) const { return scene().facet(id); }
+
+  /// A place where legs begin and end: what they ignore there.
+  struct Stop {
+    std::array<FacetId, 2> facets;
+    std::array<const Plane*, 2> planes;
+    LegEnd end() const { return {facets, planes}; }
+  };
+
+  Stop stop_at(SequenceElement element) const {
+    const std::array<FacetId, 2> facets =
+        element.is_edge() ? scene().wedge(element.edge()).facets : std::array{element.mirror(), element.mirror()};
+    return {facets, {&facet(facets[0]).plane, &facet(facets[1]).plane}};
+  }
+
+  /// One leg: false where it is blocked, crosses too many sheets, or has no direction.
+  bool walk(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end, const IgnoredBodies& ignored,
+            std::size_t& left, Path& path, SolverCounters& counters) {
+    const double leg_length_m = glm::distance(from_m, to_m);
+    if (!(leg_length_m > in_plane_guard_m)) return false;
+    ++counters.legs;
+    if (!tracer_.follow_leg(from_m, to_m, start, end, ignored, left, crossings_, counters.traversal)) return false;
+    for (const Crossing& crossing : crossings_) {
+      path.interactions.push_back(
+          {InteractionKind::transmission, crossing.facet, from_m + crossing.t * (to_m - from_m)});
+    }
+    left -= crossings_.size();
+    path.length_m += leg_length_m;
+    add_foliage_along(scene(), from_m, to_m, ignored, path.foliage);
+    return true;
+  }
+
+  Interaction interaction_at(SequenceElement element, const Vec3& point_m, bool in_shadow) const {
+    if (!element.is_edge()) return {InteractionKind::reflection, element.mirror(), point_m};
+    return {InteractionKind::diffraction, scene().wedge(element.edge()).facets[0], point_m, element.edge(), in_shadow};
+  }
+
+  const SceneTracer<Index>& tracer_;
+  std::size_t max_transmissions_;
+  std::vector<Crossing> crossings_;
+};
+
+}  // namespace dcem
