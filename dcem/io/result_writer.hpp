@@ -1,6 +1,6 @@
 #pragma once
-/// Results of a run, frame by frame: `paths.jsonl`, `links.csv`, `pdp.csv`, `doppler.csv`, `cfr.npz`, `paths.npz` and
-/// pictures of links.
+/// Results of a run, frame by frame: `paths.jsonl` (or `.jsonl.gz`), `links.csv`, `pdp.csv`, `doppler.csv`, `cfr.npz`,
+/// `paths.npz` and pictures of links.
 ///
 /// Numbers have the fewest digits that read back as the same double. What is not defined is an empty field in CSV and
 /// `null` in JSON, never NaN or infinity. The same results give the same bytes. docs/results.md names every column.
@@ -51,6 +51,7 @@ std::size_t plotted_links(const Scene& scene, std::span<const Device> receivers)
 class CsvLine;
 class PathCollector;
 class PathLines;
+class GzipEncoder;
 class PlotCollector;
 class ResponseCollector;
 
@@ -79,12 +80,15 @@ class ResultWriter {
  private:
   /// A file with the lines that are not yet handed to the operating system.
   struct Sheet {
-    AtomicFile* file = nullptr;  // absent: not asked for
+    AtomicFile* file = nullptr;         // absent: not asked for
+    std::unique_ptr<GzipEncoder> gzip;  // absent: the file is plain
     std::string text;
 
     void flush(std::size_t limit);
   };
 
+    Sheet();
+    ~Sheet();
   CsvLine begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const;
   void append_link(std::string& text, const FrameResult& frame, const LinkResult& link) const;
   void append_profile(const FrameResult& frame, const LinkResult& link);
