@@ -68,8 +68,10 @@ void add_common_options(CLI::App& command, ScenarioOptions& options) {
   command
       .add_option_function<std::string>(
           "--memory-limit", [&](const std::string& text) { options.memory_limit_bytes = parse_bytes(text); },
-          "Refuse, before anything is computed, what is foreseen to take more (K, M and G: 1024 each; default: the "
-          "machine's memory): grids, lists, links, maps, arrays; not every byte is foreseen")
+          "Refuse what is foreseen to take more (K, M and G: 1024 each; default: the machine's memory): grids, lists, "
+          "links "
+          "and maps before anything is computed, paths.npz as soon as its paths are too many; not every byte is "
+          "foreseen")
       ->type_name("BYTES");
   command.add_option("--frames", options.frames, "Only the frames A to B - 1")->type_name("A:B");
   command.add_option("--discovery", options.overrides.discovery, "How paths are found: exact or sampled")
