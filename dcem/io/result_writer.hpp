@@ -1,9 +1,10 @@
 #pragma once
-/// Results of a run, frame by frame: `paths.jsonl`, `links.csv`, `pdp.csv`, `doppler.csv`, `cfr.npz`, `paths.npz` and
-/// pictures of links.
+/// Results of a run, frame by frame: `paths.jsonl` (or `.jsonl.gz`), `links.csv`, `pdp.csv`, `doppler.csv`, `cfr.npz`,
+/// `paths.npz` and pictures of links.
 ///
 /// Numbers have the fewest digits that read back as the same double. What is not defined is an empty field in CSV and
 /// `null` in JSON, never NaN or infinity. The same results give the same bytes. docs/results.md names every column.
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -40,6 +41,7 @@ struct ResultFacts {
   std::size_t frames = 1;
   std::size_t first_frame = 0;  ///< `FrameResult::index` of the first of them
   int exact_interactions = 0;   ///< up to which all paths are found, where discovery is sampled beyond them
+  double memory_limit_bytes = std::numeric_limits<double>::infinity();  ///< of the arrays of a file, beside their 16 GB
 };
 
 /// Whether more is asked for than `links.csv`, whose lines say all that there is to write of a frame.
@@ -49,6 +51,7 @@ bool needs_paths(const OutputSettings& output);
 std::size_t plotted_links(const Scene& scene, std::span<const Device> receivers);
 
 class CsvLine;
+class GzipEncoder;
 class PathCollector;
 class PathLines;
 class PlotCollector;
@@ -59,13 +62,14 @@ class ResultWriter {
  public:
   /// `receivers` are those that `LinkResult::receiver` indexes. The folder and the scene must outlive the writer, and
   /// the scene may move between the frames. Throws `OutputError`, and std::invalid_argument where responses over the
-  /// band or paths as arrays would need more memory than 16 GB, or where pictures cannot be as they are asked for.
+  /// band or paths as arrays would need more memory than 16 GB or the limit, or where pictures cannot be as they are
+  /// asked for.
   ResultWriter(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts,
                const OutputSettings& output);
   ~ResultWriter();
 
   /// Appends a frame. Lines are in the order of the frame's links. Throws `OutputError`, and
-  /// std::invalid_argument where the paths as arrays would need more memory than 16 GB.
+  /// std::invalid_argument where the paths as arrays would need more memory than 16 GB or the limit.
   void write(const FrameResult& frame);
   /// The lines of `links.csv` of a frame; empty where it is not asked for.
   [[nodiscard]] std::string link_lines(const FrameResult& frame) const;
@@ -79,9 +83,12 @@ class ResultWriter {
  private:
   /// A file with the lines that are not yet handed to the operating system.
   struct Sheet {
-    AtomicFile* file = nullptr;  // absent: not asked for
+    AtomicFile* file = nullptr;         // absent: not asked for
+    std::unique_ptr<GzipEncoder> gzip;  // absent: the file is plain
     std::string text;
 
+    Sheet();
+    ~Sheet();
     void flush(std::size_t limit);
   };
 

@@ -63,6 +63,8 @@ struct OutputSettings {
   MapOutputs map{};
   bool html = false;
   ViewerSettings viewer{};
+  std::optional<std::size_t> paths_top{};  ///< of each link so many are listed, the strongest; absent: all
+  bool paths_gzip = false;
 };
 
 /// What the command line may override. Absent: the scenario file decides.

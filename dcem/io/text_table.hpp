@@ -9,6 +9,9 @@ namespace dcem::io {
 /// `value` with `decimals` digits after the point, whatever the locale. Never "-0"; "-" for a value that is not finite.
 std::string format_fixed(double value, int decimals);
 
+/// Bytes in two to four digits: "368 GB", "1049 MB", "640 bytes"; kB, MB and GB are powers of 1000.
+std::string memory_text(double bytes);
+
 /// A table for the console: columns as wide as their longest cell, two blanks between them.
 class TextTable {
  public:

@@ -43,11 +43,36 @@ std::string comma_list(const std::vector<std::string>& words) {
   return list;
 }
 
+/// A number of bytes, or with K, M or G behind it of so many times 1024, 1024² or 1024³ of them.
+double parse_bytes(const std::string& text) {
+  constexpr double most = 1e18;
+  double bytes = 0.0;
+  std::size_t digits = 0;
+  for (; digits < text.size() && text[digits] >= '0' && text[digits] <= '9'; ++digits) {
+    bytes = 10.0 * bytes + (text[digits] - '0');
+  }
+  const std::map<std::string, double> suffixes{
+      {"", 1.0}, {"K", 1024.0}, {"M", 1024.0 * 1024.0}, {"G", 1024.0 * 1024.0 * 1024.0}};
+  const auto suffix = suffixes.find(text.substr(digits));
+  if (suffix != suffixes.end()) bytes *= suffix->second;
+  if (digits > 0 && suffix != suffixes.end() && bytes >= 1.0 && bytes <= most) return bytes;
+  throw UsageError("--memory-limit " + text + ": no amount of memory",
+                   "a number of bytes from 1, with K, M or G of 1024, 1024^2 or 1024^3 bytes, as in 512M");
+}
+
 void add_common_options(CLI::App& command, ScenarioOptions& options) {
   command.add_option("scenario", options.scenario, "The scenario file (JSON)")->required()->type_name("SCENARIO.json");
   command.add_option("--threads", options.threads, "Number of threads (default: all cores); never changes a result")
       ->check(CLI::Range(1U, 4096U))
       ->type_name("N");
+  command
+      .add_option_function<std::string>(
+          "--memory-limit", [&](const std::string& text) { options.memory_limit_bytes = parse_bytes(text); },
+          "Refuse what is foreseen to take more (K, M and G: 1024 each; default: the machine's memory): grids, lists, "
+          "links "
+          "and maps before anything is computed, paths.npz as soon as its paths are too many; not every byte is "
+          "foreseen")
+      ->type_name("BYTES");
   command.add_option("--frames", options.frames, "Only the frames A to B - 1")->type_name("A:B");
   command.add_option("--discovery", options.overrides.discovery, "How paths are found: exact or sampled")
       ->check(CLI::IsMember({"exact", "sampled"}))

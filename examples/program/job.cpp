@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <iostream>
 #include <string_view>
 
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/sampling_text.hpp"
+#include "dcem/io/text_table.hpp"
 #include "dcem/sim/discovery.hpp"
 
 #ifndef DCEM_VERSION
@@ -43,11 +43,11 @@ double memory_of_machine_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-std::string gigabytes(double bytes) {
-  return std::to_string(std::llround(bytes / 1e9)) + " GB";
-}
-
 }  // namespace
+
+std::string points_text(const std::string& kind, const std::string& id, std::size_t points) {
+  return kind + " '" + id + "': " + std::to_string(points) + " points";
+}
 
 Job prepare_job(const ScenarioOptions& options) {
   const io::ProgressStage stage("reading scenario", progress_mode(options));
@@ -68,20 +68,25 @@ Simulator make_simulator(Job& job, const ScenarioOptions& options) {
   }
 }
 
-void require_memory(const std::string& file, const std::string& what, std::size_t points, double point_bytes) {
-  const double available_bytes = memory_of_machine_bytes();
-  const double needed_bytes = point_bytes * static_cast<double>(points);
-  if (needed_bytes <= available_bytes) return;
-  throw io::InputError(file, what + ": " + std::to_string(points) + " points need " + gigabytes(needed_bytes) +
-                                 "; expected less than the " + gigabytes(available_bytes) +
-                                 " of this machine's memory");
+void require_memory(const ScenarioOptions& options, const std::string& what, std::size_t count, double each_bytes) {
+  const double most_bytes = options.memory_limit_bytes.value_or(memory_of_machine_bytes());
+  const double needed_bytes = each_bytes * static_cast<double>(count);
+  if (needed_bytes <= most_bytes) return;
+  const std::string most = options.memory_limit_bytes
+                               ? "at most " + io::memory_text(most_bytes) + ", the --memory-limit"
+                               : "less than the " + io::memory_text(most_bytes) + " of this machine's memory";
+  throw io::InputError(options.scenario, what + " need " + io::memory_text(needed_bytes) + "; expected " + most);
 }
 
-void expand_grids(io::Scenario& scenario, const std::string& file) {
-  const auto transmitters = static_cast<double>(scenario.scene.transmitters().size());
+void expand_grids(io::Scenario& scenario, const ScenarioOptions& options) {
+  const std::size_t transmitters = scenario.scene.transmitters().size();
+  const double receiver_bytes = sizeof(Device) + static_cast<double>(transmitters) * sizeof(LinkResult);
+  std::size_t receivers = scenario.scene.receivers().size();
   for (const ReceiverGrid& grid : scenario.grids) {
-    require_memory(file, "grid '" + grid.id + "'", grid.size(), sizeof(Device) + transmitters * sizeof(LinkResult));
+    require_memory(options, points_text("grid", grid.id, grid.size()), grid.size(), receiver_bytes);
+    receivers += grid.size();
   }
+  require_memory(options, std::to_string(receivers * transmitters) + " links of a frame", receivers, receiver_bytes);
   for (const ReceiverGrid& grid : scenario.grids) {
     if (grid.samples_per_cell() > 1) {
       scenario.warnings.push_back("grid '" + grid.id + "': samples are for maps; here each cell has its centre alone");
@@ -91,7 +96,7 @@ void expand_grids(io::Scenario& scenario, const std::string& file) {
         try {
           scenario.scene.add_receiver(grid_receiver(grid, row, column));
         } catch (const std::invalid_argument& error) {
-          throw io::InputError(file, error.what());
+          throw io::InputError(options.scenario, error.what());
         }
       }
     }

@@ -22,13 +22,17 @@ struct Job {
 };
 Job prepare_job(const ScenarioOptions& options);
 
-/// Throws InputError, with the memory that it would take, where `points` of a grid or a list that take `point_bytes`
-/// each are more than this machine holds. `what` as in "grid 'area'".
-void require_memory(const std::string& file, const std::string& what, std::size_t points, double point_bytes);
+/// Throws InputError, with the memory that it would take, where so many points or links that take `each_bytes` are more
+/// than this machine holds, or than --memory-limit. `what` as in "grid 'area': 39 points".
+void require_memory(const ScenarioOptions& options, const std::string& what, std::size_t count, double each_bytes);
+
+/// "grid 'area': 39 points".
+std::string points_text(const std::string& kind, const std::string& id, std::size_t points);
 
 /// Every point of every grid becomes a receiver of the scene, of a cell with several samples its centre, which is a
-/// warning. Throws InputError with the name of the scenario file.
-void expand_grids(io::Scenario& scenario, const std::string& file);
+/// warning. Throws InputError with the name of the scenario file, also where the links of a frame would take too much
+/// memory.
+void expand_grids(io::Scenario& scenario, const ScenarioOptions& options);
 
 /// Takes the scene out of the job. What the simulator refuses is an InputError that names the scenario file.
 Simulator make_simulator(Job& job, const ScenarioOptions& options);

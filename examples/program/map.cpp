@@ -62,26 +62,29 @@ void check_names(const Scene& scene, const MapOrders& orders, const std::string&
 }
 
 /// While a map is folded to cells there are both. The maps of a frame are there together.
-void check_memory(const Scene& scene, const MapOrders& orders, const std::string& file) {
+void check_memory(const Scene& scene, const MapOrders& orders, const ScenarioOptions& options) {
   const double point_bytes = static_cast<double>(scene.transmitters().size()) * sizeof(RadioMapPoint);
   for (const ReceiverGrid& grid : orders.grids) {
     const std::size_t samples = grid.samples_per_cell();
-    require_memory(file, "grid '" + grid.id + "'", grid.size() * (samples > 1 ? samples + 1 : 1), point_bytes);
+    const std::size_t points = grid.size() * (samples > 1 ? samples + 1 : 1);
+    require_memory(options, points_text("grid", grid.id, points), points, point_bytes);
   }
   for (const ReceiverList& list : orders.lists) {
-    require_memory(file, "list '" + list.id + "'", list.receivers.size(), point_bytes);
+    const std::size_t points = list.receivers.size();
+    require_memory(options, points_text("list", list.id, points), points, point_bytes);
   }
-  require_memory(file, "the maps of a frame", orders.points(), point_bytes);
+  require_memory(options, std::to_string(orders.points()) + " points of the maps of a frame", orders.points(),
+                 point_bytes);
 }
 
-void check_orders(const Scene& scene, const MapOrders& orders, const std::string& file) {
+void check_orders(const Scene& scene, const MapOrders& orders, const ScenarioOptions& options) {
   if (orders.points() == 0) {
-    throw io::InputError(file,
+    throw io::InputError(options.scenario,
                          "no receiver is a grid or a list of points; expected one with the key 'grid', 'positions_m' "
                          "or 'points_csv' to make a map of");
   }
-  check_names(scene, orders, file);
-  check_memory(scene, orders, file);
+  check_names(scene, orders, options.scenario);
+  check_memory(scene, orders, options);
 }
 
 void add_figures(const RadioMap& map, io::FrameFigures& figures) {
@@ -254,7 +257,7 @@ void map_scenario(const ScenarioOptions& options) {
   if (options.map_output) choose_outputs(*options.map_output, job.scenario.output);
   const std::vector<ReceiverList> lists = io::take_point_lists(job.scenario);
   const MapOrders orders{job.scenario.grids, lists};
-  check_orders(job.scenario.scene, orders, options.scenario);
+  check_orders(job.scenario.scene, orders, options);
   if (options.map_output) require_files(orders, job.scenario.output);
   Simulator simulator = make_simulator(job, options);
   require_effect(options, simulator);

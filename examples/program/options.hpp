@@ -40,7 +40,9 @@ struct ScenarioOptions {
   std::string scenario;
   std::string folder;               ///< where results go; empty: out/<scenario name>
   std::optional<unsigned> threads;  ///< absent: as the scenario says, which is all cores
-  std::string frames;               ///< "A:B"; empty: all
+  /// Of what is foreseen. Absent: the machine's memory.
+  std::optional<double> memory_limit_bytes;
+  std::string frames;  ///< "A:B"; empty: all
   io::ScenarioOverrides overrides;
   std::optional<std::string> map_output;  ///< "csv,png,…": of `dcem map`, in place of the file's `output`
   bool resume = false;

@@ -1,5 +1,6 @@
 /// `dcem run`: every frame of a scenario, all links.
 #include <iostream>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -24,7 +25,8 @@ io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Sim
                               diffuse.enabled && diffuse.list_paths,
                               job.frames.count(),
                               job.frames.first,
-                              exactly_searched_interactions(simulator.settings().propagation, simulator.plan())};
+                              exactly_searched_interactions(simulator.settings().propagation, simulator.plan()),
+                              options.memory_limit_bytes.value_or(std::numeric_limits<double>::infinity())};
   try {
     return {folder, simulator.scene(), simulator.scene().receivers(), facts, job.scenario.output};
   } catch (const std::invalid_argument& error) {
@@ -233,7 +235,7 @@ void go_on(Run& run, const Job& job, const ScenarioOptions& options, ResultFolde
 void run_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
   const std::size_t devices = job.scenario.scene.receivers().size();
-  expand_grids(job.scenario, options.scenario);
+  expand_grids(job.scenario, options);
   Simulator simulator = make_simulator(job, options);
   require_effect(options, simulator);
   const io::RunIdentity identity = run_identity(job, options);

@@ -54,7 +54,7 @@ std::string table_of(const VerificationReport& report, const Simulator& simulato
 
 void verify_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
-  expand_grids(job.scenario, options.scenario);
+  expand_grids(job.scenario, options);
   io::FrameSource frames(job.scenario);
   Simulator simulator = make_simulator(job, options);
   require_effect(options, simulator);

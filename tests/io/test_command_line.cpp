@@ -42,8 +42,8 @@ Words operator+(Words words, const Words& more) {
   return words;
 }
 
-const Words common{"-h",     "--help", "--threads",      "--frames",   "--discovery",
-                   "--rays", "--seed", "--instructions", "--progress", "--quiet"};
+const Words common{"-h",     "--help", "--threads",      "--memory-limit", "--frames", "--discovery",
+                   "--rays", "--seed", "--instructions", "--progress",     "--quiet"};
 
 std::string script_of(const TemporaryFolder& folder, const std::string& shell) {
   const Outcome outcome = dcem_program(folder, "completion " + shell);
@@ -116,6 +116,31 @@ TEST_CASE("an option that would change nothing is refused, not ignored") {
   const Outcome sampled =
       dcem_program(folder, "run street.json --discovery sampled --rays 100 --seed 7 --quiet --frames 0:1 -o out");
   CHECK(sampled.exit_code == 0);
+}
+
+TEST_CASE("what is foreseen to take more than --memory-limit is refused, with both figures") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver + "," + grid_receiver);
+  for (const std::string command : {"run", "map", "verify"}) {
+    check_refused(folder, command + " street.json --memory-limit 10K", "grid 'area': 39 points need ");
+    check_refused(folder, command + " street.json --memory-limit 10240", "expected at most 10 kB, the --memory-limit");
+    CHECK(dcem_program(folder, command + " street.json --frames 0:1 --memory-limit 1M").exit_code == 0);
+    std::filesystem::remove_all(folder / "out");
+    for (const char* amount : {"0", "-1", "1T", "1.5G", "G", "10KB", "9999999999999G", "''"}) {
+      check_refused(folder, command + " street.json --memory-limit " + amount, "--memory-limit");
+    }
+  }
+  // Many receivers without a grid, and arrays.
+  std::string points = "[0,0,1]";
+  for (int index = 1; index < 100; ++index) points += ",[" + std::to_string(index) + ",0,1]";
+  write_scenario(folder, R"({"id":"probe","positions_m":[)" + points + "]}");
+  check_refused(folder, "map street.json --memory-limit 10K", "list 'probe': 100 points need ");
+  for (const std::string command : {"run", "verify"}) {
+    check_refused(folder, command + " street.json --memory-limit 10K", "100 links of a frame need ");
+  }
+  check_refused(folder, "run street.json --output cfr --memory-limit 1M",
+                "the responses of this run need 1638 kB; expected at most 1049 kB, the limit of memory");
 }
 
 TEST_CASE("--output of a map picks its files") {

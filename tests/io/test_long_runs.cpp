@@ -1,5 +1,6 @@
 /// Runs that are ended by signals, killed, and gone on with.
 #include <doctest/doctest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <csignal>
@@ -101,6 +102,27 @@ int end_town(const TemporaryFolder& folder, const std::string& result, int signa
   return end_behind_first_frame(folder, arguments, result, signal, last_line);
 }
 
+/// The town's scenario with other settings of its list of paths.
+std::string town_with(const std::string& paths) {
+  std::string text = std::regex_replace(file_bytes(town), std::regex("\"obj\": *\""), "$&" DCEM_DATA_DIR "/");
+  const std::string old_paths = "\"paths\": true";
+  REQUIRE(text.find(old_paths) != std::string::npos);
+  return text.replace(text.find(old_paths), old_paths.size(), "\"paths\": " + paths);
+}
+
+/// What a file that is compressed holds; empty where it is not whole.
+std::string unpacked(const std::filesystem::path& path) {
+  const gzFile file = gzopen(path.c_str(), "rb");
+  if (file == nullptr) return {};
+  std::string text;
+  std::vector<char> block(1 << 16);
+  int count = 0;
+  while ((count = gzread(file, block.data(), static_cast<unsigned>(block.size()))) > 0) {
+    text.append(block.data(), static_cast<std::size_t>(count));
+  }
+  return gzclose(file) == Z_OK && count == 0 ? text : std::string();
+}
+
 }  // namespace
 
 TEST_CASE("Ctrl-C leaves a run that ends at its last whole frame; --resume makes it that of all frames") {
@@ -148,6 +170,35 @@ TEST_CASE("SIGTERM ends a run like Ctrl-C; where links.csv is all, its lines are
   REQUIRE(dcem_program(folder, run_town("cut", frames, "links") + " --resume").exit_code == 0);
   REQUIRE(dcem_program(folder, run_town("all", frames, "links")).exit_code == 0);
   check_same_files(folder / "cut", folder / "all");
+}
+
+TEST_CASE("compressed lists of the strongest paths go on, too, and hold the lines of the plain file") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& scenario, const std::string& more) {
+    return dcem_program(folder, "run " + scenario + " --frames 0:12 --output paths --progress json -o " + more);
+  };
+  write(folder / "plain.json", town_with(R"({"top": 5})"));
+  write(folder / "packed.json", town_with(R"({"top": 5, "gzip": true})"));
+  REQUIRE(run("plain.json", "all").exit_code == 0);
+  const std::string lines = file_bytes(folder / "all/paths.jsonl");
+  REQUIRE(lines.find("\"paths_in_all\":") != std::string::npos);
+  REQUIRE(end_behind_first_frame(folder, "run packed.json --frames 0:12 --output paths --progress json", "cut",
+                                 SIGINT) == 130);
+  CHECK(names_in(folder / "cut") == std::vector<std::string>{"paths.jsonl.gz", "run.journal", "summary.json"});
+  const std::string part = unpacked(folder / "cut/paths.jsonl.gz");  // whole, as far as it goes
+  CHECK((!part.empty() && part.size() < lines.size() && lines.starts_with(part)));
+  REQUIRE(run("packed.json", "cut --resume").exit_code == 0);
+  REQUIRE(run("packed.json", "all --threads 1").exit_code == 0);  // in place of the plain file
+  CHECK(names_in(folder / "all") == std::vector<std::string>{"paths.jsonl.gz", "summary.json"});
+  CHECK(names_in(folder / "cut") == names_in(folder / "all"));
+  const std::string packed = file_bytes(folder / "all/paths.jsonl.gz");
+  CHECK((packed == file_bytes(folder / "cut/paths.jsonl.gz")));
+  CHECK((unpacked(folder / "all/paths.jsonl.gz") == lines));
+  CHECK(packed.size() < lines.size() / 2);
+  // Neither a name nor a time; which system packed it is not told.
+  CHECK(packed.substr(3, 5) == std::string(5, '\0'));
+  CHECK(packed[9] == '\xff');
 }
 
 TEST_CASE("a run may be ended and gone on with as often as one likes") {

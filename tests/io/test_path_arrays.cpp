@@ -330,10 +330,12 @@ TEST_CASE("arrays beyond 16 GB are refused with what they would need, before and
   const TemporaryFolder folder;
   io::OutputSettings output;
   output.npz = true;
+  double limit_bytes = 1e15;  // more than the 16 GB
   const auto message_of = [&](std::size_t frame_count, const FrameResult& frame) -> std::string {
     io::OutputFolder out(folder / "out");
     io::ResultFacts facts{Discovery::exact, 30e9};
     facts.frames = frame_count;
+    facts.memory_limit_bytes = limit_bytes;
     try {
       io::ResultWriter writer(out, scene, scene.receivers(), facts, output);
       writer.write(frame);
@@ -350,6 +352,11 @@ TEST_CASE("arrays beyond 16 GB are refused with what they would need, before and
   CHECK(message_of(16'000'000, frame) == "nothing was refused");
   frame.links[0].paths.resize(2);
   CHECK(message_of(16'000'000, frame) == "output.npz: the paths of this run need 30" + expectation);
+  limit_bytes = 1e6;
+  CHECK(message_of(1000, frame) ==
+        "output.npz: the paths of this run need 1884 kB as arrays; expected at most 1000 kB, the limit of memory "
+        "(fewer frames, receivers or paths)");
+  CHECK(message_of(500, frame) == "nothing was refused");
   CHECK_FALSE(std::filesystem::exists(folder / "out"));
 }
 

@@ -137,6 +137,32 @@ TEST_CASE("a path's line holds what the contract names, in its order") {
   CHECK(files.paths == expected);
 }
 
+TEST_CASE("of the strongest alone a line says how many there are; of equals the first ones, in the usual order") {
+  FrameResult frame = small_frame();
+  std::vector<PathContribution>& paths = frame.links[0].paths;
+  paths = {paths[1], paths[0], paths[1], paths[0], paths[1]};
+  for (std::size_t place = 0; place < 5; ++place) paths[place].delay_s = 1.0 + static_cast<double>(place);
+  const auto delays = [&](std::size_t top) {
+    io::OutputSettings output;
+    output.paths = true;
+    output.paths_top = top;
+    const std::string text = written(frame, output).paths;
+    CHECK(split(text, '\n').at(1).find(R"("complete":false,"paths_in_all":0,"paths":[])") != std::string::npos);
+    const std::string line = split(text, '\n').front();
+    CHECK(line.find(R"("complete":true,"paths_in_all":5,"paths":[)") != std::string::npos);
+    std::string listed;
+    for (std::size_t at = line.find("\"delay_s\":"); at != std::string::npos; at = line.find("\"delay_s\":", at + 1)) {
+      listed += line[at + 10];
+    }
+    return listed;
+  };
+  CHECK(delays(1) == "2");
+  CHECK(delays(2) == "24");
+  CHECK(delays(3) == "124");
+  CHECK(delays(4) == "1234");
+  CHECK(delays(9) == "12345");
+}
+
 TEST_CASE("a path between arrays has its channel beside the amplitude: receiving element, then transmitting one") {
   FrameResult frame = small_frame();
   ChannelMatrix& channel = frame.links[0].paths[0].channel;

@@ -11,6 +11,7 @@ namespace test_text_table {
 
 using dcem::io::character_count;
 using dcem::io::format_fixed;
+using dcem::io::memory_text;
 using dcem::io::TextTable;
 
 TEST_CASE("a table is as wide as its longest cells and aligned by column") {
@@ -59,6 +60,15 @@ TEST_CASE("numbers have a point in every locale, no minus zero and no nan") {
   std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // where it is installed
   CHECK(format_fixed(1.5, 1) == "1.5");
   std::setlocale(LC_NUMERIC, old_locale.c_str());
+}
+
+TEST_CASE("memory has two to four digits and a unit") {
+  CHECK(memory_text(0) == "0 bytes");
+  CHECK(memory_text(9999) == "9999 bytes");
+  CHECK(memory_text(10240) == "10 kB");
+  CHECK(memory_text(1048576) == "1049 kB");
+  CHECK(memory_text(9.9e9) == "9900 MB");
+  CHECK(memory_text(80e9) == "80 GB");
 }
 
 }  // namespace test_text_table

@@ -1,9 +1,7 @@
 #include "dcem/io/src/results/path_collector.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "dcem/io/src/results/array_parts.hpp"
 #include "dcem/io/src/results/link_entries.hpp"
@@ -49,9 +47,8 @@ void PathCollector::check_memory() const {
                        static_cast<double>(receivers_.size()) * static_cast<double>(transmitters_.size());
   const double bytes = links * static_cast<double>(longest_list_) *
                        (bytes_per_path + bytes_per_interaction * static_cast<double>(most_interactions_));
-  if (bytes <= most_array_bytes) return;
-  throw std::invalid_argument("output.npz: the paths of this run need " + std::to_string(std::llround(bytes / 1e9)) +
-                              " GB as arrays; expected at most 16 GB (fewer frames, receivers or paths)");
+  require_array_memory("output.npz: the paths of this run", bytes, " as arrays", facts_.memory_limit_bytes,
+                       "fewer frames, receivers or paths");
 }
 
 void PathCollector::add(const FrameResult& frame) {

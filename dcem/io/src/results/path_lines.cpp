@@ -100,8 +100,9 @@ std::string tile_id(const Scene& scene, const DiffuseContribution& tile) {
   return path_id(scene, tile.path) + "#" + std::to_string(number) + "." + std::to_string(tile.place);
 }
 
-PathLines::PathLines(const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts)
-    : scene_(scene), facts_(facts) {
+PathLines::PathLines(const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts,
+                     std::optional<std::size_t> top)
+    : scene_(scene), facts_(facts), top_(top) {
   for (const Device& device : scene.transmitters()) {
     transmitters_.push_back(json_string(device.id));
     power_dbm_.push_back(device.power_dbm);
@@ -119,8 +120,14 @@ void PathLines::append(std::string& text, const FrameResult& frame, const LinkRe
   line.key("tx").prepared(transmitters_[link.transmitter]);
   line.key("rx").prepared(receivers_[link.receiver]);
   line.key("complete").prepared(link.complete ? "true" : "false");
+  std::vector<LinkEntry> entries = link_entries(link, facts_.diffuse_paths);
+  if (top_) {
+    line.key("paths_in_all");
+    append_number(text, entries.size());
+    keep_strongest(entries, *top_);
+  }
   line.key("paths").open('[');
-  for (const LinkEntry& entry : link_entries(link, facts_.diffuse_paths)) {
+  for (const LinkEntry& entry : entries) {
     entry.path != nullptr ? append_path(text, link, *entry.path) : append_tile(text, link, *entry.tile);
   }
   line.close(']').close('}').close('\n');

@@ -1,5 +1,6 @@
 #pragma once
 /// The lines of `paths.jsonl`. Private to dcem::io.
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,8 +15,10 @@ std::string tile_id(const Scene& scene, const DiffuseContribution& tile);
 
 class PathLines {
  public:
-  /// The scene must outlive it, and may move between the frames.
-  PathLines(const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts);
+  /// The scene must outlive it, and may move between the frames. With `top` a line lists so many of its link's paths,
+  /// the strongest, and says how many there are.
+  PathLines(const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts,
+            std::optional<std::size_t> top = {});
 
   /// Appends the line of a link.
   void append(std::string& text, const FrameResult& frame, const LinkResult& link) const;
@@ -30,6 +33,7 @@ class PathLines {
 
   const Scene& scene_;
   ResultFacts facts_;
+  std::optional<std::size_t> top_;
   // Names as they stand in the file, prepared once.
   std::vector<std::string> transmitters_, receivers_, bodies_, materials_;
   std::vector<double> power_dbm_;  // of each transmitter

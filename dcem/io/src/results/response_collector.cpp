@@ -1,8 +1,6 @@
 #include "dcem/io/src/results/response_collector.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
 
 #include "dcem/io/npz_writer.hpp"
 #include "dcem/io/src/results/array_parts.hpp"
@@ -27,10 +25,8 @@ ResponseCollector::ResponseCollector(OutputFolder& folder, const Scene& scene, s
                         static_cast<double>(transmitters_.size()) * static_cast<double>(grid_.points) *
                         (has_ports_ ? 4.0 : 1.0);
   const double bytes = values * static_cast<double>(sizeof(std::complex<double>));
-  if (bytes <= most_array_bytes) return;
-  throw std::invalid_argument("output.cfr: the responses of this run need " +
-                              std::to_string(std::llround(bytes / 1e9)) +
-                              " GB; expected at most 16 GB (fewer frames, receivers or points)");
+  require_array_memory("output.cfr: the responses of this run", bytes, "", facts.memory_limit_bytes,
+                       "fewer frames, receivers or points");
 }
 
 std::size_t ResponseCollector::row_of(const LinkResult& link) const {

@@ -8,6 +8,7 @@
 #include "dcem/io/src/results/path_collector.hpp"
 #include "dcem/io/src/results/path_lines.hpp"
 #include "dcem/io/src/results/response_collector.hpp"
+#include "dcem/io/src/text/gzip_encoder.hpp"
 #include "dcem/io/src/text/number_text.hpp"
 #include "dcem/io/src/text/sheet.hpp"
 
@@ -24,16 +25,21 @@ bool needs_paths(const OutputSettings& output) {
   return output.paths || output.pdp || output.doppler || output.cfr || output.npz || output.plots || output.html;
 }
 
+ResultWriter::Sheet::Sheet() = default;
+
+ResultWriter::Sheet::~Sheet() = default;
+
 void ResultWriter::Sheet::flush(std::size_t limit) {
   if (file == nullptr || text.size() < limit) return;
-  file->write(text);
+  gzip != nullptr ? gzip->write(text) : file->write(text);
   text.clear();
 }
 
 ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers,
                            const ResultFacts& facts, const OutputSettings& output)
-    : output_(output), facts_(facts), lines_(std::make_unique<PathLines>(scene, receivers, facts)) {
-  paths_.file = open_sheet(folder, output.paths, "paths.jsonl");
+    : output_(output), facts_(facts), lines_(std::make_unique<PathLines>(scene, receivers, facts, output.paths_top)) {
+  paths_.file = open_sheet(folder, output.paths, output.paths_gzip ? "paths.jsonl.gz" : "paths.jsonl");
+  if (output.paths && output.paths_gzip) paths_.gzip = std::make_unique<GzipEncoder>(*paths_.file);
   links_.file = open_sheet(folder, output.links, "links.csv");
   profile_.file = open_sheet(folder, output.pdp, "pdp.csv");
   doppler_.file = open_sheet(folder, output.doppler, "doppler.csv");
@@ -82,6 +88,7 @@ void ResultWriter::write_lines(std::string_view link_lines) {
 }
 
 void ResultWriter::finish() {
+  if (paths_.gzip != nullptr) paths_.gzip->finish();
   if (responses_) responses_->write();
   if (arrays_) arrays_->write();
   if (plots_) plots_->write();

@@ -81,6 +81,14 @@ bool is_wanted(const JsonValue& value) {
   return value.is_boolean() ? value.boolean() : true;
 }
 
+void read_paths(const JsonValue& value, OutputSettings& output) {
+  output.paths = is_wanted(value);
+  if (value.is_boolean()) return;
+  const JsonObject object = value.object();
+  if (const auto top = object.find("top")) output.paths_top = static_cast<std::size_t>(top->integer());
+  output.paths_gzip = object.boolean("gzip", output.paths_gzip);
+}
+
 void read_pdp(const JsonValue& value, OutputSettings& output) {
   output.pdp = is_wanted(value);
   if (value.is_boolean()) return;
@@ -141,7 +149,7 @@ OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) 
   const JsonObject object = value.object();
   refuse_later_outputs(object);
   OutputSettings output;
-  output.paths = object.boolean("paths", false);
+  if (const auto paths = object.find("paths")) read_paths(*paths, output);
   output.links = object.boolean("links", links_unless_said);
   if (const auto pdp = object.find("pdp")) read_pdp(*pdp, output);
   if (const auto cfr = object.find("cfr")) read_cfr(*cfr, output);

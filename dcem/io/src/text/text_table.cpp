@@ -26,6 +26,14 @@ std::size_t character_count(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts_character));
 }
 
+std::string memory_text(double bytes) {
+  constexpr double smallest = 10.0;  // of a figure that is shown in a unit
+  for (const auto& [unit_bytes, unit] : {std::pair(1e9, " GB"), std::pair(1e6, " MB"), std::pair(1e3, " kB")}) {
+    if (bytes >= smallest * unit_bytes) return format_fixed(bytes / unit_bytes, 0) + unit;
+  }
+  return format_fixed(bytes, 0) + " bytes";
+}
+
 TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {
   if (columns_.empty()) throw std::invalid_argument("TextTable: at least one column is needed");
 }

@@ -6,6 +6,16 @@ namespace dcem::io::keys {
 
 namespace {
 
+const BlockRule& paths_block() {
+  static const OutputSettings standards{};
+  static const BlockRule rule{
+      "output.paths",
+      "The list of paths, paths.jsonl.",
+      {{"top", {whole_number(1, 999'999'999)}, told("all"), "Of each link the strongest paths alone, so many.", "10"},
+       {"gzip", {boolean()}, standard(standards.paths_gzip), "Compressed, as paths.jsonl.gz.", "true"}}};
+  return rule;
+}
+
 const BlockRule& pdp_block() {
   static const OutputSettings standards{};
   static const BlockRule rule{
@@ -83,7 +93,7 @@ const BlockRule& output_block() {
   static const BlockRule rule = [] {
     BlockRule output{"output",
                      "Which files are written: each key with true, or with the settings of its file.",
-                     {yes_or_no("paths", standards.paths, "Every path of every link, paths.jsonl."),
+                     {yes_or_settings("paths", paths_block(), "Every path of every link, paths.jsonl."),
                       yes_or_no("links", standards.links, "A line for each link and frame, links.csv."),
                       yes_or_settings("pdp", pdp_block(), "The power delay profile, pdp.csv."),
                       yes_or_settings("cfr", cfr_block(), "The frequency response, cfr.npz."),
