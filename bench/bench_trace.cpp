@@ -20,6 +20,7 @@
 
 #include "bench/bench_program.hpp"
 #include "bench/moving_boxes.hpp"
+#include "bench/tiled_mesh.hpp"
 #include "bench/timed_rays.hpp"
 #include "dcem/accel/box_index.hpp"
 #include "dcem/accel/ray_order.hpp"
@@ -321,25 +322,6 @@ std::vector<RayKind> ray_kinds(const dcem::Scene& scene, const dcem::Aabb<double
   return kinds;
 }
 
-/// N × N copies side by side.
-dcem::TriangleMesh tiled(const dcem::TriangleMesh& mesh, int copies) {
-  dcem::Aabb<double> bounds;
-  for (const Vec3& vertex : mesh.vertices_m) bounds.extend(vertex);
-  dcem::TriangleMesh result = mesh;
-  result.vertices_m.clear();
-  result.triangles.clear();
-  for (int copy = 0; copy < copies * copies; ++copy) {
-    const Vec3 shift_m(bounds.extent().x * (copy % copies), bounds.extent().y * (copy / copies), 0.0);
-    const auto first = static_cast<std::uint32_t>(result.vertices_m.size());
-    for (const Vec3& vertex : mesh.vertices_m) result.vertices_m.push_back(vertex + shift_m);
-    for (auto triangle : mesh.triangles) {
-      for (std::uint32_t& vertex : triangle.vertices) vertex += first;
-      result.triangles.push_back(triangle);
-    }
-  }
-  return result;
-}
-
 /// Rays whose answers differ by more than the distance allows.
 std::size_t count_differences(const std::vector<double>& answers, const std::vector<double>& expected) {
   std::size_t count = 0;
@@ -416,7 +398,7 @@ struct Options {
 };
 
 bool bench(const Options& options, const std::string& file) {
-  const dcem::TriangleMesh scenery = tiled(dcem::io::read_obj(file).mesh, options.copies);
+  const dcem::TriangleMesh scenery = dcem::bench::tiled(dcem::io::read_obj(file).mesh, options.copies);
   dcem::Scene scene;
   for (const std::string& name : scenery.material_names) scene.add_material({name, dcem::PerfectConductor{}});
   scene.set_scenery(scenery);

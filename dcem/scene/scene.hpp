@@ -38,6 +38,8 @@ struct DeviceState {
   /// The axes of its antenna in the world, as columns: those of the object it rides on, or of its own pose, times the
   /// antenna's orientation.
   Mat3 rotation{1.0};
+
+  friend bool operator==(const DeviceState&, const DeviceState&) = default;
 };
 
 class Scene {

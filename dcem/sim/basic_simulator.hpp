@@ -21,11 +21,14 @@
 #include "dcem/field/element_paths.hpp"
 #include "dcem/field/field_evaluator.hpp"
 #include "dcem/field/medium_loss.hpp"
+#include "dcem/paths/lifetime/facet_rims.hpp"
 #include "dcem/paths/path_finder.hpp"
 #include "dcem/paths/query/obstruction.hpp"
 #include "dcem/scene/scene.hpp"
+#include "dcem/sim/detail/frame_change.hpp"
 #include "dcem/sim/detail/link_work.hpp"
 #include "dcem/sim/detail/material_table_of.hpp"
+#include "dcem/sim/detail/receiver_memory.hpp"
 #include "dcem/sim/discovery.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/settings.hpp"
@@ -50,15 +53,16 @@ class BasicSimulator {
   const Surface& surface() const { return surface_; }
   Discovery discovery() const { return plan_.discovery; }  ///< exact or sampled: what is really done
   const SearchPlan& plan() const { return plan_; }         ///< how links and the points of maps are searched
-  CacheMode cache() const { return cache_; }               ///< off or seed: what is really remembered
+  CacheMode cache() const { return cache_; }               ///< what is really remembered
 
   /// Moves the scene to a frame and solves all links, starting from what is remembered of the frame before.
   FrameResult advance(const Frame& frame);
   /// The same for the instant `time_s`, by the motions of the scene.
   FrameResult advance_to(double time_s, std::size_t index = 0) { return advance(scene_.frame_at(time_s, index)); }
 
-  /// Moves to a frame whose results are known already and took `spent`. What follows is as after `advance`, every
-  /// counter included. Throws std::logic_error unless `cache()` is off: what it remembers of a frame would be missing.
+  /// Moves to a frame whose results are known already and took `spent`. What follows is as after `advance`; every
+  /// counter included, too, where the cache is off. Throws std::logic_error where `cache()` is seed: what it remembers
+  /// of a frame would be missing.
   TreeUpdateReport pass(const Frame& frame, const WorkCounters& spent);
 
   /// Links from all transmitters to receivers of the caller's, in the current frame, by transmitter, then receiver.
@@ -117,6 +121,7 @@ class BasicSimulator {
     CacheCounters cache;
   };
 
+  struct Following;
   struct MapShare;
   struct MapOrder;
   std::vector<RadioMap> solve_map(const MapOrder& order, const std::function<void(std::size_t)>& progress,
@@ -133,6 +138,7 @@ class BasicSimulator {
   void forget_replaced(const ChangeSet& changes, CacheCounters& counters);
   Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters,
                    std::span<PathCache> caches) const;
+  static Solved sum_of(std::vector<Solved>&& by_receiver, const TransmitterEnds& transmitters);
   /// As so many receivers need them. With `reach`, which has an entry per transmitter, edges that were within reach in
   /// frames before count, too. `embedded` as in `EdgeRules`.
   /// With `halves`, which has an entry per transmitter too, what is kept of them is brought up to date; without, what
@@ -176,6 +182,35 @@ class BasicSimulator {
                                            WorkCounters& work) const;
   LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const DeviceEnd& from,
                        const DeviceEnd& to, const Evaluator& evaluator) const;
+  /// A link from all its paths, in any order, some of them more than once.
+  LinkResult finish_link(std::vector<PathContribution>&& paths, DiffusePower&& diffuse, std::size_t transmitter,
+                         const DeviceEnd& from, const DeviceEnd& to, const Evaluator& evaluator) const;
+
+  /// The links of all receivers of the scene, from what is remembered of the frame before …
+  Solved follow_all(const TransmitterEnds& transmitters);
+  /// … and those of one.
+  Solved follow_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
+                         ReceiverRoom* room);
+  void check_some(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
+                  std::span<const LinkResult> links, ReceiverRoom* room) const;
+  Solved solve_again(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
+                     ReceiverRoom* room);
+  void look_from_receiver(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room) const;
+  std::vector<PathContribution> paths_of_moving(Following& following, detail::ReceiverMemory& memory,
+                                                ReceiverRoom& room, std::size_t transmitter, bool rests) const;
+  bool may_pool(const Following& following, const detail::ReceiverMemory& memory, std::size_t transmitter,
+                bool rests) const;
+  void prepare_pool(const Following& following, detail::ReceiverMemory& memory, std::size_t transmitter) const;
+  std::vector<PathContribution> paths_in_place(Following& following, detail::ReceiverMemory& memory,
+                                               std::size_t transmitter) const;
+  std::vector<PathContribution> paths_of_standing(Following& following, detail::ReceiverMemory& memory,
+                                                  std::size_t transmitter, bool fields_stay) const;
+  void note_standing(Following& following, StandingLink<PathContribution>& standing, std::size_t transmitter,
+                     const Sequence& sequence, const std::optional<PathContribution>& found) const;
+  bool finds_lifetimes() const;
+  void find_lifetimes(std::vector<LinkResult>& links, const TransmitterEnds& transmitters);
+  void note_transmitters(const TransmitterEnds& ends);
+  std::size_t receivers_on_the_move() const;
   /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
   void trace_elements(std::span<PathContribution> paths, const DeviceEnd& from, const DeviceEnd& to,
                       const Evaluator& evaluator) const;
@@ -195,6 +230,13 @@ class BasicSimulator {
   std::unique_ptr<LaneScene> lanes_;       ///< where the plan has halves; those that are kept point to it
   std::vector<KeptHalf> halves_;           ///< one per transmitter, where the plan has them …
   bool halves_are_current_ = false;        ///< … and whether they are those of the current frame
+  // Where the cache is exact.
+  std::optional<detail::FrameChange> change_;      ///< since the frame before
+  std::vector<detail::ReceiverMemory> receivers_;  ///< one per receiver of the scene
+  std::vector<std::optional<LinkEnd>> transmitters_before_;
+  std::vector<std::optional<DeviceState>> transmitter_states_before_;
+  std::optional<FacetRims> rims_;                              ///< where lifetimes are asked for
+  std::vector<char> transmitter_rests_, transmitter_is_same_;  ///< as in the frame before: its place; all of it
   Frame frame_;
   std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
 };
@@ -213,6 +255,10 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   medium_ = MediumLoss(settings_.propagation.atmosphere, scene_.materials(), settings_.frequency_hz);
   plan_ = plan_search(settings_.propagation, scene_);
   cache_ = resolve_cache(settings_.propagation, plan_.discovery);
+  // What is remembered is what halves find: the same paths as by trying all sequences.
+  if (cache_ == CacheMode::exact && halves_cover(most_joined_interactions, settings_.propagation)) {
+    plan_ = {Discovery::exact, false, most_joined_interactions};
+  }
   if (cache_ == CacheMode::seed) {
     caches_.resize(scene_.receivers().size());
     reach_.resize(scene_.transmitters().size());
@@ -221,10 +267,16 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   scene_.apply(frame_);
   index_.build(scene_.triangle_view(), scene_.triangle_boxes(), scene_.first_triangles());
   if (looks()) outlines_.emplace(scene_);
+  if (cache_ == CacheMode::exact) {
+    change_.emplace(scene_);
+    receivers_.resize(scene_.receivers().size());
+  }
   if (plan_.joined == 0) return;
   lanes_ = std::make_unique<LaneScene>(scene_, *outlines_);
   const std::size_t transmitters = scene_.transmitters().size();
   halves_.assign(transmitters, KeptHalf(detail::view_pixels_for(transmitters)));
+  if (cache_ != CacheMode::exact) return;
+  for (KeptHalf& half : halves_) half.keep_places(detail::longest_step_in_place_m, true);
 }
 
 /// What a model of the caller's own cannot do would otherwise be left out in silence.
@@ -251,8 +303,10 @@ void BasicSimulator<Surface, Index>::check_surface_model() const {
 }  // namespace dcem
 
 #include "dcem/sim/detail/simulator_frames.hpp"
+#include "dcem/sim/detail/simulator_lifetime.hpp"
 #include "dcem/sim/detail/simulator_links.hpp"
 #include "dcem/sim/detail/simulator_maps.hpp"
+#include "dcem/sim/detail/simulator_memory.hpp"
 
 #if defined(DCEM_ENGINE)
 extern template class dcem::BasicSimulator<dcem::MaterialTable, dcem::WideIndex>;

@@ -88,10 +88,15 @@ DCEM_INLINE bool is_found_exactly(const Path& path, int exact_interactions, Disc
 DCEM_INLINE CacheMode resolve_cache(const PropagationSettings& propagation, Discovery discovery) {
   const bool sampled = discovery == Discovery::sampled;
   if (propagation.cache == CacheMode::seed && !sampled) {
-    throw std::invalid_argument("cache seed: goes with sampled discovery, and discovery is exact; expected cache off");
+    throw std::invalid_argument(
+        "cache seed: goes with sampled discovery, and discovery is exact; expected cache exact or off");
+  }
+  if (propagation.cache == CacheMode::exact && sampled) {
+    throw std::invalid_argument(
+        "cache exact: goes with exact discovery, and discovery is sampled; expected cache seed or off");
   }
   if (propagation.cache != CacheMode::automatic) return propagation.cache;
-  return sampled ? CacheMode::seed : CacheMode::off;
+  return sampled ? CacheMode::seed : CacheMode::exact;
 }
 
 }  // namespace dcem

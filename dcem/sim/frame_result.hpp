@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "dcem/accel/tree_settings.hpp"
@@ -21,6 +22,9 @@ struct LinkResult {
   std::vector<PathContribution> paths;  ///< specular, by delay, then kinds, then points
   DiffusePower diffuse;                 ///< of rough surfaces; empty where it is not asked for
   LinkStatistics statistics;
+  /// No path appears or vanishes while no point of either end or of any body has moved by more than this since the
+  /// frame, metres. None where it is not asked for, or nothing is proved.
+  std::optional<double> valid_until_m{};
 };
 
 /// Work done, counted. Counts do not depend on the number of threads.

@@ -23,9 +23,10 @@ enum class Discovery {
 
 /// What is remembered from frame to frame.
 enum class CacheMode {
-  automatic,  ///< seed where discovery is sampled, else off
+  automatic,  ///< exact where discovery is exact, seed where it is sampled
   off,        ///< each frame is solved from scratch
-  seed        ///< goes with sampled: found sequences are solved again in each frame, few rays look for new ones
+  seed,       ///< goes with sampled: found sequences are solved again in each frame, few rays look for new ones
+  exact       ///< goes with exact: only what has changed is worked out; each frame is as from scratch, bit for bit
 };
 
 /// How the elements of antenna arrays differ from each other.
@@ -61,10 +62,12 @@ struct PropagationSettings {
   std::uint32_t rays = 20'000;                 ///< rays per receiver in sampled discovery, in a frame without history
   std::optional<std::uint32_t> rays_steady;  ///< the same in a later frame of a cached run; default: a tenth of `rays`
   CacheMode cache = CacheMode::automatic;    ///< what is remembered from frame to frame
-  std::uint64_t seed = 1;                    ///< turns the sphere of rays, with receiver id and frame number
-  std::optional<double> min_path_gain_db;    ///< paths weaker than this are dropped after their field is known, dB
-  AnyPathLoss path_loss{};                   ///< a real factor beside free-space spreading
-  std::optional<Atmosphere> atmosphere{};    ///< gases and rain; default: none
+  /// Links get a proved `valid_until_m` of at most this, metres, where the cache is exact; default: none is looked for.
+  std::optional<double> valid_until_limit_m;
+  std::uint64_t seed = 1;                  ///< turns the sphere of rays, with receiver id and frame number
+  std::optional<double> min_path_gain_db;  ///< paths weaker than this are dropped after their field is known, dB
+  AnyPathLoss path_loss{};                 ///< a real factor beside free-space spreading
+  std::optional<Atmosphere> atmosphere{};  ///< gases and rain; default: none
   ArrayChannel antenna_array = ArrayChannel::plane_wave;  ///< how the elements of arrays differ from each other
   DiffuseSettings diffuse{};                              ///< power that rough surfaces scatter
 };

@@ -33,7 +33,7 @@ class Simulator {
   const SimulationSettings& settings() const;
   Discovery discovery() const;     ///< exact or sampled: what is really done
   SearchPlan plan() const;         ///< how links and the points of maps are searched
-  CacheMode cache() const;         ///< off or seed: what is really remembered
+  CacheMode cache() const;         ///< what is really remembered
   const WideIndex& index() const;  ///< over the scene's triangles (dcem/accel/wide_index.hpp)
 
   /// Moves the scene to a frame and solves all links, starting from what is remembered of the frame before.
@@ -41,8 +41,9 @@ class Simulator {
   /// The same for the instant `time_s`, by the motions of the scene.
   FrameResult advance_to(double time_s, std::size_t index = 0);
 
-  /// Moves to a frame whose results are known already and took `spent`. What follows is as after `advance`, every
-  /// counter included. Throws std::logic_error unless `cache()` is off: what it remembers of a frame would be missing.
+  /// Moves to a frame whose results are known already and took `spent`. What follows is as after `advance`; every
+  /// counter included, too, where the cache is off. Throws std::logic_error where `cache()` is seed: what it remembers
+  /// of a frame would be missing.
   TreeUpdateReport pass(const Frame& frame, const WorkCounters& spent);
 
   /// Links from all transmitters to receivers of the caller's, in the current frame, by transmitter, then receiver.

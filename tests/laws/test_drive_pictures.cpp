@@ -155,7 +155,7 @@ TEST_CASE("in the profile's picture the direct path is a track of cells at (t, d
   CHECK(map.axes.y_unit == "ns");
   CHECK(map.unit == "dBm");
   const io::HeatMapLayout layout = io::heat_map_layout(map);
-  const io::Image image = io::draw_heat_map(map);
+  const io::Image image = io::draw_cells(map);
   for (const double time_s : drive.times_s) {
     const double distance_m = 80.0 + speed_mps * time_s, delay_ns = 1e9 * distance_m / light_mps;
     const auto column = static_cast<std::size_t>(std::lround((time_s - map.origin_x_m) / map.spacing_x_m));
@@ -165,7 +165,8 @@ TEST_CASE("in the profile's picture the direct path is a track of cells at (t, d
     // Other paths may fall into the same nanosecond.
     CHECK(map.values[row * map.columns + column] >= friis_dbm(distance_m) - 1e-9);
     const io::PixelPoint place = layout.point(time_s, std::floor(delay_ns) + 0.5);
-    const io::Colour colour = image.pixel(static_cast<int>(place.x), static_cast<int>(place.y));
+    const io::Colour colour =
+        image.pixel(static_cast<int>(place.x) - layout.plot.x, static_cast<int>(place.y) - layout.plot.y);
     CHECK_FALSE((colour.red == colour.green && colour.green == colour.blue));
   }
 }

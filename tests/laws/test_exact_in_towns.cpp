@@ -61,7 +61,7 @@ TEST_CASE("a town is searched exactly without being told, and says so") {
   REQUIRE(scenario.scene.surface_count() > exact_discovery_facet_limit);
   Simulator simulator(scenario.scene, scenario.settings);
   CHECK(simulator.discovery() == Discovery::exact);
-  CHECK(simulator.cache() == CacheMode::off);
+  CHECK(simulator.cache() == CacheMode::exact);
   const FrameResult frame = simulator.advance_to(0.0);
   CHECK(frame.links.size() == 8);
   CHECK(frame.work.rays == 0);

@@ -443,10 +443,12 @@ TEST_CASE("which cache a simulation gets") {
   CHECK(resolved(Discovery::sampled, CacheMode::automatic) == CacheMode::seed);
   CHECK(resolved(Discovery::sampled, CacheMode::seed) == CacheMode::seed);
   CHECK(resolved(Discovery::sampled, CacheMode::off) == CacheMode::off);
-  CHECK(resolved(Discovery::exact, CacheMode::automatic) == CacheMode::off);
+  CHECK(resolved(Discovery::exact, CacheMode::automatic) == CacheMode::exact);
+  CHECK(resolved(Discovery::exact, CacheMode::exact) == CacheMode::exact);
   CHECK(resolved(Discovery::exact, CacheMode::off) == CacheMode::off);
-  CHECK(resolved(Discovery::automatic, CacheMode::automatic) == CacheMode::off);  // the office is small
+  CHECK(resolved(Discovery::automatic, CacheMode::automatic) == CacheMode::exact);  // the office is small
   CHECK_THROWS_AS(resolved(Discovery::exact, CacheMode::seed), std::invalid_argument);
+  CHECK_THROWS_AS(resolved(Discovery::sampled, CacheMode::exact), std::invalid_argument);
   CHECK_THROWS_AS(resolved(Discovery::automatic, CacheMode::seed), std::invalid_argument);
   CHECK(PropagationSettings{}.cache == CacheMode::automatic);
 }

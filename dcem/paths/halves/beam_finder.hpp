@@ -74,7 +74,7 @@ class BeamFinder {
   void find_lit_parts(std::uint32_t mirror, std::span<const FacetId> facets, ForEach&& for_each,
                       BeamFinds& finds) const;
   EdgePart lit_part(WedgeId edge, std::uint32_t mirror) const;
-  const std::optional<BodyId>& ignored_body() const { return source_.half.sight().ignored_body(); }
+  const std::optional<BodyId>& ignored_body() const { return source_.half.ignored_body(); }
 
   const BeamSource& source_;
   std::span<const BeamMirror> mirrors_;

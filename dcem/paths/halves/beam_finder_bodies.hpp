@@ -36,7 +36,7 @@ void BeamFinder::for_each_shown(const Wedge& edge, const EdgePart& part, int mos
 
 DCEM_INLINE void BeamFinder::find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const {
   if (layer.edges.empty()) return;
-  Sight sight = source_.half.sight();  // looking needs scratch memory
+  const Sight& sight = source_.half.sight();
   for (const WedgeId id : layer.edges) {
     const Wedge& edge = source_.scene.wedge(id).edge;
     EdgePart part = whole_edge(id.value, edge, source_.half.position_m());
@@ -123,11 +123,6 @@ DCEM_INLINE void BeamFinder::look_through_block(std::size_t first, std::size_t l
 DCEM_INLINE void BeamFinder::reach_bodies(std::size_t count, BeamFinds& finds) const {
   const std::span<const FacetOutlines::BodyFacets> bodies = source_.outlines.bodies();
   const Vec3& origin_m = source_.lanes.origin_m();
-  ConeClusters boxes;
-  boxes.build(bodies.size(), [&](std::uint32_t body) {
-    const Aabb<double>& box = bodies[body].box;
-    return box.empty() ? Aabb<double>{Vec3(0.0), Vec3(0.0)} : Aabb<double>{box.min - origin_m, box.max - origin_m};
-  });
   const auto is_beside = [&](FacetId id, std::span<const HalfSpace> cone) {
     const std::span<const Vec3> hull_m = source_.scene.hull_m(source_.scene.facet(id));
     return std::ranges::any_of(cone, [&](const HalfSpace& plane) {
@@ -140,18 +135,15 @@ DCEM_INLINE void BeamFinder::reach_bodies(std::size_t count, BeamFinds& finds) c
   std::vector<FacetId> facets;
   for (std::uint32_t mirror = 0; mirror < count; ++mirror) {
     facets.clear();
-    const auto look_at = [&](std::uint32_t body) {
-      if (body == ConeClusters::nothing || bodies[body].box.empty()) return;
-      for (std::uint32_t index = bodies[body].first; index < bodies[body].first + bodies[body].count; ++index) {
+    source_.outlines.for_each_body_in(mirrors_[mirror].cone, [&](BodyId body) {
+      const FacetOutlines::BodyFacets& of = bodies[body.value - 1];
+      for (std::uint32_t index = of.first; index < of.first + of.count; ++index) {
         const WorldFacet& facet = source_.scene.facet(FacetId(index));
         if (!facet.present || facet.body == ignored_body() || is_beside(FacetId(index), mirrors_[mirror].cone))
           continue;
         facets.push_back(FacetId(index));
         finds.pairs.push_back({index, mirror});
       }
-    };
-    boxes.for_each_in(mirrors_[mirror].cone, [&](std::size_t first) {
-      for (const std::uint32_t body : boxes.items().subspan(first, simd_lanes)) look_at(body);
     });
     find_lit_parts(mirror, facets, whole, finds);
   }

@@ -23,6 +23,10 @@ class BeamLists {
   void find_all(const BeamSource& source);
   /// Of an end that stands, what does not change while bodies move …
   void find_scenery(const BeamSource& source);
+  /// … or a part of it after the other: what is seen directly, and then, until it says that all is there, what is seen
+  /// over so many mirrors more …
+  void begin_scenery(const BeamSource& source);
+  bool go_on(const BeamSource& source, std::size_t mirrors);
   /// … and the rest. The scenery's must be known.
   void find_bodies(const BeamSource& source);
   /// Whether what moves is listed, too.
@@ -34,7 +38,7 @@ class BeamLists {
   /// Where the end is, from there.
   const Vec3& position_m() const { return position_m_; }
   /// The body that the end rides on.
-  const std::optional<BodyId>& ignored_body() const { return half_->sight().ignored_body(); }
+  const std::optional<BodyId>& ignored_body() const { return half_->ignored_body(); }
   std::span<const BeamMirror> mirrors() const { return mirrors_; }
   /// The place of a facet among the mirrors, or `nothing`.
   std::uint32_t mirror_of(FacetId facet) const { return mirror_of_[facet.value]; }
@@ -79,6 +83,7 @@ class BeamLists {
   const PathHalf* half_ = nullptr;
   const LaneScene* lanes_ = nullptr;
   bool has_bodies_ = false;
+  std::size_t looked_through_ = 0;  ///< so many mirrors, where the scenery's are worked out one after the other
   Vec3 position_m_{0.0};
   std::array<BeamFinds, 2> found_;  ///< of the scenery alone, or of all; of what moves
   std::vector<BeamMirror> mirrors_;
@@ -94,7 +99,7 @@ class BeamLists {
 // ---------------------------------------------------------------------------------------------------------------------
 
 inline void BeamLists::find_all(const BeamSource& source) {
-  note_mirrors(source, 2);
+  note_mirrors(source, source.half.layers().size());
   has_bodies_ = true;
   found_ = {};
   const BeamFinder finder(source, mirrors_);
@@ -104,24 +109,33 @@ inline void BeamLists::find_all(const BeamSource& source) {
 }
 
 inline void BeamLists::find_scenery(const BeamSource& source) {
+  begin_scenery(source);
+  go_on(source, mirrors_.size());
+}
+
+inline void BeamLists::begin_scenery(const BeamSource& source) {
   note_mirrors(source, 1);
   has_bodies_ = source.outlines.bodies().empty();
   found_ = {};
-  const BeamFinder finder(source, mirrors_);
-  const HalfLayer& scenery = half_->layers()[0];
-  finder.find_parts(scenery, BeamFinder::many_pieces, found_[0]);
-  if (source.over_mirrors) {
-    finder.look_through(0, scenery.mirrors.size(), false, BeamFinder::many_pieces, found_[0]);
-  }
-  lay_out(source);
+  looked_through_ = 0;
+  BeamFinder(source, mirrors_).find_parts(half_->layers()[0], BeamFinder::many_pieces, found_[0]);
+}
+
+inline bool BeamLists::go_on(const BeamSource& source, std::size_t mirrors) {
+  const std::size_t last = source.over_mirrors ? std::min(looked_through_ + mirrors, mirrors_.size()) : 0;
+  BeamFinder(source, mirrors_).look_through(looked_through_, last, false, BeamFinder::many_pieces, found_[0]);
+  looked_through_ = last;
+  const bool is_done = !source.over_mirrors || last == mirrors_.size();
+  if (is_done) lay_out(source);
+  return is_done;
 }
 
 inline void BeamLists::find_bodies(const BeamSource& source) {
-  note_mirrors(source, 2);
+  note_mirrors(source, source.half.layers().size());
   has_bodies_ = true;
   found_[1] = {};
   const BeamFinder finder(source, mirrors_);
-  finder.find_parts(half_->layers()[1], BeamFinder::few_pieces, found_[1]);
+  for (const HalfLayer& layer : half_->layers().subspan(1)) finder.find_parts(layer, BeamFinder::few_pieces, found_[1]);
   if (source.over_mirrors) {
     const std::size_t standing = half_->layers()[0].mirrors.size();
     finder.reach_bodies(standing, found_[1]);

@@ -61,6 +61,21 @@ void for_each_cone_side(const Vec3& apex_m, std::span<const Vec3> window_m, Visi
   }
 }
 
+/// Adds the sides of the cone with its apex at an image, through a convex window on the mirror, beyond the mirror. All
+/// counted from `origin_m`.
+inline void add_cone(const Vec3& origin_m, const Vec3& apex_m, const Plane& mirror, std::span<const Vec3> window_m,
+                     std::vector<HalfSpace>& planes) {
+  const double side = signed_distance_m(mirror, apex_m) > 0.0 ? -1.0 : 1.0;
+  // The farther away the apex, the coarser its coordinates in single precision.
+  const double slack_m = 5e-3 + 1e-6 * glm::length(apex_m - origin_m);
+  const auto add = [&](const Vec3& normal, const Vec3& point_m) {
+    planes.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
+                      static_cast<float>(glm::dot(normal, point_m - origin_m) - slack_m)});
+  };
+  for_each_cone_side(apex_m, window_m, [&](const Vec3& normal) { add(normal, apex_m); });
+  add(side * mirror.normal, mirror.point_m);  // last: it keeps more than the others do
+}
+
 /// Cones of many images, one after another.
 class ConeList {
  public:
@@ -73,23 +88,13 @@ class ConeList {
     return std::span(planes_).subspan(first_[cone], first_[cone + 1] - first_[cone]);
   }
 
-  /// The cone with its apex at an image, through a convex window on the mirror, beyond the mirror. All counted from
-  /// `origin_m`.
+  /// As `add_cone` has it.
   void add(const Vec3& origin_m, const Vec3& apex_m, const Plane& mirror, std::span<const Vec3> window_m) {
-    const double side = signed_distance_m(mirror, apex_m) > 0.0 ? -1.0 : 1.0;
-    // The farther away the apex, the coarser its coordinates in single precision.
-    const double slack_m = 5e-3 + 1e-6 * glm::length(apex_m - origin_m);
-    for_each_cone_side(apex_m, window_m, [&](const Vec3& normal) { add_plane(origin_m, normal, apex_m, slack_m); });
-    add_plane(origin_m, side * mirror.normal, mirror.point_m, slack_m);  // last: it keeps more than the others do
+    add_cone(origin_m, apex_m, mirror, window_m, planes_);
     first_.push_back(planes_.size());
   }
 
  private:
-  void add_plane(const Vec3& origin_m, const Vec3& normal, const Vec3& point_m, double slack_m) {
-    planes_.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
-                       static_cast<float>(glm::dot(normal, point_m - origin_m) - slack_m)});
-  }
-
   std::vector<HalfSpace> planes_;
   std::vector<std::size_t> first_{0};
 };
@@ -127,6 +132,16 @@ class ConeClusters {
       groups_[group / simd_lanes].set(group % simd_lanes, all);
       boxes_.push_back(groups_[group / simd_lanes].at(group % simd_lanes));
     }
+    item_boxes_.clear();
+  }
+  /// The same, and each item can be asked by itself.
+  template <typename BoxOf>
+  void build_for_items(std::size_t count, BoxOf&& box_of) {
+    build(count, box_of);
+    item_boxes_.assign(items_.size() / simd_lanes, Boxes{});
+    for (std::size_t at = 0; at < items_.size(); ++at) {
+      if (items_[at] != nothing) item_boxes_[at / simd_lanes].set(at % simd_lanes, box_of(items_[at]));
+    }
   }
 
   static constexpr std::uint32_t nothing = 0xffffffffU;
@@ -150,6 +165,16 @@ class ConeClusters {
         }
       }
     }
+  }
+
+  /// Calls `visit(item)` for each item that a cone may reach, where they can be asked.
+  template <typename Visit>
+  void for_each_item_in(std::span<const HalfSpace> cone, Visit&& visit) const {
+    for_each_in(cone, [&](std::size_t first) {
+      for (std::uint32_t met = item_boxes_[first / simd_lanes].met_by(cone); met != 0; met &= met - 1) {
+        visit(items_[first + static_cast<std::size_t>(std::countr_zero(met))]);
+      }
+    });
   }
 
  private:
@@ -208,7 +233,7 @@ class ConeClusters {
   }
 
   std::vector<std::uint32_t> items_;
-  std::vector<Boxes> clusters_, groups_;
+  std::vector<Boxes> clusters_, groups_, item_boxes_;
   std::vector<Box> boxes_;
 };
 

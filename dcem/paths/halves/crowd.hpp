@@ -8,26 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "dcem/paths/halves/common_cone.hpp"
 #include "dcem/paths/halves/lanes.hpp"
 #include "dcem/paths/halves/sight.hpp"
 
 namespace dcem {
-
-/// What points see through a convex outline, as half spaces around an origin: see `for_each_common_side`.
-inline void common_cone(std::span<const HullSide> outline, const Plane& plane, const Vec3& up,
-                        std::span<const Vec3> points_m, const Vec3& origin_m, std::vector<HalfSpace>& result) {
-  const auto add = [&](const Vec3& inwards, double offset_m) {
-    const double length = glm::length(inwards);
-    const Vec3 normal = inwards / length;
-    // Points to be tested are in single precision, too, some of them far away.
-    const double here_m = offset_m / length - glm::dot(normal, origin_m);
-    result.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
-                      static_cast<float>(here_m - 1e-2 - 1e-6 * std::abs(here_m))});
-  };
-  result.clear();
-  for_each_common_side(outline, plane, up, points_m, add);
-  add(up, glm::dot(up, plane.point_m));  // last: it keeps more than the others do
-}
 
 /// Holds scratch memory: one per thread.
 class Crowd {
@@ -43,7 +28,7 @@ class Crowd {
     origin_m_ = lanes.origin_m();
     sight_.look_from(points_m);
     sight_.find_scenery(scene, outlines, settings, layers_[0]);
-    sight_.find_bodies(scene, outlines, settings, layers_[1]);
+    sight_.find_bodies(scene, outlines, settings, {}, layers_[1]);
     radius_m_ = 0.0;
     for (const Vec3& point_m : points_m) {
       radius_m_ = std::max(radius_m_, glm::distance(point_m, sight_.position_m()));

@@ -15,7 +15,7 @@ namespace dcem {
 template <typename Index>
 class CrowdJoiner {
  public:
-  CrowdJoiner(CrowdGates<Index>& gates, const HalfJoiner::Orders& orders)
+  CrowdJoiner(CrowdGates<Index>& gates, const JoinOrders& orders)
       : gates_(gates),
         scene_(gates.scene()),
         lanes_(gates.lanes()),
@@ -170,7 +170,7 @@ class CrowdJoiner {
   CrowdGates<Index>& gates_;
   const Scene& scene_;
   const LaneScene& lanes_;
-  HalfJoiner::Orders orders_;
+  JoinOrders orders_;
   std::vector<LanePoints> images_;
   std::vector<std::uint32_t> beside_;  ///< the lanes of each pack on the side of the mirror that is looked at
   std::vector<HalfSpace> cone_;

@@ -18,7 +18,7 @@ namespace dcem {
 template <typename Index>
 class CrowdTriples {
  public:
-  CrowdTriples(CrowdGates<Index>& gates, const CrowdBeams& beams, const HalfJoiner::Orders& orders)
+  CrowdTriples(CrowdGates<Index>& gates, const CrowdBeams& beams, const JoinOrders& orders)
       : gates_(gates),
         beams_(beams),
         scene_(gates.scene()),
@@ -199,7 +199,7 @@ class CrowdTriples {
   const CrowdBeams& beams_;
   const Scene& scene_;
   const LaneScene& lanes_;
-  HalfJoiner::Orders orders_;
+  JoinOrders orders_;
   CrowdImages<Index> images_;
   DoubleImages double_images_;
   EdgeClusters edges_;

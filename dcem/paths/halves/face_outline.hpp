@@ -28,7 +28,19 @@ class FaceOutline {
 
   /// Cuts off what lies outside |across|, |along| ≤ reach·depth.
   void clip(double reach) {
-    for (int side = 0; side < 4 && count_ > 0; ++side) clip_by(side, reach);
+    unsigned outside_all = 15U, outside_any = 0U;  // by side, a bit each
+    for (std::size_t index = 0; index < count_; ++index) {
+      const FacePoint& point = corners_[index];
+      const double limit = reach * point.depth;
+      const unsigned outside = (limit + point.across < 0.0 ? 1U : 0U) | (limit - point.across < 0.0 ? 2U : 0U) |
+                               (limit + point.along < 0.0 ? 4U : 0U) | (limit - point.along < 0.0 ? 8U : 0U);
+      outside_all &= outside;
+      outside_any |= outside;
+    }
+    if (outside_all != 0U) count_ = 0;
+    for (int side = 0; side < 4 && count_ > 0; ++side) {
+      if ((outside_any >> static_cast<unsigned>(side) & 1U) != 0U) clip_by(side, reach);
+    }
   }
 
  private:
@@ -38,8 +50,6 @@ class FaceOutline {
   }
 
   void clip_by(int side, double reach) {
-    const auto cut_off = [&](const FacePoint& corner) { return inside(corner, side, reach) < 0.0; };
-    if (std::none_of(corners_.begin(), corners_.begin() + static_cast<std::ptrdiff_t>(count_), cut_off)) return;
     std::array<FacePoint, capacity> kept;
     std::size_t count = 0;
     for (std::size_t index = 0; index < count_; ++index) {
@@ -60,17 +70,54 @@ class FaceOutline {
   std::size_t count_ = 0;
 };
 
-/// The rows of pixels that a convex outline touches, and in each of them from where to where.
-struct FaceRows {
+/// A convex outline in pixels, and the rows that it touches or crosses.
+class FaceRows {
+ public:
   static constexpr int most_pixels = 1024;
 
-  int first = 0, last = -1;
-  std::array<float, most_pixels> touched_from, touched_to;      ///< in the whole row
-  std::array<float, most_pixels + 1> crossed_from, crossed_to;  ///< on the line above each row
-  double nearest = 0.0;                                         ///< the largest 1/depth of a corner
+  /// Takes an outline; false where it touches no row.
+  bool take(const FaceOutline& outline, int pixels);
+  int first() const { return first_; }
+  int last() const { return last_; }
+  /// The box around the outline, in pixels across and along.
+  const std::array<double, 2>& low() const { return low_; }
+  const std::array<double, 2>& high() const { return high_; }
+  /// The largest 1/depth of a corner.
+  double nearest() const { return nearest_; }
 
-  /// False where the outline touches no row.
-  bool find(const FaceOutline& outline, int pixels);
+  /// Works out from where to where the outline touches each row …
+  void find_touched() {
+    walk(false, [&](int row, float here, float next) {
+      from_[at(row)] = std::min(from_[at(row)], std::min(here, next));
+      to_[at(row)] = std::max(to_[at(row)], std::max(here, next));
+    });
+  }
+  /// … or crosses the line above each row, that below the last one included.
+  void find_crossed() {
+    walk(true, [&](int line, float here, float) {
+      from_[at(line)] = std::min(from_[at(line)], here);
+      to_[at(line)] = std::max(to_[at(line)], here);
+    });
+  }
+  /// What has been found, of a row or a line; nothing where `to` is less than −1e8.
+  float from(int number) const { return from_[at(number)]; }
+  float to(int number) const { return to_[at(number)]; }
+
+ private:
+  static constexpr double hair = 1e-4;  ///< of a pixel: rounding of a corner
+  static std::size_t at(int number) { return static_cast<std::size_t>(number); }
+
+  /// Calls `visit` for each side with each row and the places at which the side enters and leaves it, or with each line
+  /// and the place at which the side crosses it.
+  template <typename Visit>
+  void walk(bool lines, Visit&& visit);
+
+  std::array<double, FaceOutline::capacity> x_, y_;
+  std::size_t count_ = 0;
+  int first_ = 0, last_ = -1;
+  std::array<double, 2> low_, high_;
+  double nearest_ = 0.0;
+  std::array<float, most_pixels + 1> from_, to_;
 };
 
 }  // namespace detail
@@ -79,50 +126,47 @@ struct FaceRows {
 
 namespace detail {
 
-inline bool FaceRows::find(const FaceOutline& outline, int pixels) {
-  constexpr float nothing = 1e9F;
-  constexpr double hair = 1e-4;  // of a pixel: rounding of a corner
-  std::array<double, FaceOutline::capacity> x, y;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  nearest = 0.0;
-  for (std::size_t index = 0; index < outline.size(); ++index) {
-    const double depth = std::max(outline[index].depth, 1e-6);
-    x[index] = std::clamp((outline[index].across / depth + 1.0) * 0.5, -0.5, 1.5) * pixels;
-    y[index] = std::clamp((outline[index].along / depth + 1.0) * 0.5, -0.5, 1.5) * pixels;
-    nearest = std::max(nearest, 1.0 / depth);
-    low = std::min(low, y[index]);
-    high = std::max(high, y[index]);
+inline bool FaceRows::take(const FaceOutline& outline, int pixels) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  low_ = {infinity, infinity};
+  high_ = {-infinity, -infinity};
+  nearest_ = 0.0;
+  count_ = outline.size();
+  for (std::size_t index = 0; index < count_; ++index) {
+    const double inverse = 1.0 / std::max(outline[index].depth, 1e-6);
+    x_[index] = std::clamp((outline[index].across * inverse + 1.0) * 0.5, -0.5, 1.5) * pixels;
+    y_[index] = std::clamp((outline[index].along * inverse + 1.0) * 0.5, -0.5, 1.5) * pixels;
+    nearest_ = std::max(nearest_, inverse);
+    low_ = {std::min(low_[0], x_[index]), std::min(low_[1], y_[index])};
+    high_ = {std::max(high_[0], x_[index]), std::max(high_[1], y_[index])};
   }
-  first = std::max(0, static_cast<int>(std::floor(low - hair)));
-  last = std::min(pixels - 1, static_cast<int>(std::floor(high + hair)));
-  if (first > last) return false;
-  const auto at = [](int number) { return static_cast<std::size_t>(number); };
-  std::fill(touched_from.begin() + first, touched_from.begin() + last + 1, nothing);
-  std::fill(touched_to.begin() + first, touched_to.begin() + last + 1, -nothing);
-  std::fill(crossed_from.begin() + first, crossed_from.begin() + last + 2, nothing);
-  std::fill(crossed_to.begin() + first, crossed_to.begin() + last + 2, -nothing);
-  for (std::size_t index = 0; index < outline.size(); ++index) {
-    std::size_t from = index, to = index + 1 == outline.size() ? 0 : index + 1;
-    if (y[from] > y[to]) std::swap(from, to);
-    const int begin = std::max(first, static_cast<int>(std::floor(y[from] - hair)));
-    const int end = std::min(last, static_cast<int>(std::floor(y[to] + hair)));
-    const bool level = !(y[to] - y[from] > 1e-12);
-    const double slope = level ? 0.0 : (x[to] - x[from]) / (y[to] - y[from]);
-    const auto place = [&](double line) { return x[from] + slope * (std::clamp(line, y[from], y[to]) - y[from]); };
-    for (int number = begin; number <= end; ++number) {
-      double left = level ? x[from] : place(number), right = level ? x[to] : place(number + 1);
-      if (left > right) std::swap(left, right);
-      touched_from[at(number)] = std::min(touched_from[at(number)], static_cast<float>(left));
-      touched_to[at(number)] = std::max(touched_to[at(number)], static_cast<float>(right));
-      for (int line = number; line <= number + 1 && !level; ++line) {
-        if (line < y[from] || line > y[to]) continue;
-        const auto crossing = static_cast<float>(place(line));
-        crossed_from[at(line)] = std::min(crossed_from[at(line)], crossing);
-        crossed_to[at(line)] = std::max(crossed_to[at(line)], crossing);
-      }
+  first_ = std::max(0, static_cast<int>(std::floor(low_[1] - hair)));
+  last_ = std::min(pixels - 1, static_cast<int>(std::floor(high_[1] + hair)));
+  return first_ <= last_;
+}
+
+template <typename Visit>
+void FaceRows::walk(bool lines, Visit&& visit) {
+  constexpr float nothing = 1e9F;
+  std::fill(from_.begin() + first_, from_.begin() + last_ + 2, nothing);
+  std::fill(to_.begin() + first_, to_.begin() + last_ + 2, -nothing);
+  for (std::size_t index = 0; index < count_; ++index) {
+    std::size_t start = index, end = index + 1 == count_ ? 0 : index + 1;
+    if (y_[start] > y_[end]) std::swap(start, end);
+    const double x = x_[start], y = y_[start], length = y_[end] - y;
+    const bool level = !(length > 1e-12);
+    if (lines && level) continue;
+    const double slope = level ? 0.0 : (x_[end] - x) / length;
+    const int begin = std::max(first_, static_cast<int>(lines ? std::ceil(y) : std::floor(y - hair)));
+    const int last = std::min(last_ + (lines ? 1 : 0), static_cast<int>(std::floor(y_[end] + (lines ? 0.0 : hair))));
+    const auto place = [&](int line) { return static_cast<float>(x + slope * std::clamp(line - y, 0.0, length)); };
+    float here = level ? static_cast<float>(x) : place(begin);
+    for (int number = begin; number <= last; ++number) {
+      const float next = level ? static_cast<float>(x_[end]) : place(number + 1);
+      visit(number, here, next);
+      here = next;
     }
   }
-  return true;
 }
 
 }  // namespace detail

@@ -11,6 +11,7 @@
 
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
+#include "dcem/paths/halves/cone.hpp"
 #include "dcem/paths/halves/hull_sides.hpp"
 #include "dcem/scene/scene.hpp"
 
@@ -46,6 +47,11 @@ class FacetOutlines {
   std::size_t size() const { return outlines_.size(); }
   /// All bodies but the scenery.
   std::span<const BodyFacets> bodies() const { return bodies_; }
+  /// Calls `visit(body)` for the bodies, the scenery not among them, that a cone may reach; it counts from the middle.
+  template <typename Visit>
+  void for_each_body_in(std::span<const HalfSpace> cone, Visit&& visit) const {
+    body_clusters_.for_each_item_in(cone, [&](std::uint32_t item) { visit(bodies_there_[item]); });
+  }
   std::span<const HullSide> sides(FacetId facet) const {
     return std::span(sides_).subspan(outlines_[facet.value].first_side, outlines_[facet.value].side_count);
   }
@@ -139,6 +145,7 @@ class FacetOutlines {
   void measure(const Scene& scene, std::uint32_t index);
   void lay_out_planes(const Scene& scene);
   void fit(BodyFacets& facets) const;
+  void cluster_bodies();
   /// Halves items along the longest side of the box of their centres; a node stands before its children.
   void grow(std::uint32_t first, std::uint32_t count);
 
@@ -148,6 +155,8 @@ class FacetOutlines {
   std::vector<Node> nodes_;           ///< the root first
   std::vector<PlaneLanes> planes_;    ///< in the order of `items_`
   std::vector<BodyFacets> bodies_;
+  std::vector<BodyId> bodies_there_;  ///< those that are not absent …
+  ConeClusters body_clusters_;        ///< … and their boxes
   Vec3 middle_m_{0.0};
 };
 

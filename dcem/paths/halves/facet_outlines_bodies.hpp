@@ -39,6 +39,7 @@ DCEM_INLINE FacetOutlines::FacetOutlines(const Scene& scene) : outlines_(scene.f
     bodies_.push_back({{}, first, end_of_body(scene, body) - first});
     fit(bodies_.back());
   }
+  cluster_bodies();
 }
 
 DCEM_INLINE void FacetOutlines::update(const Scene& scene, std::span<const BodyId> moved) {
@@ -48,6 +49,18 @@ DCEM_INLINE void FacetOutlines::update(const Scene& scene, std::span<const BodyI
     for (std::uint32_t index = facets.first; index < facets.first + facets.count; ++index) place(scene, index);
     fit(facets);
   }
+  if (!moved.empty()) cluster_bodies();
+}
+
+DCEM_INLINE void FacetOutlines::cluster_bodies() {
+  bodies_there_.clear();
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
+    if (!bodies_[body].box.empty()) bodies_there_.emplace_back(body + 1);
+  }
+  body_clusters_.build_for_items(bodies_there_.size(), [&](std::uint32_t item) {
+    const Aabb<double>& box = bodies_[bodies_there_[item].value - 1].box;
+    return Aabb<double>{box.min - middle_m_, box.max - middle_m_};
+  });
 }
 
 DCEM_INLINE std::uint32_t FacetOutlines::end_of_body(const Scene& scene, std::uint32_t body) {

@@ -21,10 +21,13 @@ struct HalfLayer : SeenLayer {
 
   /// Lays out what stands in `mirrors` and `edges` for an end.
   void lay_out(const Scene& scene, const Vec3& end_m, const Vec3& origin_m) {
-    origin_m_ = origin_m;
-    lay_out_images(scene, end_m);
-    lay_out_edges(scene, end_m);
+    lay_out_images(scene, end_m, origin_m);
+    lay_out_edges(scene, end_m, origin_m);
   }
+  void lay_out_images(const Scene& scene, const Vec3& end_m, const Vec3& origin_m);
+  void lay_out_edges(const Scene& scene, const Vec3& end_m, const Vec3& origin_m);
+  /// The end has moved, and sees the same edges.
+  void see_edges_from(const Vec3& end_m) { edge_clusters_.see_from(end_m - origin_m_); }
 
   /// Calls `visit(mirror)` for the mirrors whose image of the end may lie in a cone, and may see through the mirror a
   /// point or what is within `radius_m` of it.
@@ -44,8 +47,6 @@ struct HalfLayer : SeenLayer {
     std::array<std::array<Lanes, 4>, plane_count> planes{};
   };
 
-  void lay_out_images(const Scene& scene, const Vec3& end_m);
-  void lay_out_edges(const Scene& scene, const Vec3& end_m);
   Vec3 origin_m_{0.0};  ///< of the numbers in single precision
   ConeClusters image_clusters_;
   EdgeClusters edge_clusters_;
@@ -54,7 +55,8 @@ struct HalfLayer : SeenLayer {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-inline void HalfLayer::lay_out_images(const Scene& scene, const Vec3& end_m) {
+inline void HalfLayer::lay_out_images(const Scene& scene, const Vec3& end_m, const Vec3& origin_m) {
+  origin_m_ = origin_m;
   images_m.clear();
   cones.clear();
   for (const FacetId id : mirrors) {
@@ -87,7 +89,8 @@ inline void HalfLayer::lay_out_images(const Scene& scene, const Vec3& end_m) {
   }
 }
 
-inline void HalfLayer::lay_out_edges(const Scene& scene, const Vec3& end_m) {
+inline void HalfLayer::lay_out_edges(const Scene& scene, const Vec3& end_m, const Vec3& origin_m) {
+  origin_m_ = origin_m;
   std::vector<EdgePart> parts;
   for (std::uint32_t edge = 0; edge < edges.size(); ++edge) {
     parts.push_back(whole_edge(edge, scene.wedge(edges[edge]).edge, end_m));

@@ -12,7 +12,7 @@
 
 namespace dcem {
 
-inline HalfJoiner::Orders joined_orders(const PathSearchSettings& settings) {
+inline JoinOrders joined_orders(const PathSearchSettings& settings) {
   return {settings.max_reflections, settings.max_diffractions, settings.max_interactions};
 }
 /// Whether sequences of three elements are joined: both ends then look through their mirrors.
@@ -36,37 +36,47 @@ struct ReceiverRoom {
 /// The halves that a search from one receiver joins.
 struct LinkHalves {
   const FacetOutlines& outlines;
-  std::span<const KeptHalf> transmitters;  ///< by their numbers; those of absent ones are not looked at
-  ReceiverRoom& receiver;
   const LaneScene& lanes;
+  std::span<const KeptHalf> transmitters;  ///< by their numbers; those of absent ones are not looked at
+  const PathHalf& receiver;
+  const BeamLists& reached;  ///< by the receiver, where sequences of three elements are joined
 };
 
-/// By transmitter, every sequence that `halves_cover` names and that may carry a path to the receiver.
+/// What a receiver sees, worked out from scratch.
+inline void look_from(const Scene& scene, const PathSearchSettings& settings, const FacetOutlines& outlines,
+                      const LaneScene& lanes, const LinkEnd& receiver, ReceiverRoom& room) {
+  if (settings.max_interactions == 0) return;
+  const HalfSettings seen = half_settings(settings);
+  room.half.find_scenery(scene, outlines, receiver, seen);
+  room.half.find_bodies(scene, outlines, seen);
+  if (joins_triples(settings)) room.lists.find_all({scene, outlines, lanes, room.half, seen, true});
+}
+
+/// Every sequence that `halves_cover` names and that may carry a path from a transmitter to the receiver.
+inline SequenceList join_link(const Scene& scene, const PathSearchSettings& settings, const LinkHalves& halves,
+                              std::size_t transmitter) {
+  SequenceList proposed;
+  const auto add = [&](const Sequence& sequence) { proposed.add(sequence); };
+  if (settings.max_interactions == 0) {
+    add({});
+    return proposed;
+  }
+  const KeptHalf& far = halves.transmitters[transmitter];
+  const JoinOrders orders = joined_orders(settings);
+  HalfJoiner(scene, halves.outlines, orders).for_each_sequence(halves.receiver, far.half(), add, far.lists());
+  if (joins_triples(settings)) {
+    TripleJoiner(scene, halves.outlines, halves.lanes, orders).for_each_sequence(halves.reached, *far.lists(), add);
+  }
+  return proposed;
+}
+
+/// The same by transmitter.
 inline std::vector<SequenceList> join_halves(const Scene& scene, const PathSearchSettings& settings,
-                                             const LinkHalves& halves, const LinkEnd& receiver,
+                                             const LinkHalves& halves,
                                              std::span<const std::optional<LinkEnd>> transmitters) {
   std::vector<SequenceList> proposed(transmitters.size());
-  const HalfSettings seen = half_settings(settings);
-  const bool triples = joins_triples(settings), direct_alone = settings.max_interactions == 0;
-  ReceiverRoom& room = halves.receiver;
-  if (!direct_alone) {
-    room.half.find_scenery(scene, halves.outlines, receiver, seen);
-    room.half.find_bodies(scene, halves.outlines, seen);
-  }
-  if (triples) room.lists.find_all({scene, halves.outlines, halves.lanes, room.half, seen, true});
-  HalfJoiner joiner(scene, halves.outlines, joined_orders(settings));
   for (std::size_t index = 0; index < transmitters.size(); ++index) {
-    if (!transmitters[index]) continue;
-    const auto add = [&](const Sequence& sequence) { proposed[index].add(sequence); };
-    if (direct_alone) {
-      add({});
-      continue;
-    }
-    const KeptHalf& transmitter = halves.transmitters[index];
-    joiner.for_each_sequence(room.half, transmitter.half(), add, transmitter.lists());
-    if (!triples) continue;
-    TripleJoiner(scene, halves.outlines, halves.lanes, joined_orders(settings))
-        .for_each_sequence(room.lists, *transmitter.lists(), add);
+    if (transmitters[index]) proposed[index] = join_link(scene, settings, halves, index);
   }
   return proposed;
 }

@@ -4,10 +4,15 @@
 ///
 /// A half belongs to a device in a frame and serves all its links. What moves hides nothing in it: so the scenery's
 /// part is worked out once for an end that stands, and only what moves is looked at in every frame.
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "dcem/paths/halves/body_elements.hpp"
 #include "dcem/paths/halves/half_layer.hpp"
+#include "dcem/paths/halves/place.hpp"
 #include "dcem/paths/halves/sight.hpp"
 
 namespace dcem {
@@ -17,35 +22,101 @@ class PathHalf {
   /// Pixels along a side of the view map: by measurement for ends at street level.
   static constexpr int default_pixels = 256;
 
-  explicit PathHalf(int map_pixels = default_pixels) : sight_(map_pixels) {}
+  explicit PathHalf(int map_pixels = default_pixels) : map_pixels_(map_pixels), own_sight_(map_pixels) {}
 
   /// Works out what the end may see of the scenery.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
                     const HalfSettings& settings) {
-    sight_.look_from(end);
-    sight_.find_scenery(scene, outlines, settings, layers_[0]);
-    layers_[0].lay_out(scene, position_m(), outlines.middle_m());
+    note(end);
+    place_ = nullptr;
+    has_images_ = true;
+    own_sight_.look_from(end);
+    own_sight_.find_scenery(scene, outlines, settings, layers_[0]);
+    layers_[0].lay_out(scene, position_m_, outlines.middle_m());
   }
-  /// The same of all other bodies, where they are now. The scenery must be known.
-  void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings) {
-    sight_.find_bodies(scene, outlines, settings, layers_[1]);
-    layers_[1].lay_out(scene, position_m(), outlines.middle_m());
+  /// Takes what may be seen of the scenery from the place that the end is in, which must stay as long as the half uses
+  /// it. Images in mirrors of the scenery are laid out when they are asked for.
+  void take_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const Place& place) {
+    note(end);
+    has_images_ = false;
+    if (place_ == &place) return layers_[0].see_edges_from(position_m_);
+    if (place_ == nullptr) own_sight_ = Sight(map_pixels_);
+    place_ = &place;
+    static_cast<SeenLayer&>(layers_[0]) = place.scenery();
+    layers_[0].lay_out_edges(scene, position_m_, outlines.middle_m());
+  }
+  /// Lays out the images in all mirrors of the scenery, where they are not yet.
+  void lay_out_images(const Scene& scene, const FacetOutlines& outlines) {
+    if (!has_images_) layers_[0].lay_out_images(scene, position_m_, outlines.middle_m());
+    has_images_ = true;
+  }
+  /// The same of all other bodies, where they are now. The scenery must be known. `moved`, by body: which of them have
+  /// moved since the frame before; empty: all.
+  void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                   std::span<const char> moved = {}) {
+    for (const bool have_moved : {true, false}) {
+      HalfLayer& layer = layers_[have_moved ? 1 : 2];
+      sight().find_bodies(scene, outlines, settings, {ignored_body_, moved, have_moved}, layer);
+      layer.lay_out(scene, position_m_, outlines.middle_m());
+      bodies_[have_moved ? 0 : 1].lay_out(scene, layer, position_m_, outlines.middle_m());
+    }
+    if (place_ != nullptr) {
+      reach_.find(
+          outlines, place_->mirrors().size(), [&](std::size_t at) { return place_->mirrors()[at].cone; },
+          [&](std::size_t at) { return place_->mirrors()[at].number; });
+    } else {
+      reach_.find(
+          outlines, layers_[0].mirrors.size(), [&](std::size_t at) { return layers_[0].cones[at]; },
+          [](std::size_t at) { return static_cast<std::uint32_t>(at); });
+    }
   }
 
-  const Vec3& position_m() const { return sight_.position_m(); }
-  const Sight& sight() const { return sight_; }
-  /// That of the scenery, and that of what moves.
-  std::span<const HalfLayer, 2> layers() const { return layers_; }
+  const Vec3& position_m() const { return position_m_; }
+  /// The body that is not there for the end.
+  const std::optional<BodyId>& ignored_body() const { return ignored_body_; }
+  const Sight& sight() const { return place_ != nullptr ? place_->sight() : own_sight_; }
+  /// That of the scenery, that of bodies that have moved, and that of the other bodies.
+  std::span<const HalfLayer, 3> layers() const { return layers_; }
+
+  /// The bodies of a layer but the first, one by one …
+  const BodyElements& bodies_of(std::size_t layer) const { return bodies_[layer - 1]; }
+  /// … and the mirrors of the scenery that may light one.
+  std::span<const std::uint32_t> mirrors_lighting(BodyId body) const { return reach_.mirrors_lighting(body); }
+
+  /// The image in a mirror of the scenery, and what it may see through the mirror; `scratch` may hold that.
+  Vec3 image_m(const Scene& scene, std::size_t at) const {
+    return has_images_ ? layers_[0].images_m[at] : mirrored(scene.facet(layers_[0].mirrors[at]).plane, position_m_);
+  }
+  std::span<const HalfSpace> cone(const Scene& scene, const FacetOutlines& outlines, std::size_t at,
+                                  std::vector<HalfSpace>& scratch) const {
+    if (has_images_) return layers_[0].cones[at];
+    const WorldFacet& facet = scene.facet(layers_[0].mirrors[at]);
+    scratch.clear();
+    add_cone(outlines.middle_m(), mirrored(facet.plane, position_m_), facet.plane, scene.hull_m(facet), scratch);
+    return scratch;
+  }
 
   /// Whether the end surely cannot see a point that lies on a facet, or on an edge.
   template <typename Element>
   bool hides(const Scene& scene, const FacetOutlines& outlines, Element element, const Vec3& point_m) const {
-    return sight_.map().hides(point_m, sight_.nearer_on(scene, outlines, element));
+    return sight().map().hides(point_m, sight().nearer_on(scene, outlines, element));
   }
 
  private:
-  Sight sight_;
-  std::array<HalfLayer, 2> layers_;
+  void note(const LinkEnd& end) {
+    position_m_ = end.position_m;
+    ignored_body_ = end.ignored_body;
+  }
+
+  int map_pixels_;
+  Sight own_sight_;
+  const Place* place_ = nullptr;  ///< none: the end looks itself
+  bool has_images_ = false;       ///< those in mirrors of the scenery
+  Vec3 position_m_{0.0};
+  std::optional<BodyId> ignored_body_;
+  std::array<HalfLayer, 3> layers_;
+  std::array<BodyElements, 2> bodies_;
+  BodyReach reach_;
 };
 
 }  // namespace dcem

@@ -21,6 +21,7 @@ namespace dcem {
 
 /// Whether a direction away from an edge may lie in its exterior; at grazing the solver decides.
 inline bool may_face(const Wedge& wedge, const Vec3& away_m) {
+  if (glm::dot(away_m, wedge.normal) >= 0.0) return true;  // the exterior has more than half a turn
   const double azimuth = azimuth_rad(wedge, away_m);
   return azimuth <= wedge.exterior_angle_rad + 1e-6 || azimuth >= 2.0 * pi - 1e-6;
 }
@@ -38,6 +39,17 @@ struct HalfSettings {
   std::size_t closer_from = std::numeric_limits<std::size_t>::max();
 };
 
+/// Bodies that are looked at.
+struct BodyChoice {
+  std::optional<BodyId> not_there;  ///< one that does not exist for the end
+  std::span<const char> moved{};    ///< by body, whether it has moved; empty: all have
+  bool have_moved = true;           ///< those that have, or those that have not
+
+  bool takes(std::uint32_t body) const {
+    return (moved.empty() || moved[body] != 0) == have_moved && not_there != BodyId(body);
+  }
+};
+
 /// Of the scenery, or of what moves.
 struct SeenLayer {
   std::vector<FacetId> mirrors;  ///< ascending
@@ -52,6 +64,8 @@ class Sight {
   void look_from(const LinkEnd& end);
   /// Looks from several points at once, which ride on nothing and touch nothing.
   void look_from(std::span<const Vec3> points_m);
+  /// Looks from all of a convex body at once, of which these are the corners; what stands in it may touch things.
+  void look_from_within(std::span<const Vec3> corners_m);
   /// Looks from an end's image through the mirror that it is in: at what is beyond the mirror, as seen from the image.
   /// The image must not lie in the mirror's plane.
   void look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, const Vec3& image_m,
@@ -61,22 +75,35 @@ class Sight {
 
   /// Works out what may be seen of the scenery.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
-  /// The same of all other bodies, where they are now. The scenery must be known.
-  void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
+  /// The same in so many steps, numbered from 0, one after the other.
+  static constexpr int scenery_steps = 3;
+  void find_scenery_step(int step, const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                         SeenLayer& layer);
+  /// The same of bodies, where they are now. The scenery must be known.
+  void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                   const BodyChoice& bodies, SeenLayer& layer) const;
 
   /// All facets that may be seen, of the scenery and, where they are asked for, of bodies.
   void find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, bool bodies,
                    std::vector<FacetId>& seen);
   /// Whether a piece of an edge, or a bit of it, may be seen.
-  bool shows(const Scene& scene, const FacetOutlines& outlines, WedgeId edge, const Vec3& from_m, const Vec3& to_m) {
+  bool shows(const Scene& scene, const FacetOutlines& outlines, WedgeId edge, const Vec3& from_m,
+             const Vec3& to_m) const {
     return map_.shows(from_m, to_m, nearer_on(scene, outlines, edge));
+  }
+
+  /// Ends looking: frees what only that needs. From now on several threads may ask what is seen.
+  void settle() {
+    map_.settle();
+    seen_ = {};
+    shown_ = {};
+    cells_ = {};
+    cell_map_.reset();
   }
 
   /// Where the map is made: the point, or the middle of the points.
   const Vec3& position_m() const { return map_.from_m(); }
   const ViewMap& map() const { return map_; }
-  /// The body that is not there for the end.
-  const std::optional<BodyId>& ignored_body() const { return ignored_body_; }
 
   /// By which factor a point of a facet or an edge counts as nearer, so that nothing that its legs ignore hides it.
   double nearer_on(const Scene& scene, const FacetOutlines& outlines, FacetId facet, double more_m = 0.0) const {
@@ -116,9 +143,14 @@ class Sight {
     const double middle_m = std::abs(signed_distance_m(plane, position_m()));
     if (points_m_.size() == 1) return middle_m;
     if (middle_m > 2.0 * radius_m_) return middle_m - radius_m_;
-    double least_m = std::numeric_limits<double>::infinity();
-    for (const Vec3& point_m : points_m_) least_m = std::min(least_m, std::abs(signed_distance_m(plane, point_m)));
-    return least_m;
+    double lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m, least_m = lowest_m;
+    for (const Vec3& point_m : points_m_) {
+      const double distance_m = signed_distance_m(plane, point_m);
+      lowest_m = std::min(lowest_m, distance_m);
+      highest_m = std::max(highest_m, distance_m);
+      least_m = std::min(least_m, std::abs(distance_m));
+    }
+    return is_body_ && lowest_m <= 0.0 && highest_m >= 0.0 ? 0.0 : least_m;
   }
   /// Whether a facet is grazed so that some point of it, lifted, is farther in front than boxes allow for.
   bool is_lifted_far(const Scene& scene, const FacetOutlines& outlines, FacetId id) const {
@@ -133,8 +165,10 @@ class Sight {
   void take_points(std::span<const Vec3> points_m, const Vec3& middle_m);
   void look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                        std::vector<FacetId>& seen);
-  void look_at_bodies(const Scene& scene, const FacetOutlines& outlines, std::vector<FacetId>& seen);
-  bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id);
+  void look_at_bodies(const Scene& scene, const FacetOutlines& outlines, const BodyChoice& bodies,
+                      std::vector<FacetId>& seen) const;
+  bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) const;
+  /// Where it pays.
   void look_closer(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                    std::vector<FacetId>& seen);
   void look_into(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int cell,
@@ -154,13 +188,14 @@ class Sight {
     return std::none_of(points_m_.begin(), points_m_.end(),
                         [&](const Vec3& point_m) { return may_face(wedge, point_m - wedge.start_m); });
   }
-  void finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
+  void finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer) const;
 
   ViewMap map_;
   std::vector<Vec3> points_m_, offsets_m_;  ///< of several: from their middle
   Vec3 middle_m_{0.0};
   std::optional<MirrorBeam> beam_;  ///< where a mirror is looked through
   double radius_m_ = 0.0;           ///< how far points are from the middle
+  bool is_body_ = false;            ///< the points are the corners of a body that is looked from
   std::optional<BodyId> ignored_body_;
   std::vector<FacetId> mounted_on_;
   std::vector<char> seen_;

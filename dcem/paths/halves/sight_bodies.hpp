@@ -22,6 +22,7 @@ DCEM_INLINE void Sight::look_from(const LinkEnd& end) {
   map_.look_from(end.position_m);
   points_m_.assign(1, end.position_m);
   radius_m_ = 0.0;
+  is_body_ = false;
   ignored_body_ = end.ignored_body;
   mounted_on_ = end.mounted_on;
   beam_.reset();
@@ -35,6 +36,13 @@ DCEM_INLINE void Sight::look_from(std::span<const Vec3> points_m) {
   beam_.reset();
 }
 
+/// A side is moved in by the largest of quotients of two linear functions, which is that of a corner; a plane that all
+/// corners are on one side of is nearest to one of them; what all corners are inside of, all of the body is.
+DCEM_INLINE void Sight::look_from_within(std::span<const Vec3> corners_m) {
+  look_from(corners_m);
+  is_body_ = true;
+}
+
 /// Notes points and where they are from their middle.
 DCEM_INLINE void Sight::take_points(std::span<const Vec3> points_m, const Vec3& middle_m) {
   middle_m_ = middle_m;
@@ -45,6 +53,7 @@ DCEM_INLINE void Sight::take_points(std::span<const Vec3> points_m, const Vec3& 
     radius_m_ = std::max(radius_m_, 1e-6 + glm::length(offsets_m_.back()));
   }
   if (points_m.size() == 1) offsets_m_.clear();
+  is_body_ = false;
   points_m_.assign(points_m.begin(), points_m.end());
   ignored_body_.reset();
   mounted_on_.clear();
@@ -56,6 +65,7 @@ DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& ou
   const std::span<const Vec3> window_m = scene.hull_m(facet);
   points_m_.assign(1, image_m);
   radius_m_ = 0.0;
+  is_body_ = false;
   ignored_body_ = ignored_body;
   mounted_on_.clear();
   beam_.emplace(mirror, facet.plane, image_m, window_m, outlines.of(mirror).lift_m);
@@ -86,12 +96,12 @@ DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines&
   outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
     if (is_lifted_far(scene, outlines, id) && !is_beside(outlines.of(id).box)) look_at(id);
   });
-  if (!beam_ && seen.size() >= settings.closer_from) look_closer(scene, outlines, settings, seen);
 }
 
 /// Once more, cell by cell, with as many pixels for a crowded cell as a face has in the map: leaves what these show.
 DCEM_INLINE void Sight::look_closer(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                     std::vector<FacetId>& seen) {
+  if (beam_ || seen.size() < settings.closer_from) return;
   if (!cell_map_) cell_map_.emplace(std::min(map_.pixels(), most_cell_pixels));
   cells_.look_from(position_m());
   shown_.assign(seen.size(), 0);
@@ -136,9 +146,11 @@ DCEM_INLINE void Sight::look_into(const Scene& scene, const FacetOutlines& outli
   }
 }
 
-DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& outlines, std::vector<FacetId>& seen) {
-  for (const FacetOutlines::BodyFacets& body : outlines.bodies()) {
-    if (body.box.empty()) continue;
+DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& outlines, const BodyChoice& bodies,
+                                       std::vector<FacetId>& seen) const {
+  for (std::uint32_t number = 0; number < outlines.bodies().size(); ++number) {
+    const FacetOutlines::BodyFacets& body = outlines.bodies()[number];
+    if (body.box.empty() || !bodies.takes(number + 1)) continue;  // body 0 is the scenery
     const bool is_hidden = is_beside(body.box) || map_.hides(body.box, longest_lift_m);
     for (std::uint32_t index = body.first; index < body.first + body.count; ++index) {
       const FacetId id(index);
@@ -150,15 +162,23 @@ DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& 
 
 DCEM_INLINE void Sight::find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                      SeenLayer& layer) {
-  layer.mirrors.clear();
-  look_at_scenery(scene, outlines, settings, layer.mirrors);
-  finish(scene, outlines, settings, layer);
+  for (int step = 0; step < scenery_steps; ++step) find_scenery_step(step, scene, outlines, settings, layer);
+}
+
+DCEM_INLINE void Sight::find_scenery_step(int step, const Scene& scene, const FacetOutlines& outlines,
+                                          const HalfSettings& settings, SeenLayer& layer) {
+  if (step == 0) {
+    layer.mirrors.clear();
+    look_at_scenery(scene, outlines, settings, layer.mirrors);
+  }
+  if (step == 1) look_closer(scene, outlines, settings, layer.mirrors);
+  if (step == 2) finish(scene, outlines, settings, layer);
 }
 
 DCEM_INLINE void Sight::find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                                    SeenLayer& layer) {
+                                    const BodyChoice& bodies, SeenLayer& layer) const {
   layer.mirrors.clear();
-  look_at_bodies(scene, outlines, layer.mirrors);
+  look_at_bodies(scene, outlines, bodies, layer.mirrors);
   finish(scene, outlines, settings, layer);
 }
 
@@ -166,10 +186,11 @@ DCEM_INLINE void Sight::find_facets(const Scene& scene, const FacetOutlines& out
                                     bool bodies, std::vector<FacetId>& seen) {
   seen.clear();
   look_at_scenery(scene, outlines, settings, seen);
-  if (bodies) look_at_bodies(scene, outlines, seen);
+  look_closer(scene, outlines, settings, seen);
+  if (bodies) look_at_bodies(scene, outlines, {}, seen);
 }
 
-DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) {
+DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) const {
   const WorldFacet& facet = scene.facet(id);
   if (!facet.present || facet.body == ignored_body_) return false;
   if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, id));
@@ -217,7 +238,7 @@ DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& fa
 /// Adds the edges. Where a point of an edge is seen from its exterior, so is one of its faces beside it: but for a
 /// third facet that touches it there, and then nothing diffracts.
 DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                               SeenLayer& layer) {
+                               SeenLayer& layer) const {
   const auto out_of_reach = [&](WedgeId id) {
     const WorldWedge& wedge = scene.wedge(id);
     if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules) || is_inside(wedge.edge)) return true;

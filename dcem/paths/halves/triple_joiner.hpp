@@ -26,8 +26,7 @@ namespace dcem {
 
 class TripleJoiner {
  public:
-  TripleJoiner(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes,
-               const HalfJoiner::Orders& orders)
+  TripleJoiner(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes, const JoinOrders& orders)
       : gates_(scene, outlines), lanes_(lanes), orders_(orders), images_(scene, lanes) {}
 
   /// Calls `visit(sequence)`, from the receiver outwards, for each sequence of three elements; seldom twice for one.
@@ -157,7 +156,7 @@ class TripleJoiner {
 
   JoinGates gates_;
   const LaneScene& lanes_;
-  HalfJoiner::Orders orders_;
+  JoinOrders orders_;
   DoubleImages images_;
   Sequence sequence_;
 };

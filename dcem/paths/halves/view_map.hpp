@@ -66,13 +66,15 @@ class ViewMap {
   void cover(std::span<const Vec3> corners_m, const Plane& plane);
 
   /// Whether a convex polygon, its distance divided by `nearer` ≥ 1, may be seen.
-  bool shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer);
+  bool shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer) const;
   /// Whether a straight line, its distance divided by `nearer` ≥ 1, may be seen.
-  bool shows(const Vec3& from_m, const Vec3& to_m, double nearer);
+  bool shows(const Vec3& from_m, const Vec3& to_m, double nearer) const;
   /// Whether a point that is known to within `beside_m`, its distance divided by `nearer` ≥ 1, is hidden for sure.
   bool hides(const Vec3& point_m, double nearer, double beside_m = 0.0) const;
   /// Whether all of a box is hidden for sure, and would be `margin_m` nearer.
   bool hides(const Aabb<double>& box, double margin_m) const;
+  /// Ends drawing for now: from here on questions write nothing, and several threads may ask.
+  void settle();
 
  private:
   static constexpr int tile_pixels = 8;
@@ -92,6 +94,7 @@ class ViewMap {
     tiles_ = pixels / tile_pixels;
     nearness_.assign(static_cast<std::size_t>(faces_.count() * pixels * pixels), 0.0F);
     tile_nearness_.assign(static_cast<std::size_t>(faces_.count() * tiles_ * tiles_), 0.0F);
+    tile_is_old_.assign(tile_nearness_.size(), 0);
   }
   Nearness nearness_of(int face, const Vec3& normal, double distance_m) const {
     const detail::FacePoint turned = faces_.normal(face, normal);
@@ -110,10 +113,26 @@ class ViewMap {
     outline.clip(reach);
     return outline.size() > 0;
   }
-  bool shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, double nearer);
+  bool shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, double nearer) const;
+  bool box_is_hidden(int face, const detail::FaceRows& rows, float nearness) const;
   void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m);
   void cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness);
-  void renew_tiles(int face, int first_row, int last_row, int first_column, int last_column);
+  /// From the first to the last.
+  struct PixelRange {
+    int first, last;
+  };
+  bool pixels_hide(int face, const PixelRange& rows, const PixelRange& columns, float nearness) const;
+  bool tiles_hide(int face, const PixelRange& rows, const PixelRange& columns, float nearness) const;
+  void age_tiles(int face, int first_row, int last_row, int first_column, int last_column);
+  void renew_tile(int face, int tile_row, int column) const;
+  /// Whether all of a tile is filled by what is nearer.
+  bool tile_hides(int face, int tile_row, int column, float nearness) const {
+    const auto tile = static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column);
+    if (nearness <= tile_nearness_[tile]) return true;
+    if (tile_is_old_[tile] == 0) return false;
+    renew_tile(face, tile_row, column);
+    return nearness <= tile_nearness_[tile];
+  }
   bool hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high, double margin_m) const;
   /// What single precision may add to or take from a nearness that is summed over a row.
   static double slack_of(const Nearness& nearness, int pixels) {
@@ -129,11 +148,12 @@ class ViewMap {
   int cube_pixels_, pixels_ = 0, tiles_ = 0;
   detail::ViewFaces faces_;
   Vec3 from_m_{0.0};
-  std::vector<Vec3> offsets_m_;       ///< of further points
-  std::vector<float> nearness_;       ///< 1/depth of what fills the pixel; 0: nothing does
-  std::vector<float> tile_nearness_;  ///< the smallest of 8 × 8 pixels
-  detail::FaceRows rows_;
-  std::vector<Vec3> normals_;  ///< room for sides that have been moved
+  std::vector<Vec3> offsets_m_;  ///< of further points
+  std::vector<float> nearness_;  ///< 1/depth of what fills the pixel; 0: nothing does
+  // Worked out when they are asked for, until the map is settled.
+  mutable std::vector<float> tile_nearness_;  ///< no more than the smallest of 8 × 8 pixels …
+  mutable std::vector<char> tile_is_old_;     ///< … and whether it may be less
+  std::vector<Vec3> normals_;                 ///< room for sides that have been moved
 };
 
 }  // namespace dcem

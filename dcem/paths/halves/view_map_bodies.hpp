@@ -34,48 +34,65 @@ DCEM_INLINE void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const 
 }
 
 DCEM_INLINE void ViewMap::cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness) {
-  if (!rows_.find(outline, pixels_)) return;
+  detail::FaceRows rows;
+  if (!rows.take(outline, pixels_)) return;
+  if (rows.high()[0] - rows.low()[0] < 1.0 || rows.high()[1] - rows.low()[1] < 1.0) return;  // it fills no pixel
+  rows.find_crossed();
   constexpr float hair = 2e-3F;  // of a pixel
-  const auto step = static_cast<float>(nearness.by_column);
+  const auto step = static_cast<float>(nearness.by_column * (1.0 - rounding));
   const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
   int first_column = pixels_, last_column = -1;
-  for (int number = rows_.first; number <= rows_.last; ++number) {
-    const auto line = static_cast<std::size_t>(number);
-    if (rows_.crossed_to[line] < -1e8F || rows_.crossed_to[line + 1] < -1e8F) continue;
-    const float from = std::max(rows_.crossed_from[line], rows_.crossed_from[line + 1]) + hair;
-    const float to = std::min(rows_.crossed_to[line], rows_.crossed_to[line + 1]) - hair;
+  for (int number = rows.first(); number <= rows.last(); ++number) {
+    if (rows.to(number) < -1e8F || rows.to(number + 1) < -1e8F) continue;
+    const float from = std::max(rows.from(number), rows.from(number + 1)) + hair;
+    const float to = std::min(rows.to(number), rows.to(number + 1)) - hair;
     const int begin = std::max(0, static_cast<int>(std::ceil(from)));
     const int end = std::min(pixels_, static_cast<int>(std::floor(to)));
     if (begin >= end) continue;
-    const auto base =
-        static_cast<float>(nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column - pad);
+    const auto base = static_cast<float>(
+        (nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column - pad) * (1.0 - rounding));
     float* const pixel = row(face, number);
     for (int column = begin; column < end; ++column) {
-      const float here = (base + step * static_cast<float>(column)) * static_cast<float>(1.0 - rounding);
+      const float here = base + step * static_cast<float>(column);
       pixel[column] = pixel[column] < here ? here : pixel[column];
     }
     first_column = std::min(first_column, begin);
     last_column = std::max(last_column, end - 1);
   }
-  if (last_column >= first_column) renew_tiles(face, rows_.first, rows_.last, first_column, last_column);
+  if (last_column >= first_column) age_tiles(face, rows.first(), rows.last(), first_column, last_column);
 }
 
-DCEM_INLINE void ViewMap::renew_tiles(int face, int first_row, int last_row, int first_column, int last_column) {
+DCEM_INLINE void ViewMap::age_tiles(int face, int first_row, int last_row, int first_column, int last_column) {
   for (int tile_row = first_row / tile_pixels; tile_row <= last_row / tile_pixels; ++tile_row) {
-    for (int column = first_column / tile_pixels; column <= last_column / tile_pixels; ++column) {
-      std::array<float, tile_pixels> least;
-      least.fill(std::numeric_limits<float>::infinity());
-      for (int line = 0; line < tile_pixels; ++line) {
-        const float* const pixel = row(face, tile_row * tile_pixels + line) + column * tile_pixels;
-        for (std::size_t at = 0; at < tile_pixels; ++at) least[at] = pixel[at] < least[at] ? pixel[at] : least[at];
+    char* const tile = tile_is_old_.data() + (face * tiles_ + tile_row) * tiles_;
+    std::fill(tile + first_column / tile_pixels, tile + last_column / tile_pixels + 1, char{1});
+  }
+}
+
+DCEM_INLINE void ViewMap::renew_tile(int face, int tile_row, int column) const {
+  std::array<float, tile_pixels> least;
+  least.fill(std::numeric_limits<float>::infinity());
+  for (int line = 0; line < tile_pixels; ++line) {
+    const float* const pixel = row(face, tile_row * tile_pixels + line) + column * tile_pixels;
+    for (std::size_t at = 0; at < tile_pixels; ++at) least[at] = pixel[at] < least[at] ? pixel[at] : least[at];
+  }
+  const auto tile = static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column);
+  tile_nearness_[tile] = *std::min_element(least.begin(), least.end());
+  tile_is_old_[tile] = 0;
+}
+
+DCEM_INLINE void ViewMap::settle() {
+  for (int face = 0; face < faces_.count(); ++face) {
+    for (int tile_row = 0; tile_row < tiles_; ++tile_row) {
+      for (int column = 0; column < tiles_; ++column) {
+        if (tile_is_old_[static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column)] == 0) continue;
+        renew_tile(face, tile_row, column);
       }
-      tile_nearness_[static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column)] =
-          *std::min_element(least.begin(), least.end());
     }
   }
 }
 
-DCEM_INLINE bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer) {
+DCEM_INLINE bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer) const {
   const double distance_m = -signed_distance_m(plane, from_m_);
   const bool says_nothing = std::abs(distance_m) < 1e-6 || nearer >= always_seen;
   if (says_nothing || corners_m.size() > detail::FaceOutline::most_corners) return true;
@@ -89,7 +106,7 @@ DCEM_INLINE bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& pl
   return false;
 }
 
-DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nearer) {
+DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nearer) const {
   const std::array<Vec3, 2> ends_m{from_m, to_m};
   for (int face = 0; face < faces_.count(); ++face) {
     detail::FaceOutline line;
@@ -116,17 +133,19 @@ DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nea
 }
 
 DCEM_INLINE bool ViewMap::shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness,
-                                   double nearer) {
-  if (!rows_.find(outline, pixels_)) return false;
+                                   double nearer) const {
+  detail::FaceRows rows;
+  if (!rows.take(outline, pixels_)) return false;
+  const auto grown = static_cast<float>(nearer * (1.0 + rounding));
+  const auto top = static_cast<float>(rows.nearest());
+  if (box_is_hidden(face, rows, top * grown)) return false;
+  rows.find_touched();
   constexpr float hair = 1e-3F;  // of a pixel
   const auto step = static_cast<float>(nearness.by_column);
-  const auto grown = static_cast<float>(nearer * (1.0 + rounding));
-  const auto top = static_cast<float>(rows_.nearest);
   const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
-  for (int number = rows_.first; number <= rows_.last; ++number) {
-    const auto line = static_cast<std::size_t>(number);
-    const int begin = std::max(0, static_cast<int>(std::floor(rows_.touched_from[line] - hair)));
-    const int end = std::min(pixels_ - 1, static_cast<int>(std::floor(rows_.touched_to[line] + hair)));
+  for (int number = rows.first(); number <= rows.last(); ++number) {
+    const int begin = std::max(0, static_cast<int>(std::floor(rows.from(number) - hair)));
+    const int end = std::min(pixels_ - 1, static_cast<int>(std::floor(rows.to(number) + hair)));
     const auto base =
         static_cast<float>(nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column + pad);
     const float* const pixel = row(face, number);
@@ -138,6 +157,29 @@ DCEM_INLINE bool ViewMap::shows_on(int face, const detail::FaceOutline& outline,
     if (seen != 0) return true;
   }
   return false;
+}
+
+/// Whether all that is in the box around an outline is nearer than its nearest corner: pixel by pixel where the box is
+/// small, by tiles otherwise. Cheaper than to ask row by row, and most that is asked about is hidden.
+DCEM_INLINE bool ViewMap::box_is_hidden(int face, const detail::FaceRows& rows, float nearness) const {
+  constexpr double hair = 1e-3;  // of a pixel
+  const int first = std::max(0, static_cast<int>(std::floor(rows.low()[0] - hair)));
+  const int last = std::min(pixels_ - 1, static_cast<int>(std::floor(rows.high()[0] + hair)));
+  if (last - first < tile_pixels) {
+    for (int number = rows.first(); number <= rows.last(); ++number) {
+      const float* const pixel = row(face, number);
+      for (int column = first; column <= last; ++column) {
+        if (nearness > pixel[column]) return false;
+      }
+    }
+    return true;
+  }
+  for (int tile_row = rows.first() / tile_pixels; tile_row <= rows.last() / tile_pixels; ++tile_row) {
+    for (int column = first / tile_pixels; column <= last / tile_pixels; ++column) {
+      if (!tile_hides(face, tile_row, column, nearness)) return false;
+    }
+  }
+  return true;
 }
 
 DCEM_INLINE bool ViewMap::hides(const Vec3& point_m, double nearer, double beside_m) const {
@@ -155,10 +197,34 @@ DCEM_INLINE bool ViewMap::hides(const Vec3& point_m, double nearer, double besid
   };
   const int face = 2 * axis + (offset_m[axis] < 0.0 ? 1 : 0);
   const auto nearness = static_cast<float>(nearer * (1.0 + rounding) / (depth - beside_m));
-  const int last_row = pixel(along + blur), last_column = pixel(across + blur);
-  for (int number = pixel(along - blur); number <= last_row; ++number) {
-    for (int column = pixel(across - blur); column <= last_column; ++column) {
-      if (nearness > row(face, number)[column]) return false;
+  const PixelRange rows{pixel(along - blur), pixel(along + blur)}, columns{pixel(across - blur), pixel(across + blur)};
+  const bool is_small = rows.last - rows.first < tile_pixels && columns.last - columns.first < tile_pixels;
+  return is_small ? pixels_hide(face, rows, columns, nearness) : tiles_hide(face, rows, columns, nearness);
+}
+
+DCEM_INLINE bool ViewMap::pixels_hide(int face, const PixelRange& rows, const PixelRange& columns,
+                                      float nearness) const {
+  for (int number = rows.first; number <= rows.last; ++number) {
+    const float* const pixels = row(face, number);
+    for (int column = columns.first; column <= columns.last; ++column) {
+      if (nearness > pixels[column]) return false;
+    }
+  }
+  return true;
+}
+
+/// The same, tile by tile. Tiles are not renewed for it: several threads may ask.
+DCEM_INLINE bool ViewMap::tiles_hide(int face, const PixelRange& rows, const PixelRange& columns,
+                                     float nearness) const {
+  const auto within = [](const PixelRange& all, int tile) {
+    return PixelRange{std::max(all.first, tile * tile_pixels),
+                      std::min(all.last, tile * tile_pixels + tile_pixels - 1)};
+  };
+  for (int tile_row = rows.first / tile_pixels; tile_row <= rows.last / tile_pixels; ++tile_row) {
+    for (int column = columns.first / tile_pixels; column <= columns.last / tile_pixels; ++column) {
+      const auto tile = static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column);
+      if (nearness <= tile_nearness_[tile]) continue;
+      if (!pixels_hide(face, within(rows, tile_row), within(columns, column), nearness)) return false;
     }
   }
   return true;
@@ -193,8 +259,7 @@ DCEM_INLINE bool ViewMap::hides_on(int face, const detail::FacePoint& low, const
   const auto nearness = static_cast<float>((1.0 + rounding) / (depth - margin_m));
   for (int tile_row = first(low.along); tile_row <= last(high.along); ++tile_row) {
     for (int column = first(low.across); column <= last(high.across); ++column) {
-      if (nearness > tile_nearness_[static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column)])
-        return false;
+      if (!tile_hides(face, tile_row, column, nearness)) return false;
     }
   }
   return true;

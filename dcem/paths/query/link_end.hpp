@@ -11,6 +11,8 @@ struct LinkEnd {
   Vec3 position_m{0.0};
   std::optional<BodyId> ignored_body;  ///< the object that the device rides on
   std::vector<FacetId> mounted_on;     ///< facets within the weld tolerance: they neither reflect nor block its legs
+
+  friend bool operator==(const LinkEnd&, const LinkEnd&) = default;
 };
 
 template <typename Index>

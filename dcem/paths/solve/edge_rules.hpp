@@ -1,5 +1,6 @@
 #pragma once
 /// Which edges diffract, and where around them.
+#include <cmath>
 #include <span>
 
 #include "dcem/core/units.hpp"
@@ -18,6 +19,14 @@ struct EdgeRules {
 /// Whether it is known that no path can use an edge.
 inline bool is_embedded(WedgeId edge, const EdgeRules& rules) {
   return !rules.embedded.empty() && rules.embedded[edge.value] != 0;
+}
+
+/// Whether a mirror's plane holds an edge: next to a diffraction such a mirror gives no path, that is in the wedge's
+/// own reflection terms.
+inline bool holds_edge(const Plane& plane, const Wedge& edge, double weld_tolerance_m) {
+  const double tolerance_m = weld_tolerance_m + edge.stray_m;
+  return std::abs(signed_distance_m(plane, edge.start_m)) <= tolerance_m &&
+         std::abs(signed_distance_m(plane, edge.end_m)) <= tolerance_m;
 }
 
 inline bool diffracts(const WorldWedge& wedge, const EdgeRules& rules) {

@@ -36,6 +36,30 @@ class LegWalker {
     return false;
   }
 
+  /// A leg of a way over known points between two devices in which a triangle stands for which `stops(triangle)` holds,
+  /// counted from the transmitter; none where there is none. Legs in the middle are asked first.
+  template <typename Stops>
+  std::optional<std::size_t> stopped_leg(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
+                                         const std::vector<Vec3>& points_m, Stops&& stops,
+                                         SolverCounters& counters) const {
+    const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
+    for (std::size_t number = 1; number <= sequence.size() + 1; ++number) {
+      const std::size_t leg = number % (sequence.size() + 1);  // that of the transmitter last
+      const bool first = leg == 0, last = leg == sequence.size();
+      const Stop before = first ? Stop{} : stop_at(sequence[sequence.size() - leg]);
+      const Stop here = last ? Stop{} : stop_at(sequence[sequence.size() - 1 - leg]);
+      const Vec3& from_m = first ? transmitter.position_m : points_m[leg - 1];
+      const Vec3& to_m = last ? receiver.position_m : points_m[leg];
+      if (!(glm::distance(from_m, to_m) > in_plane_guard_m)) continue;
+      ++counters.legs;
+      const bool stopped = tracer_.any_triangle_between(
+          from_m, to_m, first ? LegEnd{transmitter.mounted_on, {}} : before.end(),
+          last ? LegEnd{receiver.mounted_on, {}} : here.end(), ignored, stops, counters.traversal);
+      if (stopped) return leg;
+    }
+    return std::nullopt;
+  }
+
   /// The path over the points, with the sheets that its legs cross; none where a leg is not free. `in_shadow`: of each
   /// point, for those on edges.
   std::optional<Path> follow(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,

@@ -39,6 +39,9 @@ class PathSolver {
     return solve(transmitter, receiver, mirrors, &images_m);
   }
 
+  /// Whether what came back last hangs on ways over other facets, too, that lie on top of the path's own.
+  bool had_choice() const { return had_choice_; }
+
   const SolverCounters& counters() const { return counters_; }
   SolverCounters& counters() { return counters_; }
 
@@ -49,6 +52,7 @@ class PathSolver {
   std::optional<Path> solve(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
                             const std::vector<Vec3>* images_m) {
     ++counters_.sequences_solved;
+    had_choice_ = false;
     std::optional<Path> path = solve_as_given(transmitter, receiver, sequence, images_m);
     if (!path || sequence.empty()) return path;
     Sequence chosen = sequence;
@@ -103,20 +107,15 @@ class PathSolver {
     for (const std::size_t next : {from_receiver + 1, from_receiver - 1}) {  // the smaller one wraps around at 0
       if (next >= sequence.size()) continue;
       if (sequence[next].is_edge()) {
-        if (holds_edge(facet(id).plane, sequence[next].edge())) return false;  // that is in the wedge's own terms
+        const WorldWedge& wedge = scene().wedge(sequence[next].edge());
+        if (wedge.facets[0] == id || wedge.facets[1] == id) return false;  // its mesh may stray from its plane
+        if (holds_edge(facet(id).plane, wedge.edge, scene().settings().weld_tolerance_m)) return false;
       } else if (next > from_receiver &&
                  lies_along(scene(), facet(id), facet(sequence[next].mirror()).plane, point_m)) {
         return false;  // nothing bounces between two coplanar patches that are a hair apart
       }
     }
     return true;
-  }
-
-  bool holds_edge(const Plane& plane, WedgeId id) const {
-    const Wedge& edge = scene().wedge(id).edge;
-    const double tolerance_m = scene().settings().weld_tolerance_m + edge.stray_m;
-    return std::abs(signed_distance_m(plane, edge.start_m)) <= tolerance_m &&
-           std::abs(signed_distance_m(plane, edge.end_m)) <= tolerance_m;
   }
 
   /// Whether the wedge diffracts at the path's point `index`: both neighbours in its exterior.
@@ -178,6 +177,7 @@ class PathSolver {
       any = any || choices[index].size() > 1;
     }
     if (!any) return std::nullopt;
+    had_choice_ = true;
     Sequence candidate = sequence;
     return first_valid(transmitter, receiver, sequence, choices, 0, candidate);
   }
@@ -217,6 +217,7 @@ class PathSolver {
   SolverCounters counters_;
   ChainPoints points_;
   std::vector<bool> in_shadow_;
+  bool had_choice_ = false;
 };
 
 }  // namespace dcem

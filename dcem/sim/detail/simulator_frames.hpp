@@ -26,20 +26,54 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   FrameResult result{frame.index, frame.time_s, {}, {}, {}, {}, 0.0, 0.0};
   const detail::Stopwatch update_watch;
   const ChangeSet changes = scene_.apply(frame);
+  if (change_) change_->note(frame_, frame);
   result.tree = update_index(changes);
   forget_replaced(changes, result.cache);
   frame_ = frame;
   result.update_time_s = update_watch.seconds();
   const detail::Stopwatch solve_watch;
-  const TransmitterEnds transmitters = transmitter_ends(scene_.receivers().size(), reach_, halves_);
+  const TransmitterEnds transmitters =
+      transmitter_ends(change_ ? receivers_on_the_move() : scene_.receivers().size(), reach_, halves_);
   halves_are_current_ = !transmitters.halves.empty();
-  Solved solved = solve_all(scene_.receivers(), transmitters, caches_);
+  if (change_) note_transmitters(transmitters);
+  Solved solved = change_ ? follow_all(transmitters) : solve_all(scene_.receivers(), transmitters, caches_);
   result.links = std::move(solved.links);
+  if (finds_lifetimes()) find_lifetimes(result.links, transmitters);
   result.work = solved.work;
   result.cache += solved.cache;
   note_rays(result.work);
   result.solve_time_s = solve_watch.seconds();
   return result;
+}
+
+/// How many receivers are not where they were in the frame before.
+template <SurfaceModel Surface, SpatialIndex Index>
+std::size_t BasicSimulator<Surface, Index>::receivers_on_the_move() const {
+  std::size_t count = 0;
+  for (std::size_t index = 0; index < receivers_.size(); ++index) {
+    const DeviceState state = scene_.device_state(scene_.receivers()[index], frame_);
+    const std::optional<LinkEnd>& before = receivers_[index].end;
+    count += state.present && (!before || before->position_m != state.position_m) ? 1 : 0;
+  }
+  return count;
+}
+
+/// Notes which transmitters are as in the frame before.
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::note_transmitters(const TransmitterEnds& ends) {
+  const std::size_t count = ends.link.size();
+  transmitters_before_.resize(count);
+  transmitter_states_before_.resize(count);
+  transmitter_rests_.assign(count, 0);
+  transmitter_is_same_.assign(count, 0);
+  for (std::size_t index = 0; index < count; ++index) {
+    const DeviceState state = scene_.device_state(scene_.transmitters()[index], frame_);
+    transmitter_rests_[index] = ends.link[index] && detail::same_bits(transmitters_before_[index], *ends.link[index]);
+    transmitter_is_same_[index] =
+        transmitter_rests_[index] != 0 && detail::same_bits(transmitter_states_before_[index], state);
+    transmitters_before_[index] = ends.link[index];
+    transmitter_states_before_[index] = state;
+  }
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -66,12 +100,14 @@ TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
   CacheCounters not_reported;
   forget_replaced(changes, not_reported);
   frame_ = frame;
+  for (detail::ReceiverMemory& receiver : receivers_) receiver.forget();
+  for (KeptHalf& half : halves_) half.forget_bodies();
   return update_index(changes);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
 TreeUpdateReport BasicSimulator<Surface, Index>::pass(const Frame& frame, const WorkCounters& spent) {
-  if (cache_ != CacheMode::off) throw std::logic_error("pass: the cache remembers what only advance() finds");
+  if (cache_ == CacheMode::seed) throw std::logic_error("pass: the cache remembers what only advance() finds");
   const TreeUpdateReport report = move_to(frame);
   TraversalCounters not_reported;
   for (std::size_t index = 0; index < halves_.size(); ++index) {
@@ -163,11 +199,12 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
     halves = ends.own_halves;
   }
   const bool over_mirrors = search.max_reflections >= 1 && search.max_interactions >= 2;
-  const HalfLists lists{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors, fine || (triples && receivers > 0),
-                        receivers, pool_.get()};
+  const HalfLists lists{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors,
+                        fine || (triples && (receivers > 0 || change_)), receivers, pool_.get()};
   const auto update = [&](std::size_t index, unsigned) {
-    if (!ends.link[index]) return;
-    halves[index].update(scene_, *outlines_, *ends.link[index], half_settings(search), lists);
+    if (!ends.link[index]) return halves[index].forget_bodies();
+    halves[index].update(scene_, *outlines_, *ends.link[index], half_settings(search), lists,
+                         change_ && &halves[index] == &halves_[index] ? change_->moved() : std::span<const char>{});
   };
   // A few transmitters one after another, with all threads for each: lists are most of the work.
   if (ends.link.size() >= pool_->size()) {

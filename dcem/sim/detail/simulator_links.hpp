@@ -26,6 +26,12 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     by_receiver[index] =
         solve_receiver(receivers[index], index, transmitters, cache, {rooms.empty() ? nullptr : &rooms[worker]});
   });
+  return sum_of(std::move(by_receiver), transmitters);
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::sum_of(
+    std::vector<Solved>&& by_receiver, const TransmitterEnds& transmitters) {
   Solved sum;
   sum.work = transmitters.work;
   for (Solved& one : by_receiver) {
@@ -70,8 +76,9 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   std::span<const SequenceList> joined = proposals.joined;
   std::vector<SequenceList> own;
   if (plan_.joined > 0 && joined.empty()) {
-    const LinkHalves halves{*outlines_, transmitters.halves, *proposals.room, *lanes_};
-    own = join_halves(scene_, search, halves, end, ends);
+    ReceiverRoom& room = *proposals.room;
+    look_from(scene_, search, *outlines_, *lanes_, end, room);
+    own = join_halves(scene_, search, {*outlines_, *lanes_, transmitters.halves, room.half, room.lists}, ends);
     joined = own;
   }
   std::vector<LinkPaths> found =
@@ -123,19 +130,37 @@ template <SurfaceModel Surface, SpatialIndex Index>
 LinkResult BasicSimulator<Surface, Index>::make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter,
                                                      const DeviceEnd& from, const DeviceEnd& to,
                                                      const Evaluator& evaluator) const {
+  std::vector<PathContribution> paths;
+  for (Path& path : found.paths) paths.push_back(evaluator.evaluate(std::move(path), from.radio, to.radio));
+  return finish_link(std::move(paths), std::move(diffuse), transmitter, from, to, evaluator);
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+LinkResult BasicSimulator<Surface, Index>::finish_link(std::vector<PathContribution>&& paths, DiffusePower&& diffuse,
+                                                       std::size_t transmitter, const DeviceEnd& from,
+                                                       const DeviceEnd& to, const Evaluator& evaluator) const {
+  std::vector<PathContribution*> order;
+  for (PathContribution& path : paths) order.push_back(&path);
+  std::sort(order.begin(), order.end(), [](const PathContribution* one, const PathContribution* other) {
+    return reported_before(one->path, other->path);
+  });
+  // The same sequence gives the same bits, so repeated paths stand side by side.
+  const auto same = [](const PathContribution* one, const PathContribution* other) {
+    return same_sequence(one->path, other->path);
+  };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
   const PropagationSettings& propagation = settings_.propagation;
   LinkResult link;
   link.transmitter = transmitter;
   link.diffuse = std::move(diffuse);
-  bool line_of_sight = found.line_of_sight;
-  for (Path& path : found.paths) {
-    const bool is_direct = path.interactions.empty();
-    if (is_direct && !path.foliage.empty()) line_of_sight = false;  // the segment is not free, though nothing stops it
+  bool line_of_sight = false;
+  for (PathContribution* const path : order) {
+    const bool is_direct = path->path.interactions.empty();
+    if (is_direct) line_of_sight = path->path.foliage.empty();  // in foliage the segment is not free, though it is open
     if (is_direct && !propagation.line_of_sight) continue;
-    PathContribution contribution = evaluator.evaluate(std::move(path), from.radio, to.radio);
     const bool too_weak =
-        propagation.min_path_gain_db && !(power_ratio_to_db(contribution.power_ratio) >= *propagation.min_path_gain_db);
-    if (!too_weak) link.paths.push_back(std::move(contribution));
+        propagation.min_path_gain_db && !(power_ratio_to_db(path->power_ratio) >= *propagation.min_path_gain_db);
+    if (!too_weak) link.paths.push_back(std::move(*path));
   }
   trace_elements(link.paths, from, to, evaluator);
   const double power_dbm = scene_.transmitters()[transmitter].power_dbm;

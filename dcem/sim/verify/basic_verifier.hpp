@@ -35,12 +35,14 @@ class BasicVerifier {
   bool has_the_links(const FrameResult& result) const;
   bool is_allowed(const LinkResult& link, std::size_t path) const;
   void check_paths(const FrameResult& result);
+  void check_from_scratch(const FrameResult& result, const FrameResult& expected);
   void compare(const FrameResult& result, const FrameResult& other);
   void note(const FrameResult& frame, const LinkResult& link, const Path& path, const std::string& what);
 
   Discovery discovery_;
-  BasicSimulator<Surface, BruteForceIndex> alone_;  ///< solves single paths
-  std::optional<BasicSimulator<Surface>> rival_;    ///< the other discovery
+  BasicSimulator<Surface, BruteForceIndex> alone_;    ///< solves single paths
+  std::optional<BasicSimulator<Surface>> rival_;      ///< the other discovery
+  std::optional<BasicSimulator<Surface>> forgetful_;  ///< where the cache is exact: the same without it
   VerificationReport report_;
 };
 
@@ -58,6 +60,10 @@ BasicVerifier<Surface>::BasicVerifier(const Scene& scene, const SimulationSettin
     rival_.emplace(scene, rival(settings, Discovery::exact), surface);
   }
   report_.compared = rival_.has_value();
+  if (resolve_cache(settings.propagation, discovery_) == CacheMode::exact) {
+    forgetful_.emplace(scene, rival(settings, settings.propagation.discovery), surface);
+  }
+  report_.from_scratch = forgetful_.has_value();
 }
 
 template <SurfaceModel Surface>
@@ -89,6 +95,10 @@ void BasicVerifier<Surface>::check(const Frame& frame, const FrameResult& result
     }
   }
   check_paths(result);
+  if (forgetful_) {
+    const FrameResult expected = forgetful_->advance(frame);
+    if (complete) check_from_scratch(result, expected);
+  }
   if (!rival_) return;
   const FrameResult other = rival_->advance(frame);
   if (complete) compare(result, other);
@@ -146,6 +156,21 @@ void BasicVerifier<Surface>::check_paths(const FrameResult& result) {
       ++report_.paths_different;
       note(result, link, link.paths[path].path, "is another path, or none, when solved on its own, or is there twice");
     }
+  }
+}
+
+template <SurfaceModel Surface>
+void BasicVerifier<Surface>::check_from_scratch(const FrameResult& result, const FrameResult& expected) {
+  for (std::size_t index = 0; index < result.links.size(); ++index) {
+    const LinkResult &own = result.links[index], &other = expected.links[index];
+    if (detail::same_bits(own, other)) continue;
+    ++report_.links_different;
+    if (report_.differences.size() >= 10) continue;
+    const Scene& scene = alone_.scene();
+    report_.differences.push_back("frame " + std::to_string(result.index) + ", " +
+                                  scene.transmitters()[own.transmitter].id + " to " +
+                                  scene.receivers()[own.receiver].id + ": " + std::to_string(own.paths.size()) +
+                                  " paths that are not the " + std::to_string(other.paths.size()) + " from scratch");
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "dcem/field/path_contribution.hpp"
 #include "dcem/paths/path.hpp"
+#include "dcem/sim/frame_result.hpp"
 
 namespace dcem::detail {
 
@@ -56,6 +57,15 @@ inline bool same_bits(const PathContribution& a, const PathContribution& b) {
          a.transmit_ports == b.transmit_ports && same_bits(a.power_ratio, b.power_ratio) &&
          same_bits(a.delay_s, b.delay_s) && same_bits(a.doppler_hz, b.doppler_hz) &&
          same_bits(a.departure, b.departure) && same_bits(a.arrival, b.arrival);
+}
+
+/// Of two solutions of a link; statistics are made of the paths and of diffuse power.
+inline bool same_bits(const LinkResult& a, const LinkResult& b) {
+  return a.transmitter == b.transmitter && a.receiver == b.receiver && a.complete == b.complete &&
+         a.statistics.line_of_sight == b.statistics.line_of_sight &&
+         same_bits(a.diffuse.power_ratio, b.diffuse.power_ratio) &&
+         std::equal(a.paths.begin(), a.paths.end(), b.paths.begin(), b.paths.end(),
+                    [](const PathContribution& x, const PathContribution& y) { return same_bits(x, y); });
 }
 
 }  // namespace dcem::detail

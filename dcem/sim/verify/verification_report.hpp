@@ -47,12 +47,16 @@ struct VerificationReport {
   std::uint64_t paths = 0;                    ///< reported paths, each solved again
   std::uint64_t paths_different = 0;  ///< of these, paths that came out otherwise or not at all, or are listed twice
   std::uint64_t paths_extra = 0;      ///< found by one discovery, and denied by the exhaustive one
+  bool from_scratch = false;          ///< the cache is exact: each link is solved from scratch, too
+  std::uint64_t links_different = 0;  ///< of these, links that came out otherwise
   bool compared = false;              ///< the second discovery was possible
   Recall recall;                      ///< of sampled paths; not meaningful otherwise
   std::vector<Recall> recall_by_frame;
   std::vector<std::string> differences;  ///< a line for each of the first ten
 
-  bool passed() const { return frames_with_other_links == 0 && paths_different == 0 && paths_extra == 0; }
+  bool passed() const {
+    return frames_with_other_links == 0 && paths_different == 0 && paths_extra == 0 && links_different == 0;
+  }
 };
 
 }  // namespace dcem

@@ -7,6 +7,7 @@
 /// 2. Where the scene allows exhaustive search, sampled paths are compared with all paths there are: one that is not
 ///    among them is invalid, and the share of those found is the recall. Paths found by exhaustive search are compared
 ///    with those that rays find: rays must find nothing else.
+/// 3. Where the cache is exact, every link is solved from scratch: it must be the same to the last bit.
 #include <memory>
 
 #include "dcem/sim/settings.hpp"

@@ -34,7 +34,7 @@ inline std::vector<std::vector<Path>> found_together(TracedScene<>& traced, cons
   crowd.look_from(traced.scene, outlines, lanes, points_m, half_settings_of(asked));
   SolverCounters counters;
   CrowdGates<WideIndex> gates(traced.tracer, outlines, lanes, crowd, mast, counters);
-  const HalfJoiner::Orders orders{asked.reflections, asked.diffractions, asked.interactions};
+  const JoinOrders orders{asked.reflections, asked.diffractions, asked.interactions};
   CrowdJoiner<WideIndex> joiner(gates, orders);
   PathSolver<WideIndex> solver(traced.tracer, asked.transmissions, half_settings_of(asked).rules);
   std::vector<std::vector<Path>> paths(points_m.size());

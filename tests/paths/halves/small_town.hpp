@@ -86,8 +86,9 @@ inline std::vector<Path> joined(TracedScene<>& traced, const LinkEnd& from, cons
   ReceiverRoom room{PathHalf(pixels), {}};
   SearchCounters counters;
   const std::vector<std::optional<LinkEnd>> ends{from};
+  look_from(traced.scene, settings, outlines, lanes, to, room);
   const std::vector<SequenceList> proposed =
-      join_halves(traced.scene, settings, {outlines, transmitters, room, lanes}, to, ends);
+      join_halves(traced.scene, settings, {outlines, lanes, transmitters, room.half, room.lists}, ends);
   const std::vector<ReachedEdges> reached(1);
   return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached, proposed).front().paths;
 }

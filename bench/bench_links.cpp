@@ -1,0 +1,197 @@
+/// Times the exact search for links in a city, step by step, one thread.
+///
+///   bench_links ROUNDS FILE.obj --mast X Y Z [--receivers N] [--within METRES] [--height METRES] [--copies N]
+///                              [--interactions N] [--diffractions N] [--no-lists]
+///
+/// Receivers stand at random where nothing is above them but the sky, the transmitter at a mast. For each link: what
+/// the receiver may see (its half), its half joined with that of the mast, and the solver. One CSV row for each step:
+/// mean, 95 % and the longest of all links, medians over the rounds. Rounds must find the same paths: otherwise exit 1.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/bench_program.hpp"
+#include "bench/result_hash.hpp"
+#include "bench/tiled_mesh.hpp"
+#include "dcem/accel/wide_index.hpp"
+#include "dcem/core/random.hpp"
+#include "dcem/core/statistics.hpp"
+#include "dcem/io/obj_reader.hpp"
+#include "dcem/paths/halves/link_halves.hpp"
+#include "dcem/paths/path_finder.hpp"
+
+namespace {
+
+using dcem::Vec3;
+using dcem::bench::Stopwatch;
+
+struct Options {
+  int rounds = 1;
+  std::string file;
+  std::vector<double> mast_m;
+  std::size_t receivers = 100;
+  double within_m = 280.0, height_m = 1.5;
+  int copies = 1, interactions = 2, diffractions = 1;
+  bool no_lists = false;
+};
+
+constexpr const char* step_names[] = {"half", "join", "solver", "sum"};
+constexpr std::size_t step_count = 4;
+
+/// One link, step by step, in milliseconds, and what was done.
+struct LinkTimes {
+  std::array<double, step_count> ms{};
+  std::size_t mirrors = 0, edges = 0, proposed = 0, paths = 0;
+};
+
+class City {
+ public:
+  explicit City(const Options& options) : options_(options) {
+    const dcem::TriangleMesh mesh = dcem::bench::tiled(dcem::io::read_obj(options.file).mesh, options.copies);
+    for (const std::string& name : mesh.material_names) scene_.add_material({name, dcem::PerfectConductor{}});
+    scene_.set_scenery(mesh);
+    index_.build(scene_.triangle_view(), scene_.triangle_boxes(), scene_.first_triangles());
+    outlines_.emplace(scene_);
+    lanes_.emplace(scene_, *outlines_);
+    search_.exhaustive = false;
+    search_.max_reflections = std::min(2, options.interactions);
+    search_.max_transmissions = 0;
+    search_.max_diffractions = options.diffractions;
+    search_.max_interactions = options.interactions;
+    search_.joined = 3;
+  }
+
+  const dcem::Scene& scene() const { return scene_; }
+
+  /// The mast's half and, where they are wanted, its lists; milliseconds.
+  double look_from_mast() {
+    const Stopwatch watch;
+    mast_.position_m = {options_.mast_m[0], options_.mast_m[1], options_.mast_m[2]};
+    const bool triples = dcem::joins_triples(search_);
+    dcem::HalfLists lists{&*lanes_, options_.interactions >= 2, !options_.no_lists || triples, 1, nullptr};
+    halves_[0].update(scene_, *outlines_, mast_, dcem::half_settings(search_), lists);
+    return watch.elapsed_ms();
+  }
+
+  /// Places under the open sky, so high over what is below them.
+  std::vector<Vec3> receivers() const {
+    dcem::Aabb<double> bounds;
+    for (const Vec3& vertex : scene_.vertices_m()) bounds.extend(vertex);
+    std::vector<Vec3> places;
+    dcem::RandomStream random(7);
+    while (places.size() < options_.receivers) {
+      const Vec3 above(options_.mast_m[0] + options_.within_m * (2.0 * random.uniform() - 1.0),
+                       options_.mast_m[1] + options_.within_m * (2.0 * random.uniform() - 1.0), bounds.max.z + 1.0);
+      const auto ground = index_.closest_hit({above, Vec3(0.0, 0.0, -1.0)}, {}, nullptr);
+      const bool is_street = ground && above.z - ground->t < bounds.min.z + 0.5;
+      if (is_street) places.push_back({above.x, above.y, above.z - ground->t + options_.height_m});
+    }
+    return places;
+  }
+
+  LinkTimes solve(const Vec3& receiver_m, std::uint64_t& hash) {
+    const dcem::SceneTracer<dcem::WideIndex> tracer(scene_, index_);
+    const dcem::LinkEnd receiver{receiver_m, {}, {}};
+    const std::vector<std::optional<dcem::LinkEnd>> transmitters{mast_};
+    LinkTimes times;
+    const Stopwatch half;
+    dcem::look_from(scene_, search_, *outlines_, *lanes_, receiver, room_);
+    times.ms[0] = half.elapsed_ms();
+    const Stopwatch join;
+    const auto proposed =
+        dcem::join_halves(scene_, search_, {*outlines_, *lanes_, halves_, room_.half, room_.lists}, transmitters);
+    times.ms[1] = join.elapsed_ms();
+    const Stopwatch solver;
+    dcem::SearchCounters counters;
+    const auto links = dcem::find_paths(tracer, search_, receiver, {"", 0}, transmitters, counters, nullptr,
+                                        std::vector<dcem::ReachedEdges>(1), proposed);
+    times.ms[2] = solver.elapsed_ms();
+    times.ms[3] = times.ms[0] + times.ms[1] + times.ms[2];
+    times.mirrors = room_.half.layers()[0].mirrors.size();
+    times.edges = room_.half.layers()[0].edges.size();
+    times.proposed = proposed[0].size();
+    times.paths = links[0].paths.size();
+    for (const dcem::Path& path : links[0].paths) {
+      hash = dcem::hash_values(hash, path.interactions.size(), dcem::bench::hash_of(path.length_m));
+    }
+    return times;
+  }
+
+ private:
+  const Options& options_;
+  dcem::Scene scene_;
+  dcem::WideIndex index_;
+  std::optional<dcem::FacetOutlines> outlines_;
+  std::optional<dcem::LaneScene> lanes_;
+  dcem::PathSearchSettings search_;
+  std::vector<dcem::KeptHalf> halves_{dcem::KeptHalf(512)};
+  dcem::LinkEnd mast_;
+  dcem::ReceiverRoom room_;
+};
+
+bool bench(const Options& options) {
+  City city(options);
+  const double mast_ms = city.look_from_mast();
+  const std::vector<Vec3> places = city.receivers();
+  std::array<std::vector<std::vector<double>>, step_count> by_link;  // step, link, round
+  for (auto& step : by_link) step.resize(places.size());
+  std::uint64_t expected = 0;
+  LinkTimes sum;
+  for (int round = 0; round < options.rounds; ++round) {
+    std::uint64_t hash = 0;
+    sum = {};
+    for (std::size_t link = 0; link < places.size(); ++link) {
+      const LinkTimes times = city.solve(places[link], hash);
+      for (std::size_t step = 0; step < step_count; ++step) by_link[step][link].push_back(times.ms[step]);
+      sum.mirrors += times.mirrors;
+      sum.edges += times.edges;
+      sum.proposed += times.proposed;
+      sum.paths += times.paths;
+    }
+    if (round > 0 && hash != expected) {
+      std::fputs("paths differ between rounds\n", stderr);
+      return false;
+    }
+    expected = hash;
+  }
+  for (std::size_t step = 0; step < step_count; ++step) {
+    std::vector<double> ms;
+    double mean_ms = 0.0;
+    for (const std::vector<double>& of_link : by_link[step]) {
+      ms.push_back(dcem::median(of_link));
+      mean_ms += ms.back() / static_cast<double>(places.size());
+    }
+    dcem::bench::CsvRow row;
+    row.text(std::filesystem::path(options.file).stem().string()).count(city.scene().triangles().size());
+    row.count(static_cast<std::size_t>(options.interactions)).count(static_cast<std::size_t>(options.diffractions));
+    row.text(options.no_lists ? "no" : "yes").count(places.size()).number(mast_ms, 1).text(step_names[step]);
+    row.number(mean_ms, 3).number(dcem::quantile(ms, 0.95), 3).number(dcem::quantile(ms, 1.0), 3);
+    row.count(sum.mirrors).count(sum.edges).count(sum.proposed).count(sum.paths).hash(expected).print();
+  }
+  return true;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  Options options;
+  CLI::App app("Times the exact search for links in a city");
+  app.add_option("ROUNDS", options.rounds, "rounds over all links")->required()->check(CLI::Range(1, 1000));
+  app.add_option("FILE", options.file, "OBJ file, in metres, z up")->required();
+  app.add_option("--mast", options.mast_m, "where the transmitter stands")->required()->expected(3);
+  app.add_option("--receivers", options.receivers, "how many")->check(CLI::Range(1, 1'000'000));
+  app.add_option("--within", options.within_m, "of the mast, along both axes, m")->check(CLI::PositiveNumber);
+  app.add_option("--height", options.height_m, "of the receivers over the ground, m");
+  app.add_option("--copies", options.copies, "N x N copies of the scene")->check(CLI::Range(1, 16));
+  app.add_option("--interactions", options.interactions, "at most")->check(CLI::Range(0, 3));
+  app.add_option("--diffractions", options.diffractions, "at most")->check(CLI::Range(0, 2));
+  app.add_flag("--no-lists", options.no_lists, "the mast has not stood for long");
+  return dcem::bench::run_program(app, count, arguments, [&] {
+    std::puts(
+        "scene,triangles,max_interactions,max_diffractions,lists,links,mast_ms,step,mean_ms,p95_ms,maximum_ms,mirrors,"
+        "edges,proposed,paths,hash");
+    return bench(options);
+  });
+}

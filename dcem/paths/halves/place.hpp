@@ -1,0 +1,143 @@
+#pragma once
+/// A place: a box that a device is in for some frames, and what of the scenery may be seen from anywhere in it.
+///
+/// Bodies hide nothing in it, and what a point of the box may see is a part of what the place may: so it serves every
+/// device in the box, in every frame, as long as the scenery stands.
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "dcem/paths/halves/common_cone.hpp"
+#include "dcem/paths/halves/sight.hpp"
+
+namespace dcem {
+
+/// A box that is turned about the vertical.
+struct PlaceBox {
+  Vec3 middle_m{0.0};
+  Vec3 ahead{1.0, 0.0, 0.0};  ///< level, of unit length
+  Vec3 half_m{1.0};           ///< half of its length, width and height
+
+  Vec3 aside() const { return {-ahead.y, ahead.x, 0.0}; }
+
+  /// Whether a point is inside, by more than rounding.
+  bool holds(const Vec3& point_m) const {
+    const Vec3 away_m = point_m - middle_m;
+    const double hair_m = 1e-6 + 1e-12 * (std::abs(point_m.x) + std::abs(point_m.y) + std::abs(point_m.z));
+    return std::abs(glm::dot(away_m, ahead)) <= half_m.x - hair_m &&
+           std::abs(glm::dot(away_m, aside())) <= half_m.y - hair_m && std::abs(away_m.z) <= half_m.z - hair_m;
+  }
+
+  /// Corners of the part of the box that is on one `side` (1 or −1) of a plane and not in it; none where there is no
+  /// such part.
+  void corners_beside(const Plane& plane, double side, std::vector<Vec3>& result_m) const {
+    const std::array<Vec3, 8> all_m = corners_m();
+    std::array<double, 8> above_m;
+    result_m.clear();
+    for (std::size_t corner = 0; corner < all_m.size(); ++corner) {
+      above_m[corner] = side * signed_distance_m(plane, all_m[corner]);
+      if (above_m[corner] > in_plane_guard_m) result_m.push_back(all_m[corner]);
+    }
+    if (result_m.empty() || result_m.size() == all_m.size()) return;
+    for (std::size_t corner = 0; corner < all_m.size(); ++corner) {
+      for (const std::size_t next : {corner | 1U, corner | 2U, corner | 4U}) {
+        if (next == corner || (above_m[corner] > in_plane_guard_m) == (above_m[next] > in_plane_guard_m)) continue;
+        const double share = above_m[corner] / (above_m[corner] - above_m[next]);
+        const Vec3 cut_m = all_m[corner] + share * (all_m[next] - all_m[corner]);
+        result_m.push_back(cut_m + side * in_plane_guard_m * plane.normal);
+      }
+    }
+  }
+
+  std::array<Vec3, 8> corners_m() const {
+    std::array<Vec3, 8> corners;
+    for (std::size_t corner = 0; corner < corners.size(); ++corner) {
+      const double along = (corner & 1U) != 0 ? half_m.x : -half_m.x,
+                   across = (corner & 2U) != 0 ? half_m.y : -half_m.y;
+      const double up = (corner & 4U) != 0 ? half_m.z : -half_m.z;
+      corners[corner] = middle_m + along * ahead + across * aside() + Vec3(0.0, 0.0, up);
+    }
+    return corners;
+  }
+};
+
+/// A mirror of a place, for what of the place is on one side of it.
+struct PlaceMirror {
+  FacetId facet;
+  std::uint32_t number;             ///< of the facet among the mirrors of the place's scenery
+  Vec3 image_m;                     ///< of the middle of the place
+  std::span<const HalfSpace> cone;  ///< what any image may see through the mirror, from the middle of the scene
+};
+
+class Place {
+ public:
+  /// Pixels along a side of the view map: those of a device (`PathHalf`).
+  static constexpr int map_pixels = 256;
+
+  /// Of which nothing is known yet.
+  explicit Place(const PlaceBox& box) : box_(box), corners_m_(box.corners_m()), sight_(map_pixels) {
+    sight_.look_from_within(corners_m_);
+  }
+  Place(const Scene& scene, const FacetOutlines& outlines, const PlaceBox& box, const HalfSettings& settings)
+      : Place(box) {
+    while (!is_known()) go_on(scene, outlines, settings);
+  }
+  Place(const Place&) = delete;
+  Place& operator=(const Place&) = delete;
+
+  /// Works out a part of what may be seen; `steps_left` of them until all is known. The settings are the same each
+  /// time.
+  void go_on(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings) {
+    sight_.find_scenery_step(Sight::scenery_steps - steps_left_, scene, outlines, settings, scenery_);
+    if (--steps_left_ > 0) return;
+    sight_.settle();
+    take_mirrors(scene, outlines);
+  }
+  int steps_left() const { return steps_left_; }
+  bool is_known() const { return steps_left_ == 0; }
+
+  const PlaceBox& box() const { return box_; }
+  std::span<const Vec3, 8> corners_m() const { return corners_m_; }
+  const Sight& sight() const { return sight_; }
+  /// What of the scenery some point of the box may see.
+  const SeenLayer& scenery() const { return scenery_; }
+  /// The mirrors among it, in the same order; those whose plane cuts the box twice.
+  std::span<const PlaceMirror> mirrors() const { return mirrors_; }
+  /// How far a point of the box may be from its middle.
+  double radius_m() const { return glm::length(box_.half_m); }
+
+ private:
+  void take_mirrors(const Scene& scene, const FacetOutlines& outlines) {
+    std::vector<Vec3> corners_m;
+    std::vector<HalfSpace> cone;
+    std::vector<std::size_t> ends;
+    for (std::uint32_t number = 0; number < scenery_.mirrors.size(); ++number) {
+      const FacetId facet = scenery_.mirrors[number];
+      const Plane& plane = scene.facet(facet).plane;
+      for (const double side : {1.0, -1.0}) {
+        box_.corners_beside(plane, side, corners_m);
+        if (corners_m.empty()) continue;
+        common_cone(outlines.sides(facet), plane, side * plane.normal, corners_m, outlines.middle_m(), cone);
+        planes_.insert(planes_.end(), cone.begin(), cone.end());
+        ends.push_back(planes_.size());
+        mirrors_.push_back({facet, number, mirrored(plane, box_.middle_m), {}});
+      }
+    }
+    for (std::size_t at = 0; at < ends.size(); ++at) {
+      const std::size_t first = at == 0 ? 0 : ends[at - 1];
+      mirrors_[at].cone = std::span(planes_).subspan(first, ends[at] - first);
+    }
+  }
+
+  PlaceBox box_;
+  std::array<Vec3, 8> corners_m_;
+  Sight sight_;
+  int steps_left_ = Sight::scenery_steps;
+  SeenLayer scenery_;
+  std::vector<HalfSpace> planes_;
+  std::vector<PlaceMirror> mirrors_;
+};
+
+}  // namespace dcem

@@ -1,0 +1,257 @@
+#pragma once
+/// Every sequence of one or two elements of the scenery that may carry a path between an end that stands and any point
+/// of a place.
+///
+/// Worked out once for the place, from what the standing end reaches (`BeamLists`) and what the place may see; in each
+/// frame the gates of the point at which the device is are asked of all of it.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dcem/paths/halves/beam_lists.hpp"
+#include "dcem/paths/halves/join_gates.hpp"
+#include "dcem/paths/halves/pair_gates.hpp"
+#include "dcem/paths/halves/place.hpp"
+#include "dcem/paths/memory/edge_candidates.hpp"
+#include "dcem/paths/memory/way_reach.hpp"
+
+namespace dcem {
+
+/// A way over one or two elements, from the receiver outwards.
+struct CandidateWay {
+  Sequence elements;
+  std::array<Vec3, 2> points_m;
+  Vec3 apex_m;  ///< the transmitter, or its image in the mirror next to it
+};
+
+class CandidatePool {
+ public:
+  /// Of which nothing is known yet. What is known of the place, and what the standing end has listed, must stay as long
+  /// as the pool is asked.
+  CandidatePool(std::shared_ptr<const Place> place, const BeamLists& reached, const JoinOrders& orders)
+      : place_(std::move(place)), reached_(reached), orders_(orders), edges_(place_->box().middle_m) {}
+
+  /// Finds a part of the candidates; `steps_left` of them until all are known, and may be asked for.
+  void go_on(const Scene& scene, const FacetOutlines& outlines);
+  int steps_left() const { return steps_left_; }
+
+  const Place& place() const { return *place_; }
+  std::size_t size() const { return mirrors_.size() + direct_.size() + over_mirrors_.size(); }
+
+  /// Calls `visit(number)` for candidates of which the edge's point, where there is an edge, may be where it must; of
+  /// those over mirrors alone, for all.
+  template <typename Visit>
+  void for_each_at(const Vec3& receiver_m, Visit&& visit) const {
+    for (std::size_t number = 0; number < mirrors_.size(); ++number) visit(number);
+    edges_.for_each_direct(receiver_m, [&](std::size_t at) { visit(mirrors_.size() + at); });
+    edges_.for_each_mirrored(receiver_m, [&](std::size_t at) { visit(mirrors_.size() + direct_.size() + at); });
+  }
+  /// Works out the way of a candidate to a receiver in the place; false where its points are not on what they must be.
+  bool aim(const JoinGates& gates, const Vec3& receiver_m, std::size_t number, CandidateWay& way) const;
+  /// How far its points move, metres, while the receiver moves by at most `moved_m`.
+  std::array<double, 2> reach_m(const Scene& scene, const Vec3& receiver_m, const CandidateWay& way,
+                                double moved_m) const;
+
+  /// The elements of a candidate, from the receiver outwards, as one number.
+  std::uint64_t key(std::size_t number) const {
+    const auto pair = [](std::uint64_t near, std::uint64_t far) { return (near << 32U) | far; };
+    if (number < mirrors_.size()) {
+      const MirrorCandidate& one = mirrors_[number];
+      const std::uint32_t far = reached_.mirrors()[one.far].facet.value;
+      return one.near == alone ? pair(alone, far) : pair(place_->scenery().mirrors[one.near].value, far);
+    }
+    number -= mirrors_.size();
+    if (number < direct_.size()) {
+      const DirectCandidate& one = direct_[number];
+      const std::uint32_t edge = SequenceElement(one.edge).code();
+      return one.far == alone ? pair(alone, edge) : pair(edge, reached_.mirrors()[one.far].facet.value);
+    }
+    const MirroredCandidate& one = over_mirrors_[number - direct_.size()];
+    return pair(place_->scenery().mirrors[one.near].value, SequenceElement(one.edge).code());
+  }
+
+ private:
+  static constexpr std::uint32_t alone = 0xffffffffU;
+  /// A mirror of the standing end and, where it is not alone, one of the place.
+  struct MirrorCandidate {
+    std::uint32_t near, far;  ///< places among the mirrors of the place and of the standing end
+  };
+  /// An edge, and the mirror over which the standing end lights it, or none.
+  struct DirectCandidate {
+    WedgeId edge;
+    std::uint32_t far;
+  };
+  /// A mirror of the place, and an edge that the standing end sees.
+  struct MirroredCandidate {
+    std::uint32_t near;
+    WedgeId edge;
+  };
+
+  void find_over_mirror(const Scene& scene, const FacetOutlines& outlines, const PlaceMirror& mirror);
+  void find_edges_over(const Scene& scene, const FacetOutlines& outlines, const PlaceMirror& mirror);
+  void find_single_mirrors();
+  void find_over_edges(const Scene& scene);
+
+  static constexpr int steps = 4;  ///< mirrors in three parts of them, then edges
+  std::shared_ptr<const Place> place_;
+  const BeamLists& reached_;
+  JoinOrders orders_;
+  int steps_left_ = steps;
+  std::vector<MirrorCandidate> mirrors_;
+  std::vector<DirectCandidate> direct_;          ///< in the order in which they are in `edges_`
+  std::vector<MirroredCandidate> over_mirrors_;  ///< the same
+  EdgeCandidates edges_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+inline void CandidatePool::go_on(const Scene& scene, const FacetOutlines& outlines) {
+  const auto step = static_cast<std::size_t>(steps - steps_left_);
+  --steps_left_;
+  if (orders_.interactions < 1) return;
+  if (steps_left_ == 0) {
+    if (orders_.diffractions >= 1) find_over_edges(scene);
+    return;
+  }
+  if (orders_.reflections < 1) return;
+  if (step == 0) find_single_mirrors();
+  if (orders_.interactions < 2) return;
+  const std::span<const PlaceMirror> all = place_->mirrors();
+  constexpr std::size_t parts = steps - 1;
+  const std::size_t first = all.size() * step / parts, last = all.size() * (step + 1) / parts;
+  for (const PlaceMirror& mirror : all.subspan(first, last - first)) find_over_mirror(scene, outlines, mirror);
+}
+
+inline void CandidatePool::find_single_mirrors() {
+  const Vec3 middle = place_->box().middle_m - reached_.origin_m();
+  for (const FacetId facet : place_->scenery().mirrors) {
+    const std::uint32_t own = reached_.mirror_of(facet);
+    if (own != BeamLists::nothing &&
+        may_hold(reached_.mirrors()[own].cone, middle, static_cast<float>(place_->radius_m()))) {
+      mirrors_.push_back({alone, own});
+    }
+  }
+}
+
+inline void CandidatePool::find_over_mirror(const Scene& scene, const FacetOutlines& outlines,
+                                            const PlaceMirror& mirror) {
+  const Vec3 image = mirror.image_m - reached_.origin_m();
+  for (const std::uint32_t far : reached_.mirrors_before(mirror.facet)) {
+    if (orders_.reflections < 2) break;
+    const BeamMirror& first = reached_.mirrors()[far];
+    const float error_m = 1e-6F * static_cast<float>(glm::length(first.image_m));
+    if (!may_hold(mirror.cone, first.image_m, error_m)) continue;
+    if (may_hold(first.cone, image, static_cast<float>(place_->radius_m()))) mirrors_.push_back({mirror.number, far});
+  }
+  if (orders_.diffractions >= 1) find_edges_over(scene, outlines, mirror);
+}
+
+inline void CandidatePool::find_edges_over(const Scene& scene, const FacetOutlines& outlines,
+                                           const PlaceMirror& mirror) {
+  const Plane& plane = scene.facet(mirror.facet).plane;
+  std::array<Vec3, 8> images_m;
+  for (std::size_t corner = 0; corner < images_m.size(); ++corner) {
+    images_m[corner] = mirrored(plane, place_->corners_m()[corner]);
+  }
+  const Vec3 image = mirror.image_m - reached_.origin_m();
+  reached_.for_each_part_in(mirror.cone, image, static_cast<float>(place_->radius_m()), [&](std::uint32_t number) {
+    const EdgePart& part = reached_.parts()[number];
+    const WorldWedge& wedge = scene.wedge(WedgeId(part.edge));
+    if (holds_edge(plane, wedge.edge, scene.settings().weld_tolerance_m)) return;
+    // The wedge's solid is convex: what all corners are inside of, the whole place is.
+    const bool is_inside = std::ranges::none_of(
+        images_m, [&](const Vec3& image_m) { return may_face(wedge.edge, image_m - wedge.edge.start_m); });
+    if (is_inside) return;
+    over_mirrors_.push_back({mirror.number, WedgeId(part.edge)});
+    edges_.add(wedge.edge, part, plane, outlines.sides(mirror.facet));
+  });
+}
+
+inline void CandidatePool::find_over_edges(const Scene& scene) {
+  const auto radius_m = static_cast<float>(place_->radius_m());
+  const Vec3 middle = place_->box().middle_m - reached_.origin_m();
+  for (const WedgeId edge : place_->scenery().edges) {
+    const Wedge& wedge = scene.wedge(edge).edge;
+    for (const EdgePart& part : reached_.parts_of(edge)) {
+      direct_.push_back({edge, alone});
+      edges_.add(wedge, part);
+    }
+    if (orders_.interactions < 2 || orders_.reflections < 1) continue;
+    reached_.for_each_lit_part(edge, middle, radius_m, [&](const EdgePart& part, std::uint32_t far) {
+      const Plane& plane = scene.facet(reached_.mirrors()[far].facet).plane;
+      if (holds_edge(plane, wedge, scene.settings().weld_tolerance_m)) return;
+      direct_.push_back({edge, far});
+      edges_.add(wedge, part);
+    });
+  }
+}
+
+inline bool CandidatePool::aim(const JoinGates& gates, const Vec3& receiver_m, std::size_t number,
+                               CandidateWay& way) const {
+  const Scene& scene = gates.scene();
+  const auto image_m = [&](FacetId facet) { return mirrored(scene.facet(facet).plane, receiver_m); };
+  way.apex_m = reached_.half().position_m();
+  way.elements.clear();
+  const auto put = [&](SequenceElement element, const std::optional<Vec3>& point_m) {
+    if (!point_m) return false;
+    way.elements.push_back(element);
+    way.points_m[way.elements.size() - 1] = *point_m;
+    return true;
+  };
+  const auto take_far = [&](std::uint32_t place) {
+    way.apex_m = reached_.mirrors()[place].image_m + reached_.origin_m();
+    return reached_.mirrors()[place].facet;
+  };
+  if (number < mirrors_.size()) {
+    const MirrorCandidate& one = mirrors_[number];
+    const FacetId far = take_far(one.far);
+    if (one.near == alone) return put(far, gates.crossing(far, way.apex_m, receiver_m));
+    const FacetId near = place_->scenery().mirrors[one.near];
+    const Vec3 near_image_m = image_m(near);
+    const auto far_m = gates.crossing(far, way.apex_m, near_image_m);
+    return far_m && put(near, gates.crossing(near, near_image_m, *far_m)) && put(far, far_m);
+  }
+  number -= mirrors_.size();
+  if (number < direct_.size()) {
+    const DirectCandidate& one = direct_[number];
+    if (one.far == alone) return put(one.edge, gates.edge_point(one.edge, receiver_m, way.apex_m));
+    const FacetId far = take_far(one.far);
+    if (!put(one.edge, gates.edge_point(one.edge, receiver_m, way.apex_m))) return false;
+    if (!put(far, gates.crossing(far, way.apex_m, way.points_m[0]))) return false;
+    return may_face(scene.wedge(one.edge).edge, way.points_m[1] - way.points_m[0]);
+  }
+  const MirroredCandidate& one = over_mirrors_[number - direct_.size()];
+  const FacetId near = place_->scenery().mirrors[one.near];
+  const Vec3 near_image_m = image_m(near);
+  const auto edge_m = gates.edge_point(one.edge, way.apex_m, near_image_m);
+  if (!edge_m || !put(near, gates.crossing(near, near_image_m, *edge_m)) || !put(one.edge, edge_m)) return false;
+  return may_face(scene.wedge(one.edge).edge, way.points_m[0] - way.points_m[1]);
+}
+
+/// `apex_m` of the way is the image of the standing end from which its points follow.
+inline std::array<double, 2> CandidatePool::reach_m(const Scene& scene, const Vec3& receiver_m, const CandidateWay& way,
+                                                    double moved_m) const {
+  const SequenceElement near = way.elements[0];
+  const auto plane_of = [&](SequenceElement element) -> const Plane& { return scene.facet(element.mirror()).plane; };
+  if (near.is_edge()) {
+    const double edge_m = edge_reach_m(scene.wedge(near.edge()).edge, way.apex_m, receiver_m, moved_m);
+    if (way.elements.size() == 1) return {edge_m, 0.0};
+    return {edge_m, crossing_reach_m(plane_of(way.elements[1]), way.apex_m, 0.0, way.points_m[0], edge_m)};
+  }
+  if (way.elements.size() == 1) return {crossing_reach_m(plane_of(near), way.apex_m, 0.0, receiver_m, moved_m), 0.0};
+  const Vec3 image_m = mirrored(plane_of(near), receiver_m);
+  const SequenceElement far = way.elements[1];
+  if (far.is_edge()) {
+    const double edge_m = edge_reach_m(scene.wedge(far.edge()).edge, way.apex_m, image_m, moved_m);
+    return {crossing_reach_m(plane_of(near), way.points_m[1], edge_m, image_m, moved_m), edge_m};
+  }
+  const double far_m = crossing_reach_m(plane_of(far), way.apex_m, 0.0, image_m, moved_m);
+  return {crossing_reach_m(plane_of(near), way.points_m[1], far_m, image_m, moved_m), far_m};
+}
+
+}  // namespace dcem

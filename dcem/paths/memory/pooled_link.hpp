@@ -1,0 +1,204 @@
+#pragma once
+/// A link whose transmitter stands, while its receiver moves through a place: the pool of what may carry a path there,
+/// and of each candidate why it carried none, and how far the receiver may move until that has to be asked again.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dcem/paths/memory/candidate_pool.hpp"
+#include "dcem/paths/memory/key_table.hpp"
+#include "dcem/paths/memory/sure_blocker.hpp"
+#include "dcem/paths/memory/way_finder.hpp"
+
+namespace dcem {
+
+/// What the candidates of a link are judged with, in one frame.
+template <typename Index>
+struct PoolJudge {
+  const JoinGates& gates;
+  const FacetOutlines& outlines;
+  const LinkEnd &transmitter, &receiver;
+  const PathHalf& transmitter_half;
+  const WayFinder<Index>& ways;
+  SolverCounters& counters;
+};
+
+/// What the candidates of a link are found with.
+struct PoolSource {
+  const Scene& scene;
+  const FacetOutlines& outlines;
+  const BeamLists& reached;  ///< by the transmitter
+  JoinOrders orders;
+};
+
+class PooledLink {
+ public:
+  void forget() {
+    pool_.reset();
+    next_.reset();
+    slots_.clear();
+  }
+  bool is_of(const Place& place) const { return pool_ && &pool_->place() == &place; }
+
+  /// Finds candidates of a place that will be entered after so many frames: a share of them.
+  void prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames) {
+    if (!next_ || &next_->place() != place.get()) {
+      next_ = std::make_unique<CandidatePool>(std::move(place), source.reached, source.orders);
+    }
+    const int share = (next_->steps_left() + frames) / (frames + 1);  // the frame in which it is entered has one, too
+    for (int step = 0; step < share && next_->steps_left() > 0; ++step) next_->go_on(source.scene, source.outlines);
+  }
+
+  /// Goes over to another place. What is known of a candidate that both places have is kept.
+  void enter(const PoolSource& source, std::shared_ptr<const Place> place) {
+    prepare(source, std::move(place), 0);
+    std::unique_ptr<CandidatePool> next = std::move(next_);
+    KeyTable known(slots_.size());
+    for (std::uint32_t number = 0; number < slots_.size(); ++number) {
+      if (slots_[number].is_known || slots_[number].is_open) known.add(pool_->key(number), number);
+    }
+    std::vector<Slot> slots(next->size());
+    for (std::size_t number = 0; number < slots.size(); ++number) {
+      if (const auto before = known.find(next->key(number))) slots[number] = slots_[*before];
+      // What is hidden from one place may be seen from the other.
+      if (slots[number].is_masked) slots[number].refused_until_m = 0.0;
+    }
+    slots_ = std::move(slots);
+    pool_ = std::move(next);
+  }
+
+  /// Calls `solve(sequence) -> bool` for candidates that may carry a path; it says whether they do.
+  template <typename Index, typename Solve>
+  void for_each_open(const PoolJudge<Index>& judge, Solve&& solve) {
+    note_step(judge.receiver.position_m);
+    pool_->for_each_at(judge.receiver.position_m, [&](std::size_t number) {
+      Slot& slot = slots_[number];
+      if (way_m_ < slot.refused_until_m || !pool_->aim(judge.gates, judge.receiver.position_m, number, way_)) return;
+      const bool was_open = slot.is_open;
+      slot.is_open = was_open && solve(way_.elements);
+      if (slot.is_open || is_refused(judge, slot) || was_open) return;
+      slot.is_open = solve(way_.elements);
+    });
+  }
+
+ private:
+  struct Slot {
+    double refused_until_m = 0.0;  ///< of the way that the receiver has come
+    float ahead_m = 0.5F;          ///< for how far ahead that is asked the next time
+    Blocker blocker{};             ///< what stopped it last, where it is known
+    bool is_known = false, is_open = false, is_masked = false;
+  };
+
+  void note_step(const Vec3& receiver_m) {
+    if (before_m_) step_m_ = glm::distance(*before_m_, receiver_m);
+    way_m_ += 1.000001 * step_m_ + 1e-9;
+    before_m_ = receiver_m;
+  }
+
+  /// Whether the candidate aimed at surely carries no path; if so, until when, and by what.
+  template <typename Index>
+  bool is_refused(const PoolJudge<Index>& judge, Slot& slot) {
+    slot.is_masked = is_masked(judge, slot);
+    if (slot.is_masked) return true;
+    if (slot.is_known && is_stopped(judge, slot)) return true;
+    points_m_.assign(way_.points_m.rend() - static_cast<std::ptrdiff_t>(way_.elements.size()), way_.points_m.rend());
+    const auto blocker =
+        judge.ways.blocker(judge.transmitter, judge.receiver, way_.elements, points_m_, judge.counters);
+    if (!blocker) return false;
+    slot.blocker = *blocker;
+    slot.is_known = true;
+    return is_stopped(judge, slot);
+  }
+
+  template <typename Index>
+  bool is_masked(const PoolJudge<Index>& judge, Slot& slot) const {
+    const Scene& scene = judge.gates.scene();
+    const Sight &near = pool_->place().sight(), &far = judge.transmitter_half.sight();
+    return holds_for_a_while(judge, slot, [&](const std::array<double, 2>& moved_m) {
+      return hides(scene, judge.outlines, near, 0, moved_m) ||
+             hides(scene, judge.outlines, far, way_.elements.size() - 1, moved_m);
+    });
+  }
+  bool hides(const Scene& scene, const FacetOutlines& outlines, const Sight& sight, std::size_t at,
+             const std::array<double, 2>& moved_m) const {
+    const SequenceElement element = way_.elements[at];
+    const double nearer = element.is_edge() ? sight.nearer_on(scene, outlines, element.edge())
+                                            : sight.nearer_on(scene, outlines, element.mirror());
+    return sight.map().hides(way_.points_m[at], nearer, moved_m[at]);
+  }
+
+  template <typename Index>
+  bool is_stopped(const PoolJudge<Index>& judge, Slot& slot) const {
+    const Scene& scene = judge.gates.scene();
+    const std::size_t leg = slot.blocker.leg, count = way_.elements.size();
+    std::array<FacetId, 4> own;
+    std::size_t owned = 0;
+    const auto add = [&](SequenceElement element) {
+      const std::array<FacetId, 2> facets =
+          element.is_edge() ? scene.wedge(element.edge()).facets : std::array{element.mirror(), element.mirror()};
+      for (const FacetId facet : facets) own[owned++] = facet;
+    };
+    if (leg > 0) add(way_.elements[count - leg]);
+    if (leg < count) add(way_.elements[count - 1 - leg]);
+    const FacetId facet = scene.facet_of_triangle(slot.blocker.triangle);
+    const auto touches = [&](const LinkEnd& end) { return std::ranges::binary_search(end.mounted_on, facet); };
+    if ((leg == 0 && touches(judge.transmitter)) || (leg == count && touches(judge.receiver))) return false;
+    VagueLeg vague{leg == 0 ? judge.transmitter.position_m : way_.points_m[count - leg],
+                   leg == count ? judge.receiver.position_m : way_.points_m[count - 1 - leg],
+                   0.0,
+                   0.0,
+                   std::span(own).first(owned),
+                   {judge.transmitter.ignored_body, judge.receiver.ignored_body}};
+    const bool may_move = scene.facet(facet).body != BodyId(0);
+    return holds_for_a_while(
+        judge, slot,
+        [&](const std::array<double, 2>& moved_m, double receiver_moved_m) {
+          vague.from_moved_m = leg == 0 ? 0.0 : moved_m[count - leg];
+          vague.to_moved_m = leg == count ? receiver_moved_m : moved_m[count - 1 - leg];
+          return surely_stops(scene, judge.outlines, slot.blocker.triangle, vague);
+        },
+        may_move);
+  }
+
+  /// Whether something holds now; if it does for some while, too, notes until when: `holds` is asked how far the points
+  /// of the way, and the receiver, may have moved. What may move holds for now alone.
+  template <typename Index, typename Holds>
+  bool holds_for_a_while(const PoolJudge<Index>& judge, Slot& slot, Holds&& holds, bool now_alone = false) const {
+    const auto asked = [&](const std::array<double, 2>& moved_m, double receiver_moved_m) {
+      if constexpr (std::is_invocable_v<Holds, const std::array<double, 2>&>)
+        return holds(moved_m);
+      else
+        return holds(moved_m, receiver_moved_m);
+    };
+    if (!asked({0.0, 0.0}, 0.0)) return false;
+    // Twice as far as the last time that it held, a quarter as far as the last time that it did not.
+    constexpr float longest_m = 4.0F;
+    const auto shortest_m = static_cast<float>(1.5 * step_m_);
+    for (int attempt = 0; attempt < 2 && !now_alone; ++attempt) {
+      const float moved_m = std::min(slot.ahead_m, longest_m);
+      if (moved_m < shortest_m) break;
+      const auto reach_m = pool_->reach_m(judge.gates.scene(), judge.receiver.position_m, way_, moved_m);
+      const bool held = asked(reach_m, moved_m);
+      if (held) slot.refused_until_m = way_m_ + moved_m;
+      slot.ahead_m = held ? 2.0F * moved_m : 0.25F * moved_m;
+      if (held) break;
+    }
+    if (slot.ahead_m < shortest_m) slot.ahead_m *= 1.25F;  // it may be asked again some day
+    return true;
+  }
+
+  std::unique_ptr<CandidatePool> pool_, next_;
+  std::vector<Slot> slots_;
+  double way_m_ = 0.0, step_m_ = 0.0;  ///< that the receiver has come, in all and since the frame before
+  std::optional<Vec3> before_m_;
+  CandidateWay way_;
+  std::vector<Vec3> points_m_;
+};
+
+}  // namespace dcem

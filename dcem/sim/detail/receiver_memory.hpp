@@ -1,0 +1,78 @@
+#pragma once
+/// What is remembered of a receiver and its links from frame to frame, where the cache is exact.
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "dcem/field/path_contribution.hpp"
+#include "dcem/paths/discover/cache_counters.hpp"
+#include "dcem/paths/discover/path_cache.hpp"
+#include "dcem/paths/halves/kept_half.hpp"
+#include "dcem/paths/memory/pooled_link.hpp"
+#include "dcem/paths/memory/standing_link.hpp"
+#include "dcem/sim/frame_result.hpp"
+#include "dcem/sim/verify/same_bits.hpp"
+
+namespace dcem::detail {
+
+/// By how much a device may move from frame to frame so that it pays to know what it may see from anywhere in a place,
+/// by measurement in Munich: where that is joined with what standing transmitters list, once for the place …
+inline constexpr double longest_pooled_step_m = 2.0;
+/// … and where it is joined anew in each frame.
+inline constexpr double longest_step_in_place_m = 0.25;
+
+/// One link in the frame before.
+struct LinkMemory {
+  std::optional<LinkResult> result;         ///< none: the link was not there
+  StandingLink<PathContribution> standing;  ///< while both ends stand
+  PooledLink pooled;                        ///< while the transmitter stands
+
+  void forget() {
+    result.reset();
+    standing.forget();
+    pooled.forget();
+  }
+};
+
+struct ReceiverMemory {
+  std::optional<DeviceState> state;  ///< none: it was not there
+  std::optional<LinkEnd> end;
+  KeptHalf half;
+  std::vector<LinkMemory> links;  ///< by transmitter
+
+  void forget() {
+    state.reset();
+    end.reset();
+    links.clear();
+    half.forget_bodies();
+  }
+};
+
+/// Whether a device is as it was, to the last bit: from a coordinate of −0 follow other signs than from 0.
+inline bool same_bits(const std::optional<LinkEnd>& before, const LinkEnd& now) {
+  return before == now && same_bits(before->position_m, now.position_m);
+}
+inline bool same_bits(const std::optional<DeviceState>& before, const DeviceState& now) {
+  return before == now && same_bits(before->position_m, now.position_m) &&
+         same_bits(before->velocity_mps, now.velocity_mps) && same_bits(before->rotation[0], now.rotation[0]) &&
+         same_bits(before->rotation[1], now.rotation[1]) && same_bits(before->rotation[2], now.rotation[2]);
+}
+
+/// Counts the paths that a link has now and had not, and those that it had.
+inline void count_births(const std::optional<LinkResult>& before, const LinkResult& now, CacheCounters& counters) {
+  const auto keys_of = [](const std::vector<PathContribution>& paths) {
+    std::vector<std::uint64_t> keys;
+    for (const PathContribution& path : paths) keys.push_back(SequenceHash()(sequence_of(path.path)));
+    std::ranges::sort(keys);
+    return keys;
+  };
+  const std::vector<std::uint64_t> old = before ? keys_of(before->paths) : std::vector<std::uint64_t>{};
+  const std::vector<std::uint64_t> present = keys_of(now.paths);
+  std::vector<std::uint64_t> both;
+  std::ranges::set_intersection(old, present, std::back_inserter(both));
+  counters.born += present.size() - both.size();
+  counters.died += old.size() - both.size();
+}
+
+}  // namespace dcem::detail
