@@ -26,6 +26,11 @@ endfunction()
 set(viewer_dir "${PROJECT_SOURCE_DIR}/dcem/io/viewer")
 dcem_embed_files(dcem_io viewer_html "${viewer_dir}/viewer.html")
 dcem_embed_files(dcem_io viewer_style "${viewer_dir}/viewer.css")
-dcem_embed_files(dcem_io viewer_script "${viewer_dir}/viewer_data.js" "${viewer_dir}/viewer_scene.js"
-                 "${viewer_dir}/viewer.js")
+# One script, in this order: what a file uses when the page is read stands before it.
+set(scripts "")
+foreach(part IN ITEMS text data moment colours angles surfaces lines camera rays ray_controls maps map_controls pointer
+                      overlay profile panel player)
+  list(APPEND scripts "${viewer_dir}/viewer_${part}.js")
+endforeach()
+dcem_embed_files(dcem_io viewer_script ${scripts} "${viewer_dir}/viewer.js")
 dcem_embed_files(dcem_io viewer_three ${three_js})

@@ -6,9 +6,11 @@
 /// left out. The same results give the same bytes. docs/design/viewer.md has the format and the reasons.
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "dcem/channel/map_combination.hpp"
 #include "dcem/channel/radio_map.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/scenario.hpp"
@@ -25,7 +27,7 @@ struct ViewerFacts {
   std::string scenario;  ///< its name
   double frequency_hz = 0.0;
   std::size_t first_frame = 0;           ///< number of the first frame of the run
-  std::size_t map_points_per_frame = 0;  ///< over all grids and transmitters; 0: no maps
+  std::size_t map_values_per_frame = 0;  ///< of all maps over grids; 0: none
 };
 
 class ViewerFrames;
@@ -41,8 +43,9 @@ class ViewerWriter {
 
   /// The next frame, in the order of the run. The scene must stand as the frame says.
   void add(const Frame& frame, const FrameResult& result);
-  /// A map of the frame that was added last.
-  void add(const RadioMap& map);
+  /// The maps of all transmitters over one grid or list in the frame that was added last, and what they are together.
+  /// `has_noise` says what its ratio is: SINR, or SIR.
+  void add(std::span<const RadioMap> maps, const CombinedMap& combined, bool has_noise);
 
   /// After the last frame: writes the file. Returns what was left out, a line each, as the page has it.
   /// Throws `OutputError`.

@@ -3,10 +3,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "tests/io/temporary_folder.hpp"
@@ -228,24 +230,92 @@ TEST_CASE("the same results give the same bytes") {
   CHECK(page_of(7, 5, {60, 5}).bytes == page_of(7, 5, {60, 5}).bytes);
 }
 
-TEST_CASE("a map stands in the page point by point, with what is inside an object marked") {
+TEST_CASE("what paths touch stands in the page once, in the axes of its object") {
   DCEM_NEEDS_VIEWER();
   const TemporaryFolder folder;
   Scene scene = small_scene();
   io::OutputFolder output(folder.path());
-  io::ViewerWriter writer(output, scene, {"area", 28e9, 0, 6}, {});
-  const Frame frame = scene.frame_at(0.0, 0);
-  writer.add(frame, FrameResult{});
-  RadioMap map{ReceiverGrid{"area", {400040, 10, 1.5}, {2.0, 1.0}, {3, 2}, {}}, "mast", std::vector<RadioMapPoint>(6)};
-  for (std::size_t point = 0; point < 6; ++point) {
-    map.points[point].statistics.power_incoherent_dbm = -60.0 - static_cast<double>(point);
+  io::ViewerWriter writer(output, scene, {"drive", 28e9, 0, 0}, {});
+  const auto is_of_car = [&](const WorldWedge& wedge) { return scene.body_name(wedge.body) == "car"; };
+  const auto edge = std::find_if(scene.wedges().begin(), scene.wedges().end(), is_of_car);
+  REQUIRE(edge != scene.wedges().end());
+  const WedgeId wedge(static_cast<std::uint32_t>(edge - scene.wedges().begin()));
+  FrameResult result = result_with(0, 2);
+  for (PathContribution& path : result.links[0].paths) {
+    path.path.interactions.push_back({InteractionKind::diffraction, edge->facets[0], Vec3(400010, 5, 0), wedge, false});
   }
-  map.points[4].obstructed = true;
-  map.points[5].statistics.power_incoherent_dbm.reset();
-  writer.add(map);
-  CHECK(writer.finish().empty());
+  // The car stands across: in the world its normals and edges are others than in its own axes.
+  Frame frame = scene.frame_at(0.0, 0);
+  frame.bodies[1].placement.pose.yaw_rad = pi / 3;
+  scene.apply(frame);
+  writer.add(frame, result);
+  writer.finish();
   output.commit();
   const Page page{file_bytes(folder / "viewer.html"), {}};
+  // Both paths have the same kinds and surfaces, so they are one to the page.
+  CHECK(page.array<std::uint32_t>("ray_path") == std::vector<std::uint32_t>{0, 0});
+  CHECK(page.array<std::uint32_t>("path_surfaces") == std::vector<std::uint32_t>{0, 1});
+  CHECK(page.array<std::uint32_t>("surface_material") == std::vector<std::uint32_t>{0, 1});
+  const auto objects = page.array<std::uint32_t>("surface_object");
+  REQUIRE(objects.size() == 2);
+  CHECK(objects[0] == 0);
+  CHECK(page.head().find(R"("names":["","car",)") != std::string::npos);
+  CHECK(objects[1] == 1);
+  const auto axes = page.array<float>("surface_axes");
+  REQUIRE(axes.size() == 12);
+  CHECK(std::abs(axes[2]) == 1.0F);  // the ground
+  CHECK(std::vector<float>(axes.begin() + 3, axes.begin() + 6) == std::vector<float>{0, 0, 0});
+  const Wedge& own = scene.body(BodyId(1)).mesh.wedges[scene.wedge_number(wedge)];
+  const Vec3 along = edge_direction(own);
+  for (int axis = 0; axis < 3; ++axis) {
+    CHECK(axes[static_cast<std::size_t>(6 + axis)] == static_cast<float>(own.normal[axis]));
+    CHECK(axes[static_cast<std::size_t>(9 + axis)] == static_cast<float>(along[axis]));
+  }
+  CHECK(page.array<float>("surface_exterior") == std::vector<float>{0, 270});
+}
+
+namespace {
+
+/// −60, −61 … dBm; nothing at the last point, and the one before it is inside an object.
+RadioMap map_of(MapPlaces places, const std::string& transmitter, double first_dbm = -60.0) {
+  RadioMap map{std::move(places), transmitter, {}};
+  map.points.resize(map.places.size());
+  for (std::size_t point = 0; point < map.points.size(); ++point) {
+    map.points[point].position_m = Vec3(400000.0 + static_cast<double>(point), 25, 1.5);
+    map.points[point].statistics.power_incoherent_dbm = first_dbm - static_cast<double>(point);
+  }
+  map.points.back().statistics.power_incoherent_dbm.reset();
+  RadioMapPoint& inside = map.points[map.points.size() - 2];
+  inside.obstructed = true;
+  inside.statistics.power_incoherent_dbm.reset();
+  return map;
+}
+
+Page page_of_maps(const std::vector<std::vector<RadioMap>>& frames, std::optional<double> noise_dbm = {},
+                  const io::ViewerSettings& settings = {}, std::size_t values_per_frame = 6) {
+  const TemporaryFolder folder;
+  Scene scene = small_scene();
+  io::OutputFolder output(folder.path());
+  io::ViewerWriter writer(output, scene, {"area", 28e9, 0, values_per_frame}, settings);
+  for (std::size_t index = 0; index < frames.size(); ++index) {
+    writer.add(scene.frame_at(0.1 * static_cast<double>(index), index), FrameResult{});
+    writer.add(frames[index], combine_maps(frames[index], noise_dbm), noise_dbm.has_value());
+  }
+  Page page;
+  page.notices = writer.finish();
+  output.commit();
+  page.bytes = file_bytes(folder / "viewer.html");
+  return page;
+}
+
+const ReceiverGrid area{"area", {400040, 10, 1.5}, {2.0, 1.0}, {3, 2}, {}};
+
+}  // namespace
+
+TEST_CASE("a map stands in the page point by point, with what is inside an object marked") {
+  DCEM_NEEDS_VIEWER();
+  const Page page = page_of_maps({{map_of(area, "mast")}});
+  CHECK(page.notices.empty());
   const auto values = page.array<float>("map_values");
   REQUIRE(values.size() == 6);
   for (std::size_t point = 0; point < 4; ++point) CHECK(values[point] == -60.0F - static_cast<float>(point));
@@ -253,8 +323,69 @@ TEST_CASE("a map stands in the page point by point, with what is inside an objec
   CHECK(std::isnan(values[5]));
   CHECK(page.array<std::uint32_t>("map_obstructed") == std::vector<std::uint32_t>{1U << 4});
   // The corner of the first cell, from the ground's middle (400050, 25): half a spacing before the origin.
-  CHECK(page.head().find(R"("corner_m":[-11.0,-15.5,1.5],"spacing_m":[2.0,1.0],"columns":3,"rows":2,"first":0)") !=
+  CHECK(page.head().find(
+            R"("corner_m":[-11.0,-15.5,1.5],"spacing_m":[2.0,1.0],"columns":3,"rows":2,"first_obstructed":0,)"
+            R"("layers":[{"shows":"power","first":0,"tx":0}])") != std::string::npos);
+}
+
+TEST_CASE("several transmitters have a map each, the best server and the ratio of it to the others") {
+  DCEM_NEEDS_VIEWER();
+  std::vector<RadioMap> maps{map_of(area, "mast"), map_of(area, "roof", -70.0)};
+  maps[1].points[1].statistics.power_incoherent_dbm = -41.0;  // here the second one serves
+  const Page page = page_of_maps({maps});
+  CHECK(page.head().find(R"("layers":[{"shows":"power","first":0,"tx":0},{"shows":"power","first":6,"tx":1},)"
+                         R"({"shows":"best_server","first":12},{"shows":"sir","first":18}])") != std::string::npos);
+  const auto values = page.array<float>("map_values");
+  REQUIRE(values.size() == 24);
+  CHECK(std::vector<float>(values.begin() + 12, values.begin() + 16) == std::vector<float>{0, 1, 0, 0});
+  CHECK(std::isnan(values[16]));
+  CHECK(std::isnan(values[17]));
+  CHECK(values[18] == 10.0F);
+  CHECK(values[19] == 20.0F);
+}
+
+TEST_CASE("with noise one transmitter has a SINR, without it only its power") {
+  DCEM_NEEDS_VIEWER();
+  const Page page = page_of_maps({{map_of(area, "mast")}}, -90.0);
+  CHECK(page.head().find(R"({"shows":"sinr","first":6}])") != std::string::npos);
+  CHECK(page.head().find("best_server") == std::string::npos);
+  CHECK(page.array<float>("map_values")[6] == 30.0F);
+  CHECK(page_of_maps({{map_of(area, "mast")}}).head().find("sinr") == std::string::npos);
+}
+
+TEST_CASE("a list of points stands in the page with its places, once while it stays where it is") {
+  DCEM_NEEDS_VIEWER();
+  const RadioMap route = map_of(MapPlaces("route", 4), "mast");
+  const Page page = page_of_maps({{route}, {route}});
+  const auto points = page.array<float>("map_points");
+  CHECK(points == std::vector<float>{-50, 0, 1.5F, -49, 0, 1.5F, -48, 0, 1.5F, -47, 0, 1.5F});
+  CHECK(page.array<float>("map_values").size() == 8);
+  CHECK(page.head().find(R"({"places":"route","frame":1,"points":4,"first_point":0,"first_obstructed":4,)") !=
         std::string::npos);
+}
+
+TEST_CASE("of too large a map every second point is kept, in the middle of a cell that is twice as wide") {
+  DCEM_NEEDS_VIEWER();
+  // 5 x 4 values, and at most 10 of them.
+  const ReceiverGrid wide{"area", {400040, 10, 1.5}, {2.0, 1.0}, {5, 4}, {}};
+  const Page page = page_of_maps({{map_of(wide, "mast")}}, {}, {1, 100}, 20);
+  const auto values = page.array<float>("map_values");
+  CHECK(std::vector<float>(values.begin(), values.begin() + 5) == std::vector<float>{-60, -62, -64, -70, -72});
+  CHECK(page.head().find(R"("corner_m":[-12.0,-16.0,1.5],"spacing_m":[4.0,2.0],"columns":3,"rows":2)") !=
+        std::string::npos);
+  REQUIRE(page.notices.size() == 1);
+  CHECK(page.notices[0] == "one of every 2 points of a map along each axis is shown");
+}
+
+TEST_CASE("of too long a list every so many points are kept, and the page says so") {
+  DCEM_NEEDS_VIEWER();
+  // 9 points of three values each, and about 10 values.
+  const Page page = page_of_maps({{map_of(MapPlaces("route", 9), "mast")}}, {}, {1, 100});
+  const auto values = page.array<float>("map_values");
+  CHECK(values.size() == 3);
+  CHECK(values[1] == -63.0F);
+  REQUIRE(page.notices.size() == 1);
+  CHECK(page.notices[0] == "one of every 3 points of a list is shown");
 }
 
 TEST_CASE("a build without three.js refuses to make a page") {

@@ -51,6 +51,7 @@ function readResults() {
   data.pointCount = Uint32Array.from(head.paths, (path) => path[0].length);
   data.mechanism = Uint8Array.from(head.paths, (path) => mechanismOf(path[0]));
   data.pointStart = starts(data.ray_path.length, (i) => data.pointCount[data.ray_path[i]]);
+  data.touchStart = starts(head.paths.length, (i) => data.pointCount[i]);
   data.power = Float32Array.from(data.ray_gain);
   for (let link = 0; link < data.link_tx.length; ++link) {
     const fed = head.transmitters[data.link_tx[link]].power_dbm;
@@ -89,20 +90,4 @@ function poseEntry(data, thing, frame) {
     if (data.timeFrame[middle] <= frame) low = middle + 1; else high = middle;
   }
   return low === first ? -1 : data.timeEntry[low - 1];
-}
-
-// The ends of a colour bar: the 2nd percentile and the maximum, rounded outwards to 5 dB, as in the pictures of maps.
-function powerRange(values) {
-  const sorted = values.filter((value) => !Number.isNaN(value)).sort();
-  if (sorted.length === 0) return null;
-  const low = 5 * Math.floor(sorted[Math.floor(0.02 * (sorted.length - 1))] / 5);
-  const high = 5 * Math.ceil(sorted[sorted.length - 1] / 5);
-  return { low, high: high > low ? high : low + 5 };
-}
-
-// Red, green, blue in 0 … 255.
-function viridis(points, share) {
-  const position = Math.min(Math.max(share, 0), 1) * (points.length - 1);
-  const lower = Math.min(Math.floor(position), points.length - 2);
-  return points[lower].map((value, i) => value + (position - lower) * (points[lower + 1][i] - value));
 }

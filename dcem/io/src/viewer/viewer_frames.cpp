@@ -73,7 +73,7 @@ std::vector<Candidate> candidates_of(const LinkResult& link) {
   return candidates;
 }
 
-ViewedRay ray_of(const Scene& scene, const Candidate& candidate) {
+ViewedRay ray_of(const Scene& scene, const Candidate& candidate, ViewedSurfaces& surfaces) {
   const Path& path = candidate.path != nullptr ? candidate.path->path : candidate.tile->path;
   ViewedRay ray{kinds(path),
                 candidate.path != nullptr ? path_id(scene, path) : tile_id(scene, *candidate.tile),
@@ -81,22 +81,15 @@ ViewedRay ray_of(const Scene& scene, const Candidate& candidate) {
                 power_ratio_to_db(candidate.power_ratio),
                 candidate.path != nullptr ? candidate.path->doppler_hz : candidate.tile->sample.doppler_hz,
                 {}};
-  for (const Interaction& interaction : path.interactions) ray.points_m.push_back(interaction.point_m);
+  for (const Interaction& interaction : path.interactions)
+    ray.touches.push_back({interaction.point_m, surfaces.number_of(scene, interaction)});
   return ray;
-}
-
-ViewedLink link_of(const Scene& scene, const LinkResult& link, std::size_t most_rays) {
-  const std::vector<Candidate> candidates = candidates_of(link);
-  ViewedLink viewed{link.transmitter, link.receiver, link.statistics, candidates.size(), {}};
-  const std::size_t count = std::min(candidates.size(), most_rays);
-  for (std::size_t index = 0; index < count; ++index) viewed.rays.push_back(ray_of(scene, candidates[index]));
-  return viewed;
 }
 
 }  // namespace
 
-ViewerFrames::ViewerFrames(std::size_t map_points_per_frame, const ViewerSettings& settings) : settings_(settings) {
-  while (map_points_per_frame / (map_step_ * map_step_) > 10 * settings.max_rays) ++map_step_;
+ViewerFrames::ViewerFrames(std::size_t map_values_per_frame, const ViewerSettings& settings) : settings_(settings) {
+  while (map_values_per_frame / (map_step_ * map_step_) > 10 * settings.max_rays) ++map_step_;
 }
 
 void ViewerFrames::add(const Scene& scene, const Frame& frame, const FrameResult& result) {
@@ -110,30 +103,30 @@ void ViewerFrames::add(const Scene& scene, const Frame& frame, const FrameResult
   if (result.links.size() > most_links) most_links_ = std::max(most_links_, result.links.size());
   for (const LinkResult& link : result.links) {
     if (kept.links.size() == most_links) break;
-    kept.links.push_back(link_of(scene, link, std::min(paths_per_link_, settings_.max_rays)));
+    kept.links.push_back(view_of_link(scene, link));
   }
   frames_.push_back(std::move(kept));
   keep_bounds();
 }
 
-void ViewerFrames::add(const RadioMap& map) {
-  if (!keeps_last_) return;
-  const ReceiverGrid& grid = map.grid();
-  const Vec3 corner_m = grid.origin_m - 0.5 * Vec3(grid.spacing_m[0], grid.spacing_m[1], 0.0);
-  const double step = static_cast<double>(map_step_);
-  ViewedMap viewed{grid.id, map.transmitter, corner_m, {step * grid.spacing_m[0], step * grid.spacing_m[1]}, 0, 0, {},
-                   {}};
-  viewed.columns = (grid.columns() + map_step_ - 1) / map_step_;
-  viewed.rows = (grid.rows() + map_step_ - 1) / map_step_;
-  for (std::size_t row = 0; row < grid.rows(); row += map_step_) {
-    for (std::size_t column = 0; column < grid.columns(); column += map_step_) {
-      const RadioMapPoint& point = map.points[row * grid.columns() + column];
-      const auto power_dbm = point.obstructed ? std::nullopt : point.statistics.power_incoherent_dbm;
-      viewed.power_dbm.push_back(power_dbm ? static_cast<float>(*power_dbm) : std::numeric_limits<float>::quiet_NaN());
-      viewed.obstructed.push_back(point.obstructed);
-    }
+ViewedLink ViewerFrames::view_of_link(const Scene& scene, const LinkResult& link) {
+  const std::vector<Candidate> candidates = candidates_of(link);
+  ViewedLink viewed{link.transmitter, link.receiver, link.statistics, candidates.size(), {}};
+  const std::size_t count = std::min({candidates.size(), paths_per_link_, settings_.max_rays});
+  for (std::size_t index = 0; index < count; ++index)
+    viewed.rays.push_back(ray_of(scene, candidates[index], surfaces_));
+  return viewed;
+}
+
+void ViewerFrames::add(std::span<const RadioMap> maps, const CombinedMap& combined, bool has_noise) {
+  if (!keeps_last_ || maps.empty()) return;
+  const MapPlaces& places = maps.front().places;
+  std::size_t step = map_step_;
+  if (!places.is_grid()) {
+    step = 1 + places.size() * (maps.size() + 2) / (10 * settings_.max_rays);
+    list_step_ = std::max(list_step_, step);
   }
-  frames_.back().maps.push_back(std::move(viewed));
+  frames_.back().maps.push_back(view_of_maps(maps, combined, has_noise, step));
   keep_bounds();
 }
 
@@ -158,7 +151,7 @@ std::size_t ViewerFrames::rays(std::size_t most_per_link) const {
 std::size_t ViewerFrames::map_values() const {
   std::size_t sum = 0;
   for (const ViewedFrame& frame : frames_) {
-    for (const ViewedMap& map : frame.maps) sum += map.power_dbm.size();
+    for (const ViewedMap& map : frame.maps) sum += map.value_count();
   }
   return sum;
 }
@@ -223,6 +216,7 @@ std::vector<std::string> ViewerFrames::notices() const {
   }
   if (map_step_ > 1)
     lines.push_back("one of every " + std::to_string(map_step_) + " points of a map along each axis is shown");
+  if (list_step_ > 1) lines.push_back("one of every " + std::to_string(list_step_) + " points of a list is shown");
   return lines;
 }
 

@@ -1,18 +1,25 @@
 #pragma once
 /// What the viewer keeps of a run, within its bounds. Private to dcem::io.
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "dcem/channel/radio_map.hpp"
 #include "dcem/io/scenario.hpp"
+#include "dcem/io/src/viewer/viewed_map.hpp"
+#include "dcem/io/src/viewer/viewed_surfaces.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
 
 namespace dcem::io {
+
+/// Where a path meets a surface.
+struct ViewedTouch {
+  Vec3 point_m{0.0};
+  std::uint32_t surface = 0;  ///< number in `ViewerFrames::surfaces()`
+};
 
 /// A path as the viewer shows it. Its ends are where the devices are.
 struct ViewedRay {
@@ -20,7 +27,7 @@ struct ViewedRay {
   double length_m = 0.0;
   double gain_db = 0.0;  ///< −∞ where no power arrives
   double doppler_hz = 0.0;
-  std::vector<Vec3> points_m;
+  std::vector<ViewedTouch> touches;
 };
 
 struct ViewedLink {
@@ -39,15 +46,6 @@ struct ViewedPose {
   friend bool operator==(const ViewedPose&, const ViewedPose&) = default;
 };
 
-struct ViewedMap {
-  std::string grid, transmitter;
-  Vec3 corner_m{0.0};  ///< the lower left corner of the first cell
-  std::array<double, 2> spacing_m{1.0, 1.0};
-  std::size_t columns = 0, rows = 0;
-  std::vector<float> power_dbm;  ///< incoherent; NaN where nothing arrives
-  std::vector<bool> obstructed;
-};
-
 struct ViewedFrame {
   std::size_t index = 0;
   double time_s = 0.0;
@@ -61,17 +59,19 @@ struct ViewedFrame {
 /// for all links, and every so many frames.
 class ViewerFrames {
  public:
-  ViewerFrames(std::size_t map_points_per_frame, const ViewerSettings& settings);
+  ViewerFrames(std::size_t map_values_per_frame, const ViewerSettings& settings);
 
   void add(const Scene& scene, const Frame& frame, const FrameResult& result);
-  void add(const RadioMap& map);
+  void add(std::span<const RadioMap> maps, const CombinedMap& combined, bool has_noise);
 
   const std::vector<ViewedFrame>& frames() const { return frames_; }
+  const ViewedSurfaces& surfaces() const { return surfaces_; }
   std::size_t seen() const { return seen_; }  ///< frames, those that were left out among them
   /// What was left out, a line each.
   std::vector<std::string> notices() const;
 
  private:
+  ViewedLink view_of_link(const Scene& scene, const LinkResult& link);
   void keep_bounds();
   void limit_paths();
   void thin_frames();
@@ -82,13 +82,15 @@ class ViewerFrames {
   std::size_t map_values() const;
 
   ViewerSettings settings_;
-  std::size_t step_ = 1;  // every so many frames is kept
-  std::size_t map_step_ = 1;
+  std::size_t step_ = 1;       // every so many frames is kept
+  std::size_t map_step_ = 1;   // along each axis of a grid
+  std::size_t list_step_ = 1;  // of the longest list
   std::size_t seen_ = 0;
   std::size_t paths_per_link_ = std::numeric_limits<std::size_t>::max();
   std::size_t most_links_ = 0;  // in a frame that had too many
   bool keeps_last_ = false;
   std::vector<ViewedFrame> frames_;
+  ViewedSurfaces surfaces_;        // also those of paths that were left out since
   std::vector<ViewedPose> last_;   // of every thing
   std::vector<ViewedPose> carry_;  // changes of frames that were dropped since the last kept one
 };

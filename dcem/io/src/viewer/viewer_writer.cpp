@@ -16,7 +16,7 @@ ViewerWriter::ViewerWriter(OutputFolder& folder, const Scene& scene, ViewerFacts
     : file_(folder.open("viewer.html")),
       scene_(scene),
       facts_(std::move(facts)),
-      frames_(std::make_unique<ViewerFrames>(facts_.map_points_per_frame, settings)) {
+      frames_(std::make_unique<ViewerFrames>(facts_.map_values_per_frame, settings)) {
   if (!viewer_is_built_in())
     throw std::invalid_argument("viewer: this build has none; expected three.js at build time");
 }
@@ -27,8 +27,8 @@ void ViewerWriter::add(const Frame& frame, const FrameResult& result) {
   frames_->add(scene_, frame, result);
 }
 
-void ViewerWriter::add(const RadioMap& map) {
-  frames_->add(map);
+void ViewerWriter::add(std::span<const RadioMap> maps, const CombinedMap& combined, bool has_noise) {
+  frames_->add(maps, combined, has_noise);
 }
 
 std::vector<std::string> ViewerWriter::finish() {
