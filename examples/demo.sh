@@ -24,5 +24,5 @@ build/release/bin/dcem map data/office_map.json -o out/office_map
 step "Done. Results are in $PWD/out; open these:"
 find "$PWD/out/town_drive" -name '*.html'
 find "$PWD/out/office_map" -name '*.png' | sort
-echo "and, for each link of the drive, power over time (plot_*.svg), its delay profile (pdp_*) and its paths (taps_*.png), such as:"
+echo "and, for each link of the drive, power over time (plot_*.svg; for a paper panels_*.pdf), its delay profile (pdp_*) and its paths (taps_*.png), such as:"
 find "$PWD/out/town_drive" -name '*_roof_on_car1*' | sort

@@ -74,10 +74,10 @@ std::vector<dcem::Vec3> around_the_corner() {
 }
 
 void draw(const dcem::io::LinkPlots& plots, const std::string& name) {
-  dcem::io::write_heat_map_png(plots.profile().value(), name + "_pdp.png");
-  dcem::io::write_scatter_chart_png(plots.taps().value(), name + "_taps.png");
+  dcem::io::write_heat_map(plots.profile().value(), name + "_pdp.png");
+  dcem::io::write_scatter_chart(plots.taps().value(), name + "_taps.png");
   const std::vector<dcem::io::LineChart> charts = plots.charts();
-  dcem::io::write_line_chart_svg(charts, name + ".svg");
+  dcem::io::write_line_charts(charts, name + ".svg");
 }
 
 void drive(const std::string& name, const std::vector<dcem::Vec3>& points_m) {

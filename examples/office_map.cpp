@@ -40,8 +40,8 @@ int main() {
     all.push_back(&map);
     const std::string picture = "office_" + map.transmitter + ".png";
     const dcem::Frame frame = simulator.scene().frame_at(scenario.time_s(0));
-    dcem::io::write_heat_map_png(dcem::io::map_picture(map, simulator.scene(), frame, scenario.settings.frequency_hz),
-                                 picture);
+    dcem::io::write_heat_map(dcem::io::map_picture(map, simulator.scene(), frame, scenario.settings.frequency_hz),
+                             picture);
     std::printf("%-10s covers %5.1f %% of the floor at %.0f dBm: %s\n", map.transmitter.c_str(),
                 100.0 * covered_share({&map}, threshold_dbm), threshold_dbm, picture.c_str());
   }

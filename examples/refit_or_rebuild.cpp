@@ -130,7 +130,7 @@ void draw(const std::vector<Contender>& contenders, const char* file) {
     cost.series.push_back({contender.name, time_s, std::move(ratio)});
   }
   const std::vector<dcem::io::LineChart> charts{steps, cost};
-  dcem::io::write_line_chart_svg(charts, file);
+  dcem::io::write_line_charts(charts, file);
 }
 
 /// The drive with one kind of tree under three policies; the first has a new tree in every frame. Empty where hits

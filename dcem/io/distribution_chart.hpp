@@ -24,7 +24,7 @@ struct DistributionLabels {
   std::string members = "points";
 };
 
-/// Pairs of charts for `line_chart_svg`: the histogram as steps, in at most 60 bins whose width is 1, 2 or 5 · 10^n,
+/// Pairs of charts for `write_line_charts`: the histogram as steps, in at most 60 bins whose width is 1, 2 or 5 · 10^n,
 /// and the share of members whose value is at most x, both in percent of all members. Members without a value count as
 /// lower than any: then the cumulated share begins above zero, and the bins sum to less than 100 %. All pairs have the
 /// same bins; a pair shows up to `maximum_chart_series` distributions. A distribution without values has no line, and

@@ -3,7 +3,7 @@
 ///
 /// The picture has axes in metres at true aspect ratio, or two axes of other quantities, each at its own scale; a
 /// colour bar with ticks and unit, a title, walls, transmitters and a legend. One grid point is one block of equal
-/// pixels, never blended with its neighbours.
+/// pixels, never blended with its neighbours, unless `refined` has put finer ones between the points.
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -13,6 +13,7 @@
 
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/image.hpp"
+#include "dcem/io/picture_format.hpp"
 
 namespace dcem::io {
 
@@ -29,8 +30,16 @@ struct HeatMapAxes {
   std::string y_label = "y";
   std::string y_unit = "m";
   /// A metre is as long along x as along y. False for axes that have nothing in common, such as time and delay: the
-  /// plot then is about 800 × 400 pixels, and all that this header names with `_m` is in `x_unit` or `y_unit`.
+  /// plot then is about 1280 × 640 pixels, and all that this header names with `_m` is in `x_unit` or `y_unit`.
   bool to_scale = true;
+};
+
+/// Light on what stands on the ground, seen from above: tones over the whole plot, row by row, that of the smallest y
+/// first; 0 is in the shade, 1 in full light.
+struct Relief {
+  std::size_t columns = 0;
+  std::size_t rows = 0;
+  std::vector<float> tones{};
 };
 
 /// A map to be drawn. Grid point (column, row) lies at (origin_x_m + column · spacing_x_m, origin_y_m + row ·
@@ -57,6 +66,10 @@ struct HeatMap {
   std::vector<double>
       values;  // in `unit`, row by row, the row of the smallest y first; not finite, or beyond ±1e100: no value
   std::vector<char> hatched;  // empty, or one per value; not 0 = inside an object or on a wall, hatched
+  Relief relief{};            // shows in hatched cells; without tones they have an even ground
+  /// Lines where the value, linear between the points, is a multiple of this, in `unit`; absent: none. None either
+  /// where there are categories, or more than 1,000 levels.
+  std::optional<double> contour_step{};
   std::vector<std::array<double, 4>> walls_m;  // segments x0, y0, x1, y1
   std::vector<Marker> transmitters;
   std::optional<ValueRange> range;  // ends of the colour bar; default: `default_value_range`
@@ -72,7 +85,16 @@ struct HeatMap {
 /// Throws as `heat_map_layout`.
 std::optional<ValueRange> default_value_range(const HeatMap& map);
 
-/// Where the parts of the picture lie.
+/// The same for the values of several maps that are to have the same colours.
+std::optional<ValueRange> value_range(std::vector<double> values, const std::string& unit);
+
+/// The map with `factor` × `factor` cells in place of each, linear between the points along both axes; within half a
+/// cell of the rim, and beside points without a value, from those that there are. Cells without a value and hatched
+/// ones stay as they are. Throws std::invalid_argument for a factor of zero and for categories; otherwise as
+/// `heat_map_layout`.
+HeatMap refined(const HeatMap& map, std::size_t factor);
+
+/// Where the parts of the picture lie, in pixels of the PNG. SVG and PDF have 192 of them to the inch.
 struct HeatMapLayout {
   int width_px = 0;
   int height_px = 0;
@@ -92,22 +114,24 @@ struct HeatMapLayout {
   }
 };
 
-/// The layout that `draw_heat_map` uses. The longer side of the plot is about 800 pixels: a whole number of pixels per
-/// cell (at most 240), one pixel per cell for up to 1,500 cells, and one cell of k × k, its middle one, beyond. Axes
-/// that are not to scale each follow this rule on their own, the upright one for 400 pixels.
+/// The layout of the picture. The longer side of the plot is about 1280 pixels: a whole number of pixels per
+/// cell (at most 400), one pixel per cell for up to 2,000 cells, and one cell of k × k, its middle one, beyond. Axes
+/// that are not to scale each follow this rule on their own, the upright one for 640 pixels.
 /// Throws `std::invalid_argument` where sizes do not fit together, a spacing lies outside 1e-6…1e9 m or is lost beside
 /// its origin (below 1e-12 of it), a coordinate is not finite, the range is empty, or a value is no number of a
 /// category.
 HeatMapLayout heat_map_layout(const HeatMap& map);
 
-/// Draws the map. Values outside the colour range take the colour of its end, and the bar then ends in a tip.
-/// Cells without a value are light grey; cells in objects are hatched; the legend below says what of this occurs.
-/// Labels of transmitters that find no free place are left out, the symbols stay. Throws as `heat_map_layout`.
-Image draw_heat_map(const HeatMap& map);
+/// The cells alone, without axes and text, as many pixels as in the layout's plot. Values outside the colour range take
+/// the colour of its end; cells without a value are light grey, cells in objects are hatched.
+Image draw_cells(const HeatMap& map);
 
-/// `draw_heat_map` into a file that appears only when complete. Throws `OutputError`.
-void write_heat_map_png(const HeatMap& map, const std::filesystem::path& path);
+/// Draws the map into a file that appears only when complete; its ending says the format. Where values lie outside the
+/// colour range the bar ends in a tip; the legend below says what there is to see. Labels of transmitters that find no
+/// free place are left out, the symbols stay. Without Cairo a PNG has the cells alone, and other formats are refused.
+/// Throws as `heat_map_layout` and `picture_format_of`, and `OutputError`.
+void write_heat_map(const HeatMap& map, const std::filesystem::path& path);
 /// The same into a file of an `OutputFolder`; the caller commits.
-void write_heat_map_png(const HeatMap& map, AtomicFile& file);
+void write_heat_map(const HeatMap& map, AtomicFile& file, PictureFormat format);
 
 }  // namespace dcem::io

@@ -1,7 +1,7 @@
 #pragma once
-/// Line charts as SVG: a result over time, several runs side by side.
+/// Line charts: a result over time, several runs side by side, panels of a drive on one page.
 ///
-/// The bytes depend on the chart alone. Colours are those of Okabe and Ito (2002), which colour-blind readers can tell
+/// Colours are those of Okabe and Ito (2002), which colour-blind readers can tell
 /// apart; each line has dashes of its own as well.
 #include <cstddef>
 #include <filesystem>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dcem/io/atomic_file.hpp"
+#include "dcem/io/picture_format.hpp"
 
 namespace dcem::io {
 
@@ -41,16 +42,19 @@ struct LineChart {
 /// So many lines have a colour and dashes of their own.
 inline constexpr std::size_t maximum_chart_series = 7;
 
-/// The SVG text of charts, one below the other, each about 800 × 400 pixels with its legend on the right. The frame of
-/// each plot is a `rect` of class "plot", each line a `polyline` or, for a value alone, a `circle`, of class "series".
+/// Draws charts, one below the other, each with a plot of about 1200 × 480 pixels (of the PNG; SVG and PDF have 192 of
+/// them to the inch) and its legend on the right.
 /// Throws std::invalid_argument without a chart, for a chart without series or with too many, for x and y of different
 /// lengths, for x that descends or is NaN, for numbers that are infinite or beyond ±1e100, and for values on a
-/// logarithmic axis that are not above zero (1e-100 at least).
-std::string line_chart_svg(std::span<const LineChart> charts);
-/// The same for a single chart.
-std::string line_chart_svg(const LineChart& chart);
+/// logarithmic axis that are not above zero (1e-100 at least); `OutputError` also where this build cannot draw.
+void write_line_charts(std::span<const LineChart> charts, AtomicFile& file, PictureFormat format);
+/// The same into a file that appears only when complete; its ending says the format.
+void write_line_charts(std::span<const LineChart> charts, const std::filesystem::path& path);
 
-/// `line_chart_svg` into a file that appears only when complete. Throws as that does, and `OutputError`.
-void write_line_chart_svg(std::span<const LineChart> charts, const std::filesystem::path& path);
+/// Draws charts over the same x as panels (a), (b), (c)… of one page 17 cm wide, the width of a page of a paper, under
+/// one title: one x axis below, the legend of each panel above it. The x axis spans all of their values. Throws as
+/// `write_line_charts`.
+void write_panels(const std::string& title, std::span<const LineChart> charts, AtomicFile& file, PictureFormat format);
+void write_panels(const std::string& title, std::span<const LineChart> charts, const std::filesystem::path& path);
 
 }  // namespace dcem::io

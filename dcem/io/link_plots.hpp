@@ -45,6 +45,12 @@ class LinkPlots {
   /// Doppler; how many paths are new, gone or kept since the frame before, by their ids.
   std::vector<LineChart> charts() const;
 
+  /// The three that papers print of a drive: received power, rms delay spread and Doppler, for `write_panels`.
+  std::vector<LineChart> panels() const;
+
+  /// "mast to car".
+  std::string name() const { return names_.transmitter + " to " + names_.receiver; }
+
   /// Power over time and delay. Of more than 1000 frames, neighbours are joined to their mean power; of more than 280
   /// bins, neighbours to their sum; the title says so. Taps more than 70 dB below the
   /// strongest are left out. Nothing where no power arrives in any frame.
@@ -80,6 +86,9 @@ class LinkPlots {
   LineChart::Series series(const char* name, double scale, Value&& value) const;
   template <typename Visit>
   void each_strong_tap(Visit&& visit) const;
+  LineChart power_chart() const;
+  LineChart spread_chart() const;
+  LineChart doppler_chart() const;
   LineChart mechanism_chart() const;
   LineChart count_chart() const;
   LineChart chart(const char* what, const char* label, const char* unit) const;

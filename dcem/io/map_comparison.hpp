@@ -37,8 +37,8 @@ struct MapComparison {
 /// Places are rounded to whole micrometres and then compared. Without a place that has two values both lists are empty.
 MapComparison compare_maps(const MapColumn& first, const MapColumn& second);
 
-/// Charts for `line_chart_svg`: the distribution of |a − b|/|b|, whose last bin holds everything above 2, and that of
-/// a − b in dB. Precondition: at least one place has two values.
+/// Charts for `write_line_charts`: the distribution of |a − b|/|b|, whose last bin holds everything above 2, and that
+/// of a − b in dB. Precondition: at least one place has two values.
 std::vector<LineChart> comparison_charts(const MapComparison& comparison, const std::string& title);
 
 }  // namespace dcem::io

@@ -42,6 +42,10 @@ void write_map_asc(AtomicFile& file, const RadioMap& map);
 HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame, double frequency_hz,
                     std::optional<double> time_s = {});
 
+/// Light and shade on what stands higher than a grid, seen from above: matt surfaces, light from the north-west that
+/// falls under 45°, no shadows cast. As many tones as 1280 along the longer side.
+Relief map_relief(const ReceiverGrid& grid, const Scene& scene);
+
 /// Where the triangles of the scene meet the horizontal plane at `height_m`: segments x0, y0, x1, y1 in metres. A
 /// corner that lies exactly on the plane counts as below it, so the cut is that of a plane a hair higher: each triangle
 /// gives one segment or none, the outlines of closed bodies stay closed, and a wall that ends at the plane is not

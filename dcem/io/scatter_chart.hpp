@@ -1,8 +1,7 @@
 #pragma once
 /// Dots over two axes, joined where they belong together: the delays of paths over time.
 ///
-/// A dot has one colour per trace, so that a trace can be followed, and a size that says how large its value is. The
-/// bytes depend on the chart alone.
+/// A dot has one colour per trace, so that a trace can be followed, and a size that says how large its value is.
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/image.hpp"
+#include "dcem/io/picture_format.hpp"
 
 namespace dcem::io {
 
@@ -38,13 +38,10 @@ struct ScatterChart {
 /// The same number has the same colour in every picture; neighbouring numbers need not differ.
 Colour trace_colour(std::uint64_t trace);
 
-/// Draws the chart, about 1000 × 650 pixels, the largest dots on top. Throws std::invalid_argument without a dot, and
-/// for a number that is not finite or beyond ±1e100.
-Image draw_scatter_chart(const ScatterChart& chart);
-
-/// `draw_scatter_chart` into a file that appears only when complete. Throws as that does, and `OutputError`.
-void write_scatter_chart_png(const ScatterChart& chart, const std::filesystem::path& path);
-/// The same into a file of an `OutputFolder`; the caller commits.
-void write_scatter_chart_png(const ScatterChart& chart, AtomicFile& file);
+/// Draws the chart, about 1500 × 1000 pixels of the PNG, the largest dots on top. Throws std::invalid_argument without
+/// a dot, and for a number that is not finite or beyond ±1e100; `OutputError` also where this build cannot draw.
+void write_scatter_chart(const ScatterChart& chart, AtomicFile& file, PictureFormat format);
+/// The same into a file that appears only when complete; its ending says the format.
+void write_scatter_chart(const ScatterChart& chart, const std::filesystem::path& path);
 
 }  // namespace dcem::io

@@ -8,6 +8,8 @@
 
 #include "dcem/channel/power_delay_profile.hpp"
 #include "dcem/channel/thermal_noise.hpp"
+#include "dcem/io/heat_map.hpp"
+#include "dcem/io/picture_format.hpp"
 #include "dcem/io/traffic.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/settings.hpp"
@@ -30,10 +32,19 @@ struct TimeSettings {
 /// Which files `dcem map` writes of each map.
 struct MapOutputs {
   bool csv = true;
-  bool png = true;
   bool npz = true;
   bool asc = true;
-  bool svg = true;  ///< the distribution over the points
+  PictureFormats pictures{};  ///< of maps and of the distribution over the points
+};
+
+/// How maps are drawn.
+struct MapPictureSettings {
+  /// Of the colours of power. Absent: chosen by the first frame with a value, the same for all its maps and all later
+  /// ones of the run.
+  std::optional<ValueRange> range_dbm{};
+  std::optional<double> contours_db{};  ///< lines at its multiples, of powers and SINR; absent: none
+  std::size_t finer_cells = 1;          ///< so many along each axis of a cell, interpolated between the points
+  bool hillshade = true;                ///< light and shade on what is inside of objects
 };
 
 /// How much a page of results may hold, so that a browser opens a day's trace, too.
@@ -60,7 +71,9 @@ struct OutputSettings {
   bool plots = false;
   std::size_t plots_max_links = 20;              ///< so many links have pictures, the first ones
   std::optional<std::size_t> plots_pdp_frame{};  ///< frame of the single power delay profile; default: the middle one
+  PictureFormats plots_formats{};                ///< of the pictures of links
   MapOutputs map{};
+  MapPictureSettings map_pictures{};
   bool html = false;
   ViewerSettings viewer{};
   std::optional<std::size_t> paths_top{};  ///< of each link so many are listed, the strongest; absent: all
@@ -70,7 +83,7 @@ struct OutputSettings {
 /// What the command line may override. Absent: the scenario file decides.
 struct ScenarioOverrides {
   std::optional<std::string> discovery;  ///< "exact" or "sampled"
-  std::optional<std::string> cache;      ///< "off"; anything else is not in this version
+  std::optional<std::string> cache;      ///< "off", "seed" or "exact"
   std::optional<long long> rays;
   std::optional<long long> seed;
   std::optional<std::string> output;  ///< KEY[,KEY…] in place of the file's `output` keys

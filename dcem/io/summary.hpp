@@ -21,7 +21,7 @@ struct RunFacts {
   std::string scenario;  ///< its name
   SimulationSettings settings;
   Discovery discovery = Discovery::sampled;  ///< how paths are found: exact or sampled
-  CacheMode cache = CacheMode::off;          ///< what is remembered from frame to frame: off or seed
+  CacheMode cache = CacheMode::off;          ///< what is remembered from frame to frame
   TimeSettings time;
   std::size_t receivers = 0;          ///< points of grids included
   std::vector<std::string> warnings;  ///< one line each

@@ -74,7 +74,7 @@ dcem::io::LineChart chart(std::string title, std::string x_label, std::string x_
 }
 
 void draw(const std::vector<dcem::io::LineChart>& charts, const char* name) {
-  dcem::io::write_line_chart_svg(charts, std::string("diffraction_") + name + ".svg");
+  dcem::io::write_line_charts(charts, std::string("diffraction_") + name + ".svg");
 }
 
 /// A logarithmic axis has no place for 0.

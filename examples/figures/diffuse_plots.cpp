@@ -50,12 +50,12 @@ void draw_maps(const dcem::io::Scenario& scenario) {
   gain.unit = "dB";
   gain.range.reset();
   for (std::size_t cell = 0; cell < gain.values.size(); ++cell) gain.values[cell] = on.values[cell] - off.values[cell];
-  dcem::io::write_heat_map_png(off, "diffuse_office_off.png");
-  dcem::io::write_heat_map_png(on, "diffuse_office_on.png");
-  dcem::io::write_heat_map_png(gain, "diffuse_office_gain.png");
+  dcem::io::write_heat_map(off, "diffuse_office_off.png");
+  dcem::io::write_heat_map(on, "diffuse_office_on.png");
+  dcem::io::write_heat_map(gain, "diffuse_office_gain.png");
 }
 
-/// Vertical lines, which a chart draws as a line that falls to the floor between two bins.
+/// Vertical lines, which a chart draws as lines with gaps; from the top, so that dashes begin there.
 /// `place` is where in its bin a bar stands, so that two of them can be told apart.
 dcem::io::LineChart::Series bars(const std::string& name, const std::vector<dcem::PdpTap>& taps, double place,
                                  double (*power)(const dcem::PdpTap&), double power_dbm) {
@@ -64,7 +64,7 @@ dcem::io::LineChart::Series bars(const std::string& name, const std::vector<dcem
     const double level_dbm = power(tap) > 0.0 ? power_dbm + dcem::power_ratio_to_db(power(tap)) : nothing;
     const double delay_ns = 1e9 * (tap.delay_s + place * bin_s);
     if (!(level_dbm > floor_dbm)) continue;
-    for (const double value : {floor_dbm, level_dbm, nothing}) {
+    for (const double value : {level_dbm, floor_dbm, nothing}) {
       series.x.push_back(delay_ns);
       series.y.push_back(value);
     }
@@ -95,7 +95,7 @@ void draw_profile(const dcem::io::Scenario& scenario) {
   chart.y_unit = "dBm";
   chart.series = {bars("specular paths", taps, 0.35, specular, power_dbm),
                   bars("diffuse", taps, 0.65, diffuse, power_dbm)};
-  dcem::io::write_line_chart_svg({&chart, 1}, "diffuse_profile.svg");
+  dcem::io::write_line_charts({&chart, 1}, "diffuse_profile.svg");
   std::printf("in the room: %.1f dBm specular, %.1f dBm diffuse, %zu tiles\n",
               power_dbm + dcem::power_ratio_to_db(dcem::power_moments(power_samples(link.paths, {}))->power_ratio),
               *link.statistics.power_diffuse_dbm, link.diffuse.tiles.size());

@@ -1,8 +1,10 @@
 #include "command_options.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "dcem/core/instruction_set.hpp"
+#include "dcem/io/picture_format.hpp"
 
 namespace dcem::program {
 namespace {
@@ -15,7 +17,7 @@ const std::map<std::string, io::UpAxis> up_axes{{"y", io::UpAxis::y}, {"z", io::
 const std::map<std::string, InstructionSet> instruction_sets{
     {"baseline", InstructionSet::baseline}, {"avx2", InstructionSet::avx2}, {"avx512", InstructionSet::avx512}};
 const std::vector<std::string> run_outputs{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots", "html"};
-const std::vector<std::string> map_outputs{"csv", "png", "npz", "asc", "svg", "html"};
+const std::vector<std::string> map_outputs{"csv", "png", "npz", "asc", "svg", "pdf", "html"};
 
 // An option that takes one of a few words.
 template <typename Value>
@@ -36,6 +38,8 @@ void choose_instructions(const std::string& word) {
     throw UsageError(error.what(), "a level that this processor has");
   }
 }
+
+const std::vector<std::string> picture_formats{"png", "svg", "pdf"};
 
 std::string comma_list(const std::vector<std::string>& words) {
   std::string list;
@@ -101,7 +105,7 @@ void add_common_options(CLI::App& command, ScenarioOptions& options) {
 void add_cache_option(CLI::App& command, ScenarioOptions& options) {
   command
       .add_option("--cache", options.overrides.cache,
-                  "What is remembered between frames: off or seed (exact is not in this version)")
+                  "What is remembered between frames: off, seed (with sampled discovery) or exact")
       ->check(CLI::IsMember({"off", "seed", "exact"}))
       ->type_name("MODE");
 }
@@ -127,6 +131,23 @@ std::vector<std::string> words_of(const std::string& list) {
   }
   return words;
 }
+
+namespace {
+
+/// Formats of a picture, each once. Throws UsageError.
+std::vector<std::string> picture_words(const std::string& list) {
+  std::vector<std::string> words = words_of(list);
+  for (const std::string& word : words) {
+    if (!io::picture_format(word)) {
+      throw UsageError("--output: '" + word + "' is no format of a picture", "some of " + comma_list(picture_formats));
+    }
+  }
+  std::sort(words.begin(), words.end());
+  words.erase(std::unique(words.begin(), words.end()), words.end());
+  return words;
+}
+
+}  // namespace
 
 void add_run_options(CLI::App& command, ScenarioOptions& options) {
   add_common_options(command, options);
@@ -176,6 +197,11 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
   command.add_option("first", options.first, "A map (CSV)")->required()->type_name("A.csv");
   command.add_option("second", options.second, "The map it is compared with (CSV)")->required()->type_name("B.csv");
   add_folder_option(command, options.folder, "out/compare");
+  command
+      .add_option_function<std::string>(
+          "--output", [&](const std::string& list) { options.formats = picture_words(list); },
+          "Formats of the chart (default: svg)")
+      ->type_name(list_type(picture_formats));
   command.add_option("--column", options.column, "The power to compare (default: power_incoherent_dbm)")
       ->type_name("NAME");
   command.add_option("--second-column", options.second_column, "Its name in the second file, where that differs")

@@ -32,6 +32,19 @@ void print(const io::MapComparison& comparison) {
   std::cout << table.str();
 }
 
+/// The chart in each format. A build that draws none says so, and the table alone is what there is.
+void draw(const io::MapComparison& comparison, const std::string& title, const CompareOptions& options,
+          io::OutputFolder& folder) {
+  if (!io::can_draw()) {
+    std::cerr << "warning: " << io::no_drawing << "; expected " << io::drawing_expected << '\n';
+    return;
+  }
+  const std::vector<io::LineChart> charts = io::comparison_charts(comparison, title);
+  for (const std::string& word : options.formats) {
+    io::write_line_charts(charts, folder.open("comparison." + word), io::picture_format(word).value());
+  }
+}
+
 }  // namespace
 
 void compare_maps(const CompareOptions& options) {
@@ -46,7 +59,7 @@ void compare_maps(const CompareOptions& options) {
   io::OutputFolder folder(options.folder.empty() ? "out/compare" : options.folder);
   const std::string title = std::filesystem::path(options.first).filename().string() + " against " +
                             std::filesystem::path(options.second).filename().string();
-  folder.open("comparison.svg").write(io::line_chart_svg(io::comparison_charts(comparison, title)));
+  draw(comparison, title, options, folder);
   folder.commit();
   print(comparison);
 }

@@ -123,10 +123,10 @@ void print_warnings(const std::vector<std::string>& warnings, const ScenarioOpti
 }
 
 std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
-                                              std::size_t map_points_per_frame) {
+                                              std::size_t map_values_per_frame) {
   if (!job.scenario.output.html) return nullptr;
   const io::ViewerFacts facts{job.scenario.name, simulator.settings().frequency_hz, job.frames.first,
-                              map_points_per_frame};
+                              map_values_per_frame};
   return std::make_unique<io::ViewerWriter>(folder, simulator.scene(), facts, job.scenario.output.viewer);
 }
 

@@ -45,7 +45,7 @@ void print_warnings(const std::vector<std::string>& warnings, const ScenarioOpti
 
 /// The page of results, where the scenario asks for it; otherwise nothing.
 std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
-                                              std::size_t map_points_per_frame = 0);
+                                              std::size_t map_values_per_frame = 0);
 
 /// Writes the page; what it leaves out is a warning of the summary.
 void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary);

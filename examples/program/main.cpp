@@ -10,6 +10,7 @@
 #include "dcem/core/instruction_set.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/picture_format.hpp"
 #include "options.hpp"
 #include "stop_signal.hpp"
 
@@ -34,7 +35,8 @@ struct Options {
 };
 
 std::string version_text() {
-  return "dcem " DCEM_VERSION "\nrays are traced with: " + std::string(name_of(instruction_set()));
+  return "dcem " DCEM_VERSION "\nrays are traced with: " + std::string(name_of(instruction_set())) +
+         "\npictures are drawn with: " + io::drawing_library();
 }
 
 // Commands of later versions are known by name, so that the answer is not "unknown".
@@ -46,7 +48,8 @@ void add_absent_command(CLI::App& app, const std::string& name, const std::strin
 }
 
 void add_commands(CLI::App& app, Options& options) {
-  app.set_version_flag("--version", version_text, "Print the version, and which instructions trace rays");
+  app.set_version_flag("--version", version_text,
+                       "Print the version, which instructions trace rays, and what draws pictures");
   app.require_subcommand(1);
   CLI::App* run = app.add_subcommand("run", "Every frame of a scenario: paths, received power, delay profiles");
   add_run_options(*run, options.scenario);

@@ -4,6 +4,8 @@
 #include <iostream>
 #include <set>
 
+#include "dcem/channel/map_combination.hpp"
+#include "dcem/channel/thermal_noise.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/map_writer.hpp"
@@ -171,13 +173,16 @@ SamplingReport check_maps(const Simulator& simulator, const Frame& frame, const 
 }
 
 void write_maps(const FrameMaps& solved, io::OutputFolder& folder, const Job& job, const Simulator& simulator,
-                const Frame& frame, io::ViewerWriter* viewer, const std::vector<std::string>& notes) {
+                const Frame& frame, io::ViewerWriter* viewer, const std::optional<io::ValueRange>& range_dbm,
+                const std::vector<std::string>& notes) {
   if (viewer != nullptr) viewer->add(frame, solved.result);
+  std::optional<double> noise_dbm;
+  if (job.scenario.noise) noise_dbm = noise_power_dbm(*job.scenario.noise);
   for (const std::vector<RadioMap>& maps : solved.maps) {
-    for (const RadioMap& map : maps) {
-      if (viewer != nullptr && map.places.is_grid()) viewer->add(map);
-    }
-    MapFiles(folder, job, simulator, frame, notes).write(maps);
+    if (maps.empty()) continue;
+    const CombinedMap combined = combine_maps(maps, noise_dbm);
+    if (viewer != nullptr) viewer->add(maps, combined, noise_dbm.has_value());
+    MapFiles(folder, job, simulator, frame, range_dbm, notes).write(maps, combined);
   }
 }
 
@@ -189,6 +194,7 @@ std::size_t map_frames(const Job& job, const ScenarioOptions& options, const Map
   io::ProgressBar bar("points", orders.points() * job.frames.count(), progress_mode(options));
   std::optional<Frame> last;
   std::optional<SamplingReport> sampling;
+  std::optional<io::ValueRange> range_dbm = job.scenario.output.map_pictures.range_dbm;
   for (std::size_t index = job.frames.first; index < job.frames.last; ++index) {
     const Frame frame = frames.frame(simulator.scene(), index);
     const std::optional<FrameMaps> solved =
@@ -199,7 +205,8 @@ std::size_t map_frames(const Job& job, const ScenarioOptions& options, const Map
     }
     watch.look(frame);
     if (!sampling) sampling = check_maps(simulator, frame, orders, *solved);
-    write_maps(*solved, folder, job, simulator, frame, viewer, io::sampling_notes(*sampling));
+    range_dbm = shared_range_dbm(range_dbm, solved->maps);
+    write_maps(*solved, folder, job, simulator, frame, viewer, range_dbm, io::sampling_notes(*sampling));
     summary.add(solved->figures);
     summary.set_sampling(*sampling);
     last = frame;
@@ -207,19 +214,32 @@ std::size_t map_frames(const Job& job, const ScenarioOptions& options, const Map
   return job.frames.last;
 }
 
+/// Each once, in the order of the enumeration.
+void add_format(io::PictureFormat format, std::vector<io::PictureFormat>& formats) {
+  if (!io::can_draw() && format != io::PictureFormat::png) {
+    throw UsageError("--output " + std::string(io::word_of(format)) + ": " + std::string(io::no_drawing),
+                     std::string(io::drawing_expected));
+  }
+  formats.push_back(format);
+  std::sort(formats.begin(), formats.end());
+  formats.erase(std::unique(formats.begin(), formats.end()), formats.end());
+}
+
 /// `dcem map --output csv,png,html`: which files of each map are wanted, and whether the page is.
 void choose_outputs(const std::string& list, io::OutputSettings& output) {
-  output.map = {false, false, false, false, false};
+  output.map = {false, false, false, std::vector<io::PictureFormat>{}};
   output.html = false;
-  const std::vector<std::pair<std::string, bool*>> kinds{{"csv", &output.map.csv}, {"png", &output.map.png},
-                                                         {"npz", &output.map.npz}, {"asc", &output.map.asc},
-                                                         {"svg", &output.map.svg}, {"html", &output.html}};
+  const std::vector<std::pair<std::string, bool*>> kinds{
+      {"csv", &output.map.csv}, {"npz", &output.map.npz}, {"asc", &output.map.asc}, {"html", &output.html}};
   for (const std::string& word : words_of(list)) {
     const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == word; });
-    if (kind == kinds.end()) {
-      throw UsageError("--output: '" + word + "' is no file of a map", "some of csv, png, npz, asc, svg and html");
+    if (kind != kinds.end()) {
+      *kind->second = true;
+    } else if (const auto format = io::picture_format(word)) {
+      add_format(*format, *output.map.pictures);
+    } else {
+      throw UsageError("--output: '" + word + "' is no file of a map", "some of csv, png, npz, asc, svg, pdf and html");
     }
-    *kind->second = true;
   }
   if (output.html && !io::viewer_is_built_in()) {
     throw UsageError("--output html: this build has no viewer", "three.js (libjs-three) when DCEM was built");
@@ -232,12 +252,21 @@ std::vector<Device> listed_points(const std::vector<ReceiverList>& lists) {
   return points;
 }
 
-/// Pictures and rasters are of grids alone.
+/// Rasters, and pictures but for the distribution, are of grids alone.
 void require_files(const MapOrders& orders, const io::OutputSettings& output) {
   const io::MapOutputs& map = output.map;
-  if (!orders.grids.empty() || map.csv || map.npz || map.svg || output.html) return;
-  throw UsageError("--output has no effect: png and asc are of grids, and the scenario has lists of points alone",
-                   "some of csv, npz, svg and html");
+  const bool has_charts = io::can_draw() && !io::formats_or(map.pictures, io::PictureFormat::svg).empty();
+  if (!orders.grids.empty() || map.csv || map.npz || has_charts || output.html) return;
+  throw UsageError("--output has no effect: asc is of grids, and the scenario has lists of points alone",
+                   "some of csv, npz, png, svg, pdf and html");
+}
+
+/// What a build without Cairo leaves out.
+void warn_of_plain_pictures(Job& job) {
+  if (io::can_draw() || io::formats_or(job.scenario.output.map.pictures, io::PictureFormat::png).empty()) return;
+  job.scenario.warnings.push_back("output.map: " + std::string(io::no_drawing) +
+                                  "; maps are plain rasters without axes and text, and there is no distribution (" +
+                                  std::string(io::drawing_expected) + " brings them)");
 }
 
 [[noreturn]] void end_interrupted(int signal, const Job& job, std::size_t next_frame) {
@@ -263,14 +292,16 @@ void map_scenario(const ScenarioOptions& options) {
   require_effect(options, simulator);
   ResultFolder folder(job.folder, "map_summary.json", "summary.json");
   if (job.scenario.output.html) folder.require_free("viewer.html");
+  warn_of_plain_pictures(job);
   if (const auto hint = io::slow_map_hint(simulator.settings().propagation, simulator.plan(),
                                           simulator.scene().surface_count(), orders.points())) {
     job.scenario.warnings.push_back(*hint);
   }
   io::RunSummary summary(run_facts(job, simulator, simulator.plan(), orders.points()), simulator.scene());
   print_warnings(job.scenario.warnings, options);
-  const auto viewer =
-      make_viewer(folder.files(), job, simulator, orders.cells() * simulator.scene().transmitters().size());
+  // The powers, the best server and the SINR.
+  const std::size_t values_per_cell = simulator.scene().transmitters().size() + 2;
+  const auto viewer = make_viewer(folder.files(), job, simulator, orders.cells() * values_per_cell);
   const StopRequest stop;
   const std::vector<Device> listed = listed_points(lists);
   io::PlacementWatch watch(options.scenario, simulator, listed, job.scenario.grids);

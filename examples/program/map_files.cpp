@@ -1,7 +1,8 @@
 #include "map_files.hpp"
 
-#include "dcem/channel/map_combination.hpp"
-#include "dcem/channel/thermal_noise.hpp"
+#include <algorithm>
+#include <utility>
+
 #include "dcem/io/map_distribution.hpp"
 #include "dcem/io/map_writer.hpp"
 
@@ -15,6 +16,21 @@ std::optional<std::size_t> numbered(const Job& job, std::size_t frame) {
 
 }  // namespace
 
+std::optional<io::ValueRange> shared_range_dbm(const std::optional<io::ValueRange>& before,
+                                               const std::vector<std::vector<RadioMap>>& maps) {
+  if (before) return before;
+  std::vector<double> powers_dbm;
+  for (const std::vector<RadioMap>& of_one_place : maps) {
+    for (const RadioMap& map : of_one_place) {
+      for (const RadioMapPoint& point : map.points) {
+        const std::optional<double>& power_dbm = point.statistics.power_incoherent_dbm;
+        if (power_dbm && !point.obstructed && map.places.is_grid()) powers_dbm.push_back(*power_dbm);
+      }
+    }
+  }
+  return io::value_range(std::move(powers_dbm), "dBm");
+}
+
 template <typename Write>
 void MapFiles::put(const std::string& name, Write&& write) {
   io::AtomicFile& file = folder_.open(name);
@@ -23,26 +39,53 @@ void MapFiles::put(const std::string& name, Write&& write) {
 }
 
 MapFiles::MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& simulator, const Frame& frame,
-                   std::vector<std::string> notes)
+                   std::optional<io::ValueRange> range_dbm, std::vector<std::string> notes)
     : folder_(folder),
       wanted_(job.scenario.output.map),
+      style_(job.scenario.output.map_pictures),
+      range_dbm_(range_dbm),
       scene_(simulator.scene()),
       frame_(frame),
       number_(numbered(job, frame.index)),
       time_s_(number_ ? std::optional(frame.time_s) : std::nullopt),
       frequency_hz_(simulator.settings().frequency_hz),
-      notes_(std::move(notes)) {
-  if (job.scenario.noise) noise_dbm_ = noise_power_dbm(*job.scenario.noise);
+      has_noise_(job.scenario.noise.has_value()),
+      notes_(std::move(notes)) {}
+
+void MapFiles::write(const std::vector<RadioMap>& maps, const CombinedMap& combined) {
+  relief_ = relief_of(combined);
+  for (const RadioMap& map : maps) write_one(map);
+  write_best_server(combined);
+  if (io::has_sinr(combined, has_noise_)) write_sinr(combined);
+  draw_distribution(maps, combined);
 }
 
-void MapFiles::write(const std::vector<RadioMap>& maps) {
-  for (const RadioMap& map : maps) write_one(map);
-  if (maps.empty()) return;
-  const CombinedMap combined = combine_maps(maps, noise_dbm_);
-  write_best_server(combined);
-  if (io::has_sinr(combined, noise_dbm_.has_value())) write_sinr(combined);
-  const auto chart = [&](io::AtomicFile& file) { file.write(io::map_distribution_svg(maps, combined, time_s_)); };
-  if (wanted_.svg) put(name_of(combined, distribution_part) + ".svg", chart);
+/// Pictures are of grids alone, as rasters are.
+bool MapFiles::draws(const MapPlaces& places) const {
+  return places.is_grid() && !io::formats_or(wanted_.pictures, io::PictureFormat::png).empty();
+}
+
+/// Nothing where no picture shows it.
+io::Relief MapFiles::relief_of(const CombinedMap& combined) const {
+  const auto is_obstructed = [](const CombinedMapPoint& point) { return point.obstructed; };
+  const bool shows = style_.hillshade && draws(combined.places) &&
+                     std::any_of(combined.points.begin(), combined.points.end(), is_obstructed);
+  return shows ? io::map_relief(combined.grid(), scene_) : io::Relief{};
+}
+
+template <typename Draw>
+void MapFiles::put_pictures(const std::string& name, io::PictureFormat usual, Draw&& draw) {
+  for (const io::PictureFormat format : io::formats_or(wanted_.pictures, usual)) {
+    put(name + "." + std::string(io::word_of(format)), [&](io::AtomicFile& file) { draw(file, format); });
+  }
+}
+
+/// Left out where this build draws no charts.
+void MapFiles::draw_distribution(const std::vector<RadioMap>& maps, const CombinedMap& combined) {
+  if (!io::can_draw()) return;
+  const std::vector<io::LineChart> charts = io::map_distribution_charts(maps, combined, time_s_);
+  put_pictures(name_of(combined, distribution_part), io::PictureFormat::svg,
+               [&](io::AtomicFile& file, io::PictureFormat format) { io::write_line_charts(charts, file, format); });
 }
 
 std::string MapFiles::name_of(const CombinedMap& map, const char* part) const {
@@ -51,7 +94,13 @@ std::string MapFiles::name_of(const CombinedMap& map, const char* part) const {
 
 void MapFiles::draw(const std::string& name, io::HeatMap picture) {
   picture.notes = notes_;
-  put(name + ".png", [&](auto& file) { io::write_heat_map_png(picture, file); });
+  picture.relief = relief_;
+  if (picture.categories.empty()) {
+    picture.contour_step = style_.contours_db;
+    if (style_.finer_cells > 1) picture = io::refined(picture, style_.finer_cells);
+  }
+  put_pictures(name, io::PictureFormat::png,
+               [&](io::AtomicFile& file, io::PictureFormat format) { io::write_heat_map(picture, file, format); });
 }
 
 void MapFiles::write_one(const RadioMap& map) {
@@ -59,9 +108,10 @@ void MapFiles::write_one(const RadioMap& map) {
   if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_map_csv(file, map, frequency_hz_); });
   if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_map_npz(file, map, frequency_hz_); });
   if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_map_asc(file, map); });
-  if (wanted_.png && map.places.is_grid()) {
-    draw(name, io::map_picture(map, scene_, frame_, frequency_hz_, time_s_));
-  }
+  if (!draws(map.places)) return;
+  io::HeatMap picture = io::map_picture(map, scene_, frame_, frequency_hz_, time_s_);
+  picture.range = range_dbm_;
+  draw(name, std::move(picture));
 }
 
 void MapFiles::write_best_server(const CombinedMap& map) {
@@ -70,9 +120,7 @@ void MapFiles::write_best_server(const CombinedMap& map) {
   if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_best_server_npz(file, map); });
   if (wanted_.asc && map.places.is_grid())
     put(name + ".asc", [&](auto& file) { io::write_best_server_asc(file, map); });
-  if (wanted_.png && map.places.is_grid()) {
-    draw(name, io::best_server_picture(map, scene_, frame_, frequency_hz_, time_s_));
-  }
+  if (draws(map.places)) draw(name, io::best_server_picture(map, scene_, frame_, frequency_hz_, time_s_));
 }
 
 void MapFiles::write_sinr(const CombinedMap& map) {
@@ -80,9 +128,7 @@ void MapFiles::write_sinr(const CombinedMap& map) {
   if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_sinr_csv(file, map); });
   if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_sinr_npz(file, map); });
   if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_sinr_asc(file, map); });
-  if (wanted_.png && map.places.is_grid()) {
-    draw(name, io::sinr_picture(map, scene_, frame_, frequency_hz_, noise_dbm_.has_value(), time_s_));
-  }
+  if (draws(map.places)) draw(name, io::sinr_picture(map, scene_, frame_, frequency_hz_, has_noise_, time_s_));
 }
 
 }  // namespace dcem::program

@@ -60,7 +60,8 @@ struct CompareOptions {
   std::string first, second;                    ///< CSV files
   std::string column = "power_incoherent_dbm";  ///< of both, unless the second has its own
   std::string second_column;
-  std::string folder;  ///< empty: out/compare
+  std::string folder;                       ///< empty: out/compare
+  std::vector<std::string> formats{"svg"};  ///< of the chart: png, svg, pdf
 };
 
 struct KeysOptions {

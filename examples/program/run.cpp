@@ -167,7 +167,7 @@ void warn_of_plots(Job& job, std::size_t links) {
 std::optional<io::JournalReader> open_journal(const Job& job, const ScenarioOptions& options,
                                               const io::RunIdentity& identity, const Simulator& simulator) {
   if (!options.resume) return std::nullopt;
-  if (simulator.cache() == CacheMode::off) {
+  if (simulator.cache() != CacheMode::seed) {
     return std::optional<io::JournalReader>(std::in_place, job.folder, identity, options.scenario);
   }
   print_warnings({"--resume: the run begins again with frame " + std::to_string(job.frames.first) +
@@ -200,7 +200,7 @@ std::optional<io::RunJournal> begin_journal(const Job& job, const io::RunIdentit
   if (former) return std::optional<io::RunJournal>(std::in_place, job.folder, former->bytes());
   std::error_code ignored;
   std::filesystem::remove(job.folder / io::journal_name, ignored);
-  if (simulator.cache() != CacheMode::off || job.frames.count() < 2) return std::nullopt;
+  if (simulator.cache() == CacheMode::seed || job.frames.count() < 2) return std::nullopt;
   return std::optional<io::RunJournal>(std::in_place, job.folder, identity);
 }
 

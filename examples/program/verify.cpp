@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::size_t settled_frame = 20;  // a cache that starts empty has filled by then
 
+const char* name_of(CacheMode cache) {
+  return cache == CacheMode::seed ? "seed" : cache == CacheMode::exact ? "exact" : "off";
+}
+
 std::string percent(double share) {
   return io::format_fixed(100.0 * share, 3) + " %";
 }
@@ -37,10 +41,13 @@ std::string table_of(const VerificationReport& report, const Simulator& simulato
   table.add_row({"frames", std::to_string(report.frames)});
   table.add_row({"links", std::to_string(report.links)});
   table.add_row({"discovery", sampled ? "sampled" : "exact"});
-  table.add_row({"cache", simulator.cache() == CacheMode::seed ? "seed" : "off"});
+  table.add_row({"cache", name_of(simulator.cache())});
   table.add_row({"frames with other links", std::to_string(report.frames_with_other_links)});
   table.add_row({"paths solved on their own", std::to_string(report.paths)});
   table.add_row({"paths that differ", std::to_string(report.paths_different)});
+  if (report.from_scratch) {
+    table.add_row({"links that differ from scratch", std::to_string(report.links_different)});
+  }
   if (!report.compared) {
     table.add_row({"exhaustive search", "not possible: too many facets"});
     return table.str();
@@ -78,7 +85,8 @@ void verify_scenario(const ScenarioOptions& options) {
                                          std::to_string(report.frames) + " of " + std::to_string(job.frames.count()) +
                                          " frames are verified");
   }
-  std::string problem = std::to_string(report.paths_different + report.paths_extra) + " paths and " +
+  std::string problem = std::to_string(report.paths_different + report.paths_extra) + " paths, " +
+                        std::to_string(report.links_different) + " links and " +
                         std::to_string(report.frames_with_other_links) + " lists of links are not as reported";
   for (const std::string& difference : report.differences) problem += "; " + difference;
   throw CheckFailed(problem);

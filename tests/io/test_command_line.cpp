@@ -77,7 +77,7 @@ TEST_CASE("the help of each command lists exactly what it takes") {
       {"map", common + Words{"-o", "--output"}},
       {"verify", common + Words{"--cache"}},
       {"inspect", {"-h", "--help", "--json", "--up", "--unit-m", "--frequency-hz"}},
-      {"compare", {"-h", "--help", "-o", "--column", "--second-column"}},
+      {"compare", {"-h", "--help", "-o", "--output", "--column", "--second-column"}},
       {"completion", {"-h", "--help"}}};
   const Words commands = commands_in_help(dcem_program(folder, "--help").output);
   for (const auto& one : expected) {
@@ -87,7 +87,7 @@ TEST_CASE("the help of each command lists exactly what it takes") {
   }
   const std::string run = dcem_program(folder, "run --help").output, map = dcem_program(folder, "map --help").output;
   CHECK(run.find("{paths,links,pdp,cfr,doppler,npz,plots,html}") != std::string::npos);
-  CHECK(map.find("{csv,png,npz,asc,svg,html}") != std::string::npos);
+  CHECK(map.find("{csv,png,npz,asc,svg,pdf,html}") != std::string::npos);
   CHECK(dcem_program(folder, "inspect --help").output.find("not in this version") == std::string::npos);
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("an option that would change nothing is refused, not ignored") {
     check_refused(folder, "map street.json --output 'csv," + std::string(key) + "'", "is no file of a map");
   }
   write_scenario(folder, R"({"id":"probe","positions_m":[[1,2,3]]})");
-  check_refused(folder, "map street.json --output png,asc", "--output has no effect");
+  check_refused(folder, "map street.json --output asc", "--output has no effect");
   check_refused(folder, "run street.json --output links,map", "map has no effect on 'dcem run'");
   check_refused(folder, "completion tcsh", "tcsh");
   // Where rays are shot they have an effect.
@@ -201,7 +201,7 @@ TEST_CASE("bash completes commands, options, words and lists of words") {
   CHECK(offered(folder, "run street.json --progress j") == "json");
   CHECK(offered(folder, "run street.json --output p") == "paths pdp plots");
   CHECK(offered(folder, "run street.json --output links,pd") == "links,pdp");
-  CHECK(offered(folder, "map street.json --output links,pd").empty());
+  CHECK(offered(folder, "map street.json --output links,dop").empty());
   CHECK(offered(folder, "completion \"\"") == "bash zsh fish");
   CHECK(offered(folder, "run str").empty());  // the shell then offers files
 }

@@ -11,6 +11,9 @@
 #include <vector>
 
 #include "dcem/io/src/pictures/colour_map.hpp"
+#include "dcem/io/src/pictures/contours.hpp"
+#include "tests/io/drawing_needed.hpp"
+#include "tests/io/picture_checks.hpp"
 #include "tests/io/png_reader.hpp"
 #include "tests/io/temporary_folder.hpp"
 
@@ -23,7 +26,7 @@ using dcem::test::TemporaryFolder;
 namespace {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-constexpr Colour no_value_grey{217, 217, 217};
+constexpr Colour no_value_ground{243, 243, 243};
 
 // Entries of the original viridis table (Matplotlib 3.8.4, _cm_listed.py, times 255 and rounded), none of them one of
 // the control points of the code.
@@ -80,7 +83,7 @@ HeatMap room() {
 
 Png drawn(const HeatMap& map) {
   const TemporaryFolder folder;
-  write_heat_map_png(map, folder / "map.png");
+  write_heat_map(map, folder / "map.png");
   CHECK(folder.names() == std::vector<std::string>{"map.png"});
   return dcem::test::read_png(folder / "map.png");
 }
@@ -101,8 +104,12 @@ Colour colour_at(const Png& png, const HeatMapLayout& layout, double x_m, double
   return png.at(static_cast<int>(place.x), static_cast<int>(place.y));
 }
 
-long count_colour(const Png& png, Colour colour) {
-  return std::count(png.pixels.begin(), png.pixels.end(), colour);
+long count_colour(const Png& png, const PixelRect& area, Colour colour) {
+  long count = 0;
+  for (int y = area.y; y < area.bottom(); ++y) {
+    for (int x = area.x; x < area.right(); ++x) count += png.at(x, y) == colour ? 1 : 0;
+  }
+  return count;
 }
 
 // Groups of ink along a row of labels, at least `gap_px` blank columns apart.
@@ -141,6 +148,7 @@ TEST_CASE("lightness grows with the value, in even steps") {
 }
 
 TEST_CASE("each cell is one block in the colour of its value") {
+  DCEM_NEEDS_DRAWING();
   HeatMap map = plain_map(3, 3, 0.0);
   map.range = ValueRange{-100.0, -49.0};
   for (std::size_t i = 0; i < 9; ++i) map.values[i] = -100.0 + 51.0 * viridis_table[i].index / 255.0;
@@ -159,22 +167,24 @@ TEST_CASE("each cell is one block in the colour of its value") {
 }
 
 TEST_CASE("values beyond the range take its end colours, and the bar says so by a tip") {
+  DCEM_NEEDS_DRAWING();
   HeatMap map = plain_map(2, 1, -60.0);
   map.range = ValueRange{-70.0, -50.0};
   const HeatMapLayout layout = heat_map_layout(map);
   const int middle = layout.bar.x + layout.bar.width / 2;
   const Png without = drawn(map);
-  CHECK(without.at(middle, layout.bar.bottom() + 4) == Colour{255, 255, 255});
-  CHECK(without.at(middle, layout.bar.y - 5) == Colour{255, 255, 255});
+  CHECK(without.at(middle, layout.bar.bottom() + 10) == Colour{255, 255, 255});
+  CHECK(without.at(middle, layout.bar.y - 10) == Colour{255, 255, 255});
   map.values = {-300.0, 20.0};
   const Png png = drawn(map);
   CHECK(colour_at(png, layout, 0.0, 0.0) == viridis(0.0));
   CHECK(colour_at(png, layout, 1.0, 0.0) == viridis(1.0));
-  CHECK(png.at(middle, layout.bar.bottom() + 4) == viridis(0.0));
-  CHECK(png.at(middle, layout.bar.y - 5) == viridis(1.0));
+  CHECK(png.at(middle, layout.bar.bottom() + 10) == viridis(0.0));
+  CHECK(png.at(middle, layout.bar.y - 10) == viridis(1.0));
 }
 
 TEST_CASE("the colour bar runs from the lowest colour to the highest without a step back") {
+  DCEM_NEEDS_DRAWING();
   const HeatMap map = room();
   const HeatMapLayout layout = heat_map_layout(map);
   const Png png = drawn(map);
@@ -191,10 +201,10 @@ TEST_CASE("metres are as long upwards as sideways, and cells are whole pixels") 
   const HeatMap map = room();
   const HeatMapLayout layout = heat_map_layout(map);
   CHECK(layout.to_scale);
-  CHECK(layout.plot.width == 800);  // 40 cells of 20 pixels
-  CHECK(layout.plot.height == 480);
+  CHECK(layout.plot.width == 1280);  // 40 cells of 32 pixels
+  CHECK(layout.plot.height == 768);
   CHECK(layout.horizontal_px_per_m == layout.vertical_px_per_m);
-  CHECK(std::max(layout.width_px, layout.height_px) <= 1100);
+  CHECK(std::max(layout.width_px, layout.height_px) <= 1800);
   HeatMap oblong = plain_map(10, 30, -60.0);
   oblong.spacing_x_m = 0.73;
   oblong.spacing_y_m = 0.31;
@@ -204,33 +214,34 @@ TEST_CASE("metres are as long upwards as sideways, and cells are whole pixels") 
 }
 
 TEST_CASE("empty cells are grey, cells in objects are hatched, and the legend tells of what occurs") {
+  DCEM_NEEDS_DRAWING();
   HeatMap map = room();
-  CHECK(count_colour(drawn(map), no_value_grey) == 0);
+  CHECK(count_colour(drawn(map), heat_map_layout(map).plot, no_value_ground) == 0);
   const int plain_height = heat_map_layout(map).height_px;
   map.values[5 * 40 + 7] = no_value;
   map.values[6 * 40 + 7] = -std::numeric_limits<double>::infinity();
   const HeatMapLayout layout = heat_map_layout(map);
   CHECK(layout.height_px > plain_height);
   const Png grey = drawn(map);
-  CHECK(colour_at(grey, layout, 3.75, 2.75) == no_value_grey);
-  CHECK(colour_at(grey, layout, 3.75, 3.25) == no_value_grey);
-  CHECK(count_colour(grey, no_value_grey) > 2 * 20 * 20);  // the two cells and the sample in the legend
+  CHECK(colour_at(grey, layout, 3.75, 2.75) == no_value_ground);
+  CHECK(colour_at(grey, layout, 3.75, 3.25) == no_value_ground);
+  CHECK(count_colour(grey, layout.plot, no_value_ground) == 2 * 32 * 32);
 
   map.hatched.assign(map.values.size(), 0);
   map.hatched[10 * 40 + 20] = 1;
   const Png hatched = drawn(map);
   const PixelRect area = cell_area(map, heat_map_layout(map), 20, 10);
-  int lines = 0;
-  int ground = 0;
+  double ink = 0.0;
   for (int y = area.y; y < area.bottom(); ++y) {
     for (int x = area.x; x < area.right(); ++x) {
-      lines += hatched.at(x, y) == Colour{105, 105, 105} ? 1 : 0;
-      ground += hatched.at(x, y) == Colour{245, 245, 245} ? 1 : 0;
+      const Colour colour = hatched.at(x, y);
+      REQUIRE((colour.red == colour.green && colour.green == colour.blue));
+      ink += (245.0 - colour.red) / (245.0 - 105.0);
     }
   }
-  CHECK(lines + ground == 400);
-  CHECK(lines == doctest::Approx(400.0 / 6.0).epsilon(0.1));        // one of six, but for the cut at the rim
-  CHECK(colour_at(hatched, layout, 10.75, 5.25) != no_value_grey);  // the neighbour keeps its colour
+  REQUIRE(area.width == 32);
+  CHECK(ink / (32.0 * 32.0) == doctest::Approx(2.0 / 13.0).epsilon(0.2));  // lines of 2 px, every 13 px; cut at the rim
+  CHECK(colour_at(hatched, layout, 10.75, 5.25) != no_value_ground);       // the neighbour keeps its colour
 }
 
 TEST_CASE("a value in a hatched cell counts for nothing") {
@@ -242,6 +253,7 @@ TEST_CASE("a value in a hatched cell counts for nothing") {
 }
 
 TEST_CASE("walls are dark lines within the plot") {
+  DCEM_NEEDS_DRAWING();
   HeatMap map = room();
   map.walls_m = {{-100.0, 6.0, 100.0, 6.0}, {4.0, 1.0, 9.0, 4.0}};
   const HeatMapLayout layout = heat_map_layout(map);
@@ -268,6 +280,7 @@ TEST_CASE("walls are dark lines within the plot") {
 }
 
 TEST_CASE("transmitters are marked where they stand") {
+  DCEM_NEEDS_DRAWING();
   HeatMap map = room();
   map.transmitters = {{5.0, 5.0, "tx1"}, {19.9, 11.9, "tx2"}, {500.0, 5.0, "far"}};
   const HeatMapLayout layout = heat_map_layout(map);
@@ -278,13 +291,15 @@ TEST_CASE("transmitters are marked where they stand") {
   CHECK(colour_at(png, layout, 19.9, 11.9) == centre);
   // The label of the second one finds its place to the lower left, the other ways being cut by the rim.
   const PixelPoint corner = layout.point(19.9, 11.9);
-  CHECK(groups_of_ink(png, {static_cast<int>(corner.x) - 50, static_cast<int>(corner.y) + 10, 38, 20}, 20) == 1);
+  CHECK(groups_of_ink(png, {static_cast<int>(corner.x) - 74, static_cast<int>(corner.y) + 20, 54, 30}, 30) == 1);
   HeatMap bare = room();
   const Png without = drawn(bare);
-  CHECK(count_colour(without, centre) == 0);
+  const HeatMapLayout without_layout = heat_map_layout(bare);
+  CHECK(count_colour(without, without_layout.plot, centre) == 0);
 }
 
 TEST_CASE("labels of transmitters do not cover one another or a marker") {
+  DCEM_NEEDS_DRAWING();
   HeatMap map = room();
   for (int i = 0; i < 60; ++i) {
     map.transmitters.push_back({8.0 + 0.35 * (i % 8), 4.0 + 0.35 * (i / 8), "transmitter " + std::to_string(i)});
@@ -298,20 +313,22 @@ TEST_CASE("labels of transmitters do not cover one another or a marker") {
 }
 
 TEST_CASE("a label gives way to one that was placed before") {
+  DCEM_NEEDS_DRAWING();
   HeatMap map = room();
   map.values.assign(map.values.size(), 0.0);
   map.range = ValueRange{-1.0, 0.0};  // all cells are bright
   map.transmitters = {{10.0, 5.0, "first"}};
   HeatMap both = map;
-  both.transmitters.push_back({10.0, 5.5, "next"});  // 20 pixels higher: beside it the label would reach the first one
+  both.transmitters.push_back({10.0, 5.4, "next"});  // 26 pixels higher: beside it the label would reach the first one
   const HeatMapLayout layout = heat_map_layout(both);
-  const PixelPoint place = layout.point(10.0, 5.5);
-  const PixelRect left{static_cast<int>(place.x) - 62, static_cast<int>(place.y) - 9, 50, 18};
+  const PixelPoint place = layout.point(10.0, 5.4);
+  const PixelRect left{static_cast<int>(place.x) - 95, static_cast<int>(place.y) - 9, 70, 18};
   CHECK(groups_of_ink(drawn(map), left, 20) == 0);
   CHECK(groups_of_ink(drawn(both), left, 20) == 1);
 }
 
 TEST_CASE("every tick has its own label, apart from its neighbours") {
+  DCEM_NEEDS_DRAWING();
   for (const double origin_m : {0.0, -1000.0, 691'000.25, 5'334'000.0}) {
     for (const double spacing_m : {0.05, 0.1, 1.0, 7.3, 250.0}) {
       HeatMap map = plain_map(90, 30, -60.0);
@@ -321,8 +338,8 @@ TEST_CASE("every tick has its own label, apart from its neighbours") {
       const HeatMapLayout layout = heat_map_layout(map);
       const Png png = drawn(map);
       const int ticks = groups_of_ink(png, {layout.plot.x - 1, layout.plot.bottom() + 4, layout.plot.width + 2, 1}, 2);
-      // Digits of one label are at most 10 pixels apart, labels at least 20.
-      const int labels = groups_of_ink(png, {0, layout.plot.bottom() + 14, layout.bar.x - 8, 16}, 15);
+      // Digits of one label are at most 12 pixels apart, labels at least 40.
+      const int labels = groups_of_ink(png, {0, layout.plot.bottom() + 18, layout.bar.x - 8, 26}, 24);
       CHECK(ticks >= 2);
       CHECK(ticks <= 14);
       CHECK(labels == ticks);
@@ -352,6 +369,7 @@ TEST_CASE("the colour range runs from the second percentile to the maximum, roun
 }
 
 TEST_CASE("odd maps give a sound picture") {
+  DCEM_NEEDS_DRAWING();
   std::vector<HeatMap> maps;
   maps.push_back(plain_map(1, 1, -60.0));
   maps.push_back(plain_map(1, 1, no_value));
@@ -392,36 +410,38 @@ TEST_CASE("odd maps give a sound picture") {
     CAPTURE(map.columns);
     CAPTURE(map.rows);
     const HeatMapLayout layout = heat_map_layout(map);
-    const Image image = draw_heat_map(map);
-    CHECK(image.width() >= 300);
-    CHECK(image.height() >= 150);
-    CHECK(image.width() <= 2300);
-    CHECK(image.height() <= 2000);
-    CHECK(intersection(layout.plot, image.bounds()) == layout.plot);
-    CHECK(intersection(layout.bar, image.bounds()) == layout.bar);
-    CHECK(layout.plot.right() < image.width());
-    // Nothing is cut at the rim: a seam of eight pixels is left blank.
-    for (int y = 0; y < image.height(); ++y) {
-      for (int x = 0; x < image.width(); ++x) {
-        const bool in_seam = std::min({x, y, image.width() - 1 - x, image.height() - 1 - y}) < 8;
-        if (in_seam) REQUIRE(image.pixel(x, y) == Colour{255, 255, 255});
+    const Png png = drawn(map);
+    const PixelRect whole{0, 0, png.width, png.height};
+    CHECK(png.width >= 600);
+    CHECK(png.height >= 300);
+    CHECK(png.width <= 2900);
+    CHECK(png.height <= 2900);
+    CHECK(intersection(layout.plot, whole) == layout.plot);
+    CHECK(intersection(layout.bar, whole) == layout.bar);
+    CHECK(layout.plot.right() < png.width);
+    // Nothing is cut at the rim: a seam of twelve pixels is left blank.
+    for (int y = 0; y < png.height; ++y) {
+      for (int x = 0; x < png.width; ++x) {
+        const bool in_seam = std::min({x, y, png.width - 1 - x, png.height - 1 - y}) < 12;
+        if (in_seam) REQUIRE(png.at(x, y) == Colour{255, 255, 255});
       }
     }
   }
 }
 
 TEST_CASE("a million cells are drawn one by one") {
+  DCEM_NEEDS_DRAWING();
   HeatMap map = plain_map(1000, 1000, 0.0);
   map.range = ValueRange{0.0, 1.0};
   for (std::size_t i = 0; i < map.values.size(); ++i) map.values[i] = static_cast<double>((i % 1000 + i / 1000) % 2);
   const HeatMapLayout layout = heat_map_layout(map);
   REQUIRE(layout.plot.width == 1000);
-  const Image image = draw_heat_map(map);
+  const Png png = drawn(map);
   long wrong = 0;
   for (int y = 0; y < 1000; ++y) {
     for (int x = 0; x < 1000; ++x) {
       const double value = (x + (999 - y)) % 2;
-      wrong += image.pixel(layout.plot.x + x, layout.plot.y + y) == viridis(value) ? 0 : 1;
+      wrong += png.at(layout.plot.x + x, layout.plot.y + y) == viridis(value) ? 0 : 1;
     }
   }
   CHECK(wrong == 0);
@@ -431,7 +451,7 @@ TEST_CASE("maps that do not fit together are refused") {
   const auto refused = [](const auto& change) {
     HeatMap map = plain_map(4, 3, -60.0);
     change(map);
-    CHECK_THROWS_AS(draw_heat_map(map), std::invalid_argument);
+    CHECK_THROWS_AS(heat_map_layout(map), std::invalid_argument);
   };
   refused([](HeatMap& map) { map.columns = 0; });
   refused([](HeatMap& map) { map.rows = 0; });
@@ -446,21 +466,154 @@ TEST_CASE("maps that do not fit together are refused") {
   refused([](HeatMap& map) { map.range = ValueRange{1.0, 1.0}; });
   refused([](HeatMap& map) { map.range = ValueRange{no_value, 1.0}; });
   refused([](HeatMap& map) { map.walls_m.push_back({0.0, 0.0, no_value, 1.0}); });
+  refused([](HeatMap& map) { map.contour_step = 0.0; });
+  refused([](HeatMap& map) { map.relief = {2, 2, {0.5F}}; });
   refused([](HeatMap& map) { map.transmitters.push_back({no_value, 0.0, "tx"}); });
 }
 
-TEST_CASE("the same map gives the same bytes, and a place that cannot be written keeps nothing") {
+TEST_CASE("the same map gives the same bytes in every format, and a place that cannot be written keeps nothing") {
   const TemporaryFolder folder;
-  write_heat_map_png(room(), folder / "a.png");
   OutputFolder results(folder / "results");
-  write_heat_map_png(room(), results.open("b.png"));
+  const auto formats = can_draw() ? std::vector{PictureFormat::png, PictureFormat::svg, PictureFormat::pdf}
+                                  : std::vector{PictureFormat::png};
+  for (const PictureFormat format : formats) {
+    const std::string name = "a." + std::string(word_of(format));
+    write_heat_map(room(), folder / name);
+    write_heat_map(room(), results.open(name), format);
+  }
   results.commit();
-  CHECK(dcem::test::file_bytes(folder / "a.png") == dcem::test::file_bytes(folder / "results/b.png"));
-  CHECK_THROWS_AS(write_heat_map_png(room(), folder / "absent/map.png"), OutputError);
-  CHECK(folder.names() == std::vector<std::string>{"a.png", "results"});
+  for (const std::string& name : results.names()) {
+    CHECK(dcem::test::file_bytes(folder / name) == dcem::test::file_bytes(folder / "results" / name));
+  }
+  CHECK_THROWS_AS(write_heat_map(room(), folder / "absent/map.png"), OutputError);
+  CHECK_THROWS_AS(write_heat_map(room(), folder / "map.jpg"), std::invalid_argument);
+  if (!can_draw()) {
+    CHECK_THROWS_AS(write_heat_map(room(), folder / "map.svg"), OutputError);
+    return;
+  }
+  CHECK(folder.names() == std::vector<std::string>{"a.pdf", "a.png", "a.svg", "results"});
+  CHECK(dcem::test::is_xml(folder / "a.svg"));
+  CHECK(dcem::test::is_pdf(dcem::test::file_bytes(folder / "a.pdf")));
+}
+
+TEST_CASE("cells alone are those of the picture's plot") {
+  HeatMap map = room();
+  map.values[7] = no_value;
+  map.hatched.assign(map.values.size(), 0);
+  map.hatched[90] = 1;
+  const HeatMapLayout layout = heat_map_layout(map);
+  const Image cells = draw_cells(map);
+  REQUIRE(cells.width() == layout.plot.width);
+  REQUIRE(cells.height() == layout.plot.height);
+  DCEM_NEEDS_DRAWING();
+  const Png png = drawn(map);
+  long wrong = 0;
+  for (int y = 0; y < cells.height(); ++y) {
+    for (int x = 0; x < cells.width(); ++x) {
+      wrong += png.at(layout.plot.x + x, layout.plot.y + y) == cells.pixel(x, y) ? 0 : 1;
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("finer cells have the points' values in the points, and lie on a straight line between two of them") {
+  HeatMap map = plain_map(3, 2, 0.0);
+  map.values = {-60.0, -50.0, no_value, -90.0, -80.0, -70.0};
+  map.origin_x_m = 5.0;
+  map.spacing_x_m = 2.0;
+  const HeatMap fine = refined(map, 3);
+  REQUIRE(fine.columns == 9);
+  REQUIRE(fine.rows == 6);
+  const auto at = [&](std::size_t column, std::size_t row) { return fine.values[row * 9 + column]; };
+  const auto x_m = [&](std::size_t column) { return fine.origin_x_m + static_cast<double>(column) * fine.spacing_x_m; };
+  CHECK(x_m(1) == doctest::Approx(5.0));
+  CHECK(x_m(4) == doctest::Approx(7.0));
+  CHECK(at(1, 1) == -60.0);
+  CHECK(at(4, 4) == -80.0);
+  CHECK(at(2, 1) == doctest::Approx(-60.0 + 10.0 / 3.0));
+  CHECK(at(1, 2) == doctest::Approx(-60.0 - 30.0 / 3.0));
+  CHECK(at(2, 2) == doctest::Approx(-60.0 + 10.0 / 3.0 - 30.0 / 3.0));
+  CHECK(at(0, 0) == -60.0);                                                       // towards the rim as at the point
+  CHECK(at(5, 1) == -50.0);                                                       // towards a cell without a value, too
+  for (std::size_t row = 0; row < 3; ++row) CHECK(std::isnan(at(6 + row, row)));  // which stays empty
+  CHECK(at(7, 4) == -70.0);
+  // The whole covers the same ground.
+  const HeatMapLayout coarse = heat_map_layout(map), finer = heat_map_layout(fine);
+  CHECK(coarse.left_m == doctest::Approx(finer.left_m));
+  CHECK(coarse.plot.width / coarse.horizontal_px_per_m ==
+        doctest::Approx(finer.plot.width / finer.horizontal_px_per_m));
+  CHECK_THROWS_AS(refined(map, 0), std::invalid_argument);
+  map.values.assign(6, 0.0);
+  map.categories = {"a"};
+  CHECK_THROWS_AS(refined(map, 2), std::invalid_argument);
+}
+
+TEST_CASE("every point of a contour lies between two grid points where the value is the level") {
+  HeatMap map = plain_map(40, 30, 0.0);
+  map.spacing_x_m = 0.5;
+  map.origin_y_m = -7.0;
+  for (std::size_t i = 0; i < map.values.size(); ++i) {
+    const double x = static_cast<double>(i % 40), y = static_cast<double>(i / 40);
+    map.values[i] = 20.0 * std::sin(0.4 * x) * std::cos(0.3 * y) + 0.1 * x;
+  }
+  map.values[500] = no_value;
+  const auto lines = detail::contour_lines(map, {-30.0, 30.0}, 5.0);
+  REQUIRE(lines.size() > 20);
+  for (const detail::ContourLine& line : lines) {
+    CHECK(std::fmod(line.level, 5.0) == 0.0);
+    for (const auto& [x_m, y_m] : line.points) {
+      const double column = (x_m - map.origin_x_m) / map.spacing_x_m, row = (y_m - map.origin_y_m) / map.spacing_y_m;
+      const bool lies_along_x = std::abs(row - std::round(row)) < 1e-9;
+      REQUIRE((lies_along_x || std::abs(column - std::round(column)) < 1e-9));
+      const double along = lies_along_x ? column : row, across = std::round(lies_along_x ? row : column);
+      const double low = std::min(std::floor(along), lies_along_x ? 38.0 : 28.0), share = along - low;
+      const auto value = [&](double place) {
+        const double x = lies_along_x ? place : across, y = lies_along_x ? across : place;
+        return map.values[static_cast<std::size_t>(y) * 40 + static_cast<std::size_t>(x)];
+      };
+      CHECK((1.0 - share) * value(low) + share * value(low + 1.0) == doctest::Approx(line.level).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("contours of a hill are closed, as many as it has levels, and go with its height") {
+  HeatMap map = plain_map(41, 41, 0.0);
+  for (std::size_t i = 0; i < map.values.size(); ++i) {
+    map.values[i] = -std::hypot(static_cast<double>(i % 41) - 20.0, static_cast<double>(i / 41) - 20.0);
+  }
+  const auto lines = detail::contour_lines(map, {-16.0, 0.0}, 5.0);
+  REQUIRE(lines.size() == 4);  // -15, -10, -5; at 0 the top alone
+  for (std::size_t level = 0; level < 3; ++level) {
+    const auto& points = lines[level].points;
+    CHECK(points.front() == points.back());
+    const double radius = -lines[level].level;
+    for (const auto& [x_m, y_m] : points) {
+      // A chord between two grid points is at most 1/8 of its square over the radius off.
+      CHECK(std::hypot(x_m - 20.0, y_m - 20.0) == doctest::Approx(radius).epsilon(0.125 * 2.0 / radius / radius));
+    }
+  }
+  CHECK(detail::contour_lines(map, {-16.0, 0.0}, 1e-9).empty());  // no endless levels
+}
+
+TEST_CASE("contours are drawn where they lie, dark on any colour") {
+  DCEM_NEEDS_DRAWING();
+  HeatMap map = plain_map(40, 24, 0.0);
+  for (std::size_t i = 0; i < map.values.size(); ++i) map.values[i] = -100.0 + static_cast<double>(i % 40);
+  const Png without = drawn(map);
+  map.contour_step = 10.0;
+  const HeatMapLayout layout = heat_map_layout(map);
+  const Png png = drawn(map);
+  for (const double x_m : {10.0, 20.0, 30.0}) {
+    const PixelPoint place = layout.point(x_m, 3.0);
+    CHECK(lightness(png.at(static_cast<int>(place.x), static_cast<int>(place.y))) < 20.0);
+  }
+  const PixelPoint between = layout.point(15.0, 3.0);
+  const int x = static_cast<int>(between.x), y = static_cast<int>(between.y);
+  CHECK(png.at(x, y) == without.at(x, y));
 }
 
 TEST_CASE("axes that have nothing in common each fill the picture, and are named with their units") {
+  DCEM_NEEDS_DRAWING();
   HeatMap map = plain_map(60, 30, -60.0);
   map.spacing_x_m = 0.1;
   map.spacing_y_m = 250.0;
@@ -470,8 +623,8 @@ TEST_CASE("axes that have nothing in common each fill the picture, and are named
   CHECK_FALSE(layout.to_scale);
   CHECK(layout.plot.width % 60 == 0);
   CHECK(layout.plot.height % 30 == 0);
-  CHECK(std::abs(layout.plot.width - 800) < 60);
-  CHECK(std::abs(layout.plot.height - 400) < 30);
+  CHECK(std::abs(layout.plot.width - 1280) < 60);
+  CHECK(std::abs(layout.plot.height - 640) < 30);
   CHECK(layout.point(map.origin_x_m - 0.05, 875.0).x == doctest::Approx(layout.plot.x));
   CHECK(layout.point(map.origin_x_m - 0.05, 875.0).y == doctest::Approx(layout.plot.bottom()));
   // No note that the scales differ: nobody expects them to agree. The names take other ink than "x / m".

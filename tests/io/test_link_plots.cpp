@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "dcem/io/result_writer.hpp"
+#include "dcem/io/src/pictures/chart_plan.hpp"
+#include "tests/io/drawing_needed.hpp"
+#include "tests/io/picture_checks.hpp"
 #include "tests/io/png_reader.hpp"
 #include "tests/io/temporary_folder.hpp"
 
@@ -177,7 +180,7 @@ TEST_CASE("a chart is there where it has a value, a line where its mechanism occ
   CHECK(power->x_unit == "s");
   CHECK(power->series[0].name == "coherent");
   CHECK(power->series[0].y[0] == doctest::Approx(-33.97940008672).epsilon(1e-12));  // both in phase: 6.0206 dB
-  CHECK_NOTHROW(io::line_chart_svg(charts));
+  CHECK_NOTHROW(io::detail::plan_line_charts(charts));
 }
 
 TEST_CASE("a link that never carries anything still has a chart of its power, and no picture of delays") {
@@ -186,10 +189,12 @@ TEST_CASE("a link that never carries anything still has a chart of its power, an
   plots.add(scene, 0.0, nullptr);
   plots.add(scene, 0.1, nullptr);
   CHECK(find_chart(plots.charts(), "received power") != nullptr);
-  CHECK_NOTHROW(io::line_chart_svg(plots.charts()));
+  CHECK_NOTHROW(io::detail::plan_line_charts(plots.charts()));
+  CHECK_NOTHROW(io::detail::plan_panels("a to b", plots.panels()));
   CHECK_FALSE(plots.profile().has_value());
   CHECK_FALSE(plots.taps().has_value());
-  CHECK_NOTHROW(io::line_chart_svg(plots.profile_at(1)));
+  const io::LineChart profile = plots.profile_at(1);
+  CHECK_NOTHROW(io::detail::plan_line_charts({&profile, 1}));
 }
 
 TEST_CASE("the profile keeps the power of every bin, and where frames or bins are joined, their mean and their sum") {
@@ -223,24 +228,26 @@ TEST_CASE("the profile of one frame has a bar per bin: specular, and beside it d
   CHECK(chart.x_unit == "ns");
   // −25.2 dBm is the highest: bars stand on −100; −110 dBm is left out.
   REQUIRE(chart.series[0].y.size() == 3);
-  CHECK(chart.series[0].y[0] == -100.0);
-  CHECK(chart.series[0].y[1] == doctest::Approx(30.0 + 10.0 * std::log10(2e-6)).epsilon(1e-9));
+  CHECK(chart.series[0].y[1] == -100.0);
+  CHECK(chart.series[0].y[0] == doctest::Approx(30.0 + 10.0 * std::log10(2e-6)).epsilon(1e-9));
   CHECK(chart.series[0].x[0] > 10.0);
   CHECK(chart.series[0].x[0] < chart.series[1].x[0]);
   CHECK(chart.series[1].x[0] < 11.0);
   REQUIRE(chart.series[1].y.size() == 6);
-  CHECK(chart.series[1].y[4] == doctest::Approx(-40.0).epsilon(1e-12));
+  CHECK(chart.series[1].y[3] == doctest::Approx(-40.0).epsilon(1e-12));
   CHECK(series_names(io::profile_chart("two", std::vector<PdpTap>{{1e-8, 1e-6, 0.0}}, 1e-9, 0.0)) ==
         Names{"specular paths"});
   CHECK_THROWS_AS(io::profile_chart("three", taps, 0.0, 30.0), std::invalid_argument);
 }
 
-TEST_CASE("a run writes four pictures per link; characters that a file name cannot hold are escaped") {
+TEST_CASE("a run writes five pictures per link; characters that a file name cannot hold are escaped") {
+  DCEM_NEEDS_DRAWING();
   const TemporaryFolder folder;
   const Names names = written(only_plots(), 0, 5, folder);
   Names expected;
   for (const char* link : {"mast 2_far", "mast 2_ue%3A1", "mast%2F1_far", "mast%2F1_mast 2", "mast%2F1_ue%3A1"}) {
     expected.push_back("plot_" + std::string(link) + ".svg");
+    expected.push_back("panels_" + std::string(link) + ".pdf");
     expected.push_back("pdp_" + std::string(link) + ".png");
     expected.push_back("taps_" + std::string(link) + ".png");
     expected.push_back("pdp_" + std::string(link) + "_2.svg");
@@ -248,19 +255,54 @@ TEST_CASE("a run writes four pictures per link; characters that a file name cann
   std::sort(expected.begin(), expected.end());
   CHECK(names == expected);
   CHECK(test::read_png(folder / "taps_mast%2F1_far.png").width > 800);
-  CHECK(file_bytes(folder / "plot_mast%2F1_far.svg").find("mast/1 to far: received power") != std::string::npos);
+  CHECK(test::is_xml(folder / "plot_mast%2F1_far.svg"));
+  CHECK(test::is_pdf(file_bytes(folder / "panels_mast%2F1_far.pdf")));
+}
+
+TEST_CASE("formats that are asked for are those of every picture") {
+  DCEM_NEEDS_DRAWING();
+  io::OutputSettings output = only_plots();
+  output.plots_max_links = 1;
+  output.plots_formats = {io::PictureFormat::svg, io::PictureFormat::pdf};
+  const TemporaryFolder folder;
+  Names expected;
+  for (const char* what : {"panels_mast%2F1_ue%3A1", "pdp_mast%2F1_ue%3A1", "pdp_mast%2F1_ue%3A1_1",
+                           "plot_mast%2F1_ue%3A1", "taps_mast%2F1_ue%3A1"}) {
+    for (const char* ending : {".pdf", ".svg"}) expected.push_back(std::string(what) + ending);
+  }
+  std::sort(expected.begin(), expected.end());
+  CHECK(written(output, 0, 2, folder) == expected);
+}
+
+TEST_CASE("the panels of a drive are power, delay spread and Doppler, with the values of the charts") {
+  const Scene scene = small_scene();
+  io::LinkPlots plots = small_plots();
+  const LinkResult link = link_of({path_of(1e-8, 1e-6), reflected(1, 3e-8, 1e-7)});
+  plots.add(scene, 0.0, &link);
+  plots.add(scene, 0.1, nullptr);
+  const std::vector<io::LineChart> panels = plots.panels(), charts = plots.charts();
+  REQUIRE(panels.size() == 3);
+  CHECK(panels[0].y_unit == "dBm");
+  CHECK(panels[1].y_unit == "ns");
+  CHECK(panels[2].y_unit == "Hz");
+  CHECK(panels[0].series[0].y[0] == find_chart(charts, ": received power")->series[0].y[0]);
+  CHECK(panels[1].series[0].y[0] == find_chart(charts, "delay spread")->series[0].y[0]);
+  CHECK(std::isnan(panels[2].series[0].y[1]));
+  CHECK(plots.name() == "a to b");
 }
 
 TEST_CASE("the first links alone have pictures where there are more than the limit") {
+  DCEM_NEEDS_DRAWING();
   io::OutputSettings output = only_plots();
   output.plots_max_links = 2;
   const TemporaryFolder folder;
-  CHECK(written(output, 0, 2, folder).size() == 8);
+  CHECK(written(output, 0, 2, folder).size() == 10);
   const Scene scene = small_scene();
   CHECK(io::plotted_links(scene, scene.receivers()) == 5);
 }
 
 TEST_CASE("one frame alone has its profile and nothing over time") {
+  DCEM_NEEDS_DRAWING();
   const TemporaryFolder folder;
   const Names names = written(only_plots(), 7, 8, folder);
   CHECK(names.size() == 5);
@@ -268,6 +310,7 @@ TEST_CASE("one frame alone has its profile and nothing over time") {
 }
 
 TEST_CASE("the frame of the single profile is counted as in the scenario, and has to be one of the run") {
+  DCEM_NEEDS_DRAWING();
   io::OutputSettings output = only_plots();
   output.plots_max_links = 1;
   output.plots_pdp_frame = 11;
@@ -293,6 +336,7 @@ TEST_CASE("links whose file names would be the same are refused") {
 }
 
 TEST_CASE("the same frames give the same bytes") {
+  DCEM_NEEDS_DRAWING();
   const TemporaryFolder first, second;
   const Names names = written(only_plots(), 0, 5, first);
   written(only_plots(), 0, 5, second);

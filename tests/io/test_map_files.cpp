@@ -15,6 +15,8 @@
 #include "dcem/io/esri_grid.hpp"
 #include "dcem/io/map_distribution.hpp"
 #include "dcem/io/map_writer.hpp"
+#include "dcem/io/src/pictures/colour_map.hpp"
+#include "tests/io/png_reader.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace test_map_files {
@@ -82,12 +84,6 @@ std::vector<Number> array_of(const std::string& archive, const std::string& name
   std::vector<Number> values((bytes.size() - begin) / sizeof(Number));
   std::memcpy(values.data(), bytes.data() + begin, values.size() * sizeof(Number));
   return values;
-}
-
-std::size_t count_of(const std::string& text, const std::string& part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
 }
 
 Scene scene_with(const std::vector<std::string>& transmitters) {
@@ -184,17 +180,38 @@ TEST_CASE("the picture of the best server gives each transmitter a colour of its
   picture.transmitters.clear();
   const io::HeatMapLayout layout = io::heat_map_layout(picture);
   CHECK_FALSE(layout.range.has_value());  // no colour bar
+  // Apart from the dots of the second texture, which stand every 20 pixels.
   const auto colour_at = [&](double value) {
     picture.values[1] = value;
     const io::PixelPoint middle = layout.point(-0.5, 2.0);
-    return io::draw_heat_map(picture).pixel(static_cast<int>(middle.x), static_cast<int>(middle.y));
+    const int x = static_cast<int>(middle.x) - layout.plot.x, y = static_cast<int>(middle.y) - layout.plot.y;
+    return io::draw_cells(picture).pixel(x - x % 20 + 10, y - y % 20 + 10);
   };
-  CHECK(colour_at(0.0) == io::Colour{230, 159, 0});   // the orange of Okabe and Ito
-  CHECK(colour_at(1.0) == io::Colour{86, 180, 233});  // their sky blue
+  CHECK(colour_at(0.0) == io::Colour{230, 159, 0});  // the orange of Okabe and Ito
+  CHECK(colour_at(1.0) == io::Colour{0, 114, 178});  // their blue
   picture.values[1] = 2.0;
-  CHECK_THROWS_AS(io::draw_heat_map(picture), std::invalid_argument);
+  CHECK_THROWS_AS(io::draw_cells(picture), std::invalid_argument);
   picture.values[1] = 0.5;
-  CHECK_THROWS_AS(io::draw_heat_map(picture), std::invalid_argument);
+  CHECK_THROWS_AS(io::draw_cells(picture), std::invalid_argument);
+}
+
+TEST_CASE("areas of servers are told apart in grey: by their own textures") {
+  const Scene scene = scene_with({"a", "b", "c", "d", "e", "f", "g"});
+  std::vector<RadioMap> maps;
+  for (const char* id : {"a", "b", "c", "d", "e", "f", "g"}) maps.push_back(small_map(id, -60.0));
+  io::HeatMap picture = io::best_server_picture(combine_maps(maps), scene, scene.frame_at(0.0), 30e9);
+  picture.hatched.clear();
+  std::vector<std::vector<bool>> textures;
+  for (double server = 0.0; server < 7.0; ++server) {
+    picture.values.assign(6, server);
+    const io::Image cells = io::draw_cells(picture);
+    const io::Colour bare = io::category_colour(static_cast<std::size_t>(server));
+    std::vector<bool> marks;
+    for (int i = 0; i < 60 * 60; ++i) marks.push_back(cells.pixel(100 + i % 60, 100 + i / 60) != bare);
+    CHECK(std::count(marks.begin(), marks.end(), true) < 60 * 60 / 3);  // the colour stays
+    for (const auto& other : textures) CHECK(marks != other);
+    textures.push_back(std::move(marks));
+  }
 }
 
 TEST_CASE("pictures of maps without any value, and of equal values, are drawn") {
@@ -209,13 +226,15 @@ TEST_CASE("pictures of maps without any value, and of equal values, are drawn") 
     const CombinedMap map = combine_maps(maps);
     const Scene scene = scene_with({"a", "b"});
     const Frame frame = scene.frame_at(0.0);
-    CHECK(io::draw_heat_map(io::map_picture(maps[0], scene, frame, 30e9)).width() > 400);
-    CHECK(io::draw_heat_map(io::best_server_picture(map, scene, frame, 30e9)).width() > 400);
-    CHECK(io::draw_heat_map(io::sinr_picture(map, scene, frame, 30e9, true)).width() > 400);
-    const std::string svg = io::map_distribution_svg(maps, map);
-    CHECK(svg.find("nan") == std::string::npos);
-    CHECK((svg.find("nothing arrives") != std::string::npos) == empty);
-    CHECK(count_of(svg, "class=\"plot\"") == (empty ? 1 : 2));
+    const test::TemporaryFolder folder;
+    io::write_heat_map(io::map_picture(maps[0], scene, frame, 30e9), folder / "a.png");
+    io::write_heat_map(io::best_server_picture(map, scene, frame, 30e9), folder / "b.png");
+    io::write_heat_map(io::sinr_picture(map, scene, frame, 30e9, true), folder / "c.png");
+    for (const std::string& name : folder.names()) CHECK(test::read_png(folder / name).width > 700);
+    const std::vector<io::LineChart> charts = io::map_distribution_charts(maps, map);
+    CHECK((charts[0].title.find("nothing arrives") != std::string::npos) == empty);
+    REQUIRE(charts.size() == (empty ? 1 : 2));
+    if (io::can_draw()) CHECK_NOTHROW(io::write_line_charts(charts, folder / "d.svg"));
   }
 }
 
@@ -250,8 +269,53 @@ TEST_CASE("more distributions than a chart has colours are spread over several")
   REQUIRE(charts.size() == 4);
   CHECK(charts[0].series.size() == 7);
   CHECK(charts[2].series.size() == 2);
-  CHECK(io::line_chart_svg(charts).size() > 1000);
   CHECK(io::distribution_charts({"title", "power", "dBm"}, std::span(parts).last(1)).empty());
+}
+
+TEST_CASE("roofs that look to the north-west are bright, to the south-east dark, and level ones in between") {
+  Scene scene;
+  scene.add_material({"roof", PerfectConductor{}});
+  TriangleMesh roofs;
+  // Over x from 0 to 10: falling to the north-west; from 20 to 30: to the south-east; from 40 to 50: level.
+  add_quad(roofs, {Vec3(0, 0, 8), Vec3(10, 0, 12), Vec3(10, 10, 8), Vec3(0, 10, 4)}, "roof");
+  add_quad(roofs, {Vec3(20, 0, 8), Vec3(30, 0, 4), Vec3(30, 10, 8), Vec3(20, 10, 12)}, "roof");
+  add_quad(roofs, {Vec3(40, 0, 8), Vec3(50, 0, 8), Vec3(50, 10, 8), Vec3(40, 10, 8)}, "roof");
+  add_quad(roofs, {Vec3(0, 0, 1), Vec3(50, 0, 1), Vec3(50, 10, 1), Vec3(0, 10, 1)}, "roof");  // lower than the map
+  scene.set_scenery(roofs);
+  const ReceiverGrid grid{"area", {0.5, 0.5, 1.5}, {1, 1}, {50, 10}, {}};
+  const io::Relief relief = io::map_relief(grid, scene);
+  REQUIRE(relief.columns == 1280);
+  REQUIRE(relief.rows == 256);
+  REQUIRE(relief.tones.size() == relief.columns * relief.rows);
+  const auto tone_at = [&](double x_m, double y_m) {
+    return relief.tones[static_cast<std::size_t>(y_m * 25.6) * relief.columns + static_cast<std::size_t>(x_m * 25.6)];
+  };
+  // Slopes of 0.4 along both axes; the light comes from (-1/2, 1/2, 1/sqrt(2)).
+  const double upright = std::sqrt(1.0 + 2.0 * 0.16);
+  CHECK(tone_at(5.0, 5.0) == doctest::Approx((0.4 + std::sqrt(0.5)) / upright).epsilon(1e-4));
+  CHECK(tone_at(25.0, 5.0) == doctest::Approx((-0.4 + std::sqrt(0.5)) / upright).epsilon(1e-4));
+  CHECK(tone_at(45.0, 5.0) == doctest::Approx(std::sqrt(0.5)).epsilon(1e-5));
+  CHECK(tone_at(15.0, 5.0) == doctest::Approx(std::sqrt(0.5)).epsilon(1e-5));  // the ground
+  for (const float tone : relief.tones) REQUIRE((tone >= 0.0F && tone <= 1.0F));
+}
+
+TEST_CASE("light and shade show in hatched cells alone") {
+  const RadioMap map = small_map("bs", -60.0);
+  const Scene scene = scene_with({"bs"});
+  io::HeatMap picture = io::map_picture(map, scene, scene.frame_at(0.0), 30e9);
+  const io::Image plain = io::draw_cells(picture);
+  picture.relief = {1, 1, {0.0F}};
+  const io::Image shaded = io::draw_cells(picture);
+  const int width = plain.width(), height = plain.height();
+  long changed = 0, changed_elsewhere = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const bool is_hatched = x >= width * 2 / 3 && y < height / 2;  // point 5, the upper right one
+      (is_hatched ? changed : changed_elsewhere) += plain.pixel(x, y) == shaded.pixel(x, y) ? 0 : 1;
+    }
+  }
+  CHECK(changed_elsewhere == 0);
+  CHECK(changed > width * height / 6 * 3 / 4);  // all but the lines
 }
 
 }  // namespace test_map_files

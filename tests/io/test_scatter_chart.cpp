@@ -2,15 +2,22 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
 #include <tuple>
 
+#include "tests/io/drawing_needed.hpp"
+#include "tests/io/picture_checks.hpp"
+#include "tests/io/png_reader.hpp"
+
 namespace test_scatter_chart {
 
 using namespace dcem::io;
+using dcem::test::Png;
+using dcem::test::TemporaryFolder;
 
 namespace {
 
@@ -23,12 +30,14 @@ double luminance(Colour colour) {
   return 0.2126 * linear(colour.red) + 0.7152 * linear(colour.green) + 0.0722 * linear(colour.blue);
 }
 
-long count_colour(const Image& image, Colour colour) {
-  long count = 0;
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) count += image.pixel(x, y) == colour ? 1 : 0;
-  }
-  return count;
+Png drawn(const ScatterChart& chart) {
+  const TemporaryFolder folder;
+  write_scatter_chart(chart, folder / "chart.png");
+  return dcem::test::read_png(folder / "chart.png");
+}
+
+long count_colour(const Png& png, Colour colour) {
+  return std::count(png.pixels.begin(), png.pixels.end(), colour);
 }
 
 ScatterChart chart_of(std::vector<ScatterChart::Dot> dots) {
@@ -56,39 +65,51 @@ TEST_CASE("traces have many colours, of several lightnesses, all visible on whit
 }
 
 TEST_CASE("a stronger dot covers more of the paper than a weak one") {
+  DCEM_NEEDS_DRAWING();
   ScatterChart chart = chart_of({{0.0, 10.0, -50.0, 1}, {1.0, 20.0, -50.0, 2}});
   std::uint64_t other = 2;
   while (trace_colour(other) == trace_colour(1)) ++other;
   chart.dots[1].trace = other;
-  const Image equal = draw_scatter_chart(chart);
+  const Png equal = drawn(chart);
   chart.dots[1].value = -80.0;
-  const Image weaker = draw_scatter_chart(chart);
-  CHECK(count_colour(equal, trace_colour(1)) == count_colour(equal, trace_colour(other)));
+  const Png weaker = drawn(chart);
+  // Discs of one radius cover as many whole pixels, but for where their middles lie within one.
+  CHECK(std::abs(count_colour(equal, trace_colour(1)) - count_colour(equal, trace_colour(other))) < 10);
   CHECK(count_colour(weaker, trace_colour(1)) == count_colour(equal, trace_colour(1)));
   CHECK(count_colour(weaker, trace_colour(other)) < count_colour(equal, trace_colour(other)) / 2);
   CHECK(count_colour(weaker, trace_colour(other)) > 0);
 }
 
 TEST_CASE("a line joins the dots of a trace where they belong together, and only there") {
+  DCEM_NEEDS_DRAWING();
   ScatterChart apart = chart_of({{0.0, 10.0, -50.0, 7}, {1.0, 20.0, -50.0, 7}});
   ScatterChart joined = apart;
   joined.dots[1].joins_last = true;
-  const Image without = draw_scatter_chart(apart), with = draw_scatter_chart(joined);
+  const Png without = drawn(apart), with = drawn(joined);
   long changed = 0;
-  for (int y = 0; y < with.height(); ++y) {
-    for (int x = 0; x < with.width(); ++x) changed += with.pixel(x, y) == without.pixel(x, y) ? 0 : 1;
-  }
-  CHECK(changed > 700);  // nearly across the plot of 860 pixels
+  for (std::size_t i = 0; i < with.pixels.size(); ++i) changed += with.pixels[i] == without.pixels[i] ? 0 : 1;
+  CHECK(changed > 1100);  // nearly across the plot of 1280 pixels
 }
 
 TEST_CASE("odd charts give a picture, and what cannot be drawn is refused") {
-  CHECK(draw_scatter_chart(chart_of({{0.0, 0.0, 0.0, 0}})).width() > 800);
-  CHECK(draw_scatter_chart(chart_of({{5.0, 266.0, -3000.0, 0}, {5.0, 266.0, -60.0, 1}})).height() > 400);
-  CHECK_THROWS_AS(draw_scatter_chart(ScatterChart{}), std::invalid_argument);
+  DCEM_NEEDS_DRAWING();
+  CHECK(drawn(chart_of({{0.0, 0.0, 0.0, 0}})).width > 1200);
+  CHECK(drawn(chart_of({{5.0, 266.0, -3000.0, 0}, {5.0, 266.0, -60.0, 1}})).height > 800);
+  CHECK_THROWS_AS(drawn(ScatterChart{}), std::invalid_argument);
   const double infinite = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_AS(draw_scatter_chart(chart_of({{infinite, 0.0, 0.0, 0}})), std::invalid_argument);
-  CHECK_THROWS_AS(draw_scatter_chart(chart_of({{0.0, none, 0.0, 0}})), std::invalid_argument);
-  CHECK_THROWS_AS(draw_scatter_chart(chart_of({{0.0, 0.0, 1e101, 0}})), std::invalid_argument);
+  CHECK_THROWS_AS(drawn(chart_of({{infinite, 0.0, 0.0, 0}})), std::invalid_argument);
+  CHECK_THROWS_AS(drawn(chart_of({{0.0, none, 0.0, 0}})), std::invalid_argument);
+  CHECK_THROWS_AS(drawn(chart_of({{0.0, 0.0, 1e101, 0}})), std::invalid_argument);
+}
+
+TEST_CASE("a chart of dots is sound in every format") {
+  DCEM_NEEDS_DRAWING();
+  const TemporaryFolder folder;
+  const ScatterChart chart = chart_of({{0.0, 10.0, -50.0, 1}, {1.0, 20.0, -50.0, 2}});
+  write_scatter_chart(chart, folder / "chart.svg");
+  write_scatter_chart(chart, folder / "chart.pdf");
+  CHECK(dcem::test::is_xml(folder / "chart.svg"));
+  CHECK(dcem::test::is_pdf(dcem::test::file_bytes(folder / "chart.pdf")));
 }
 
 }  // namespace test_scatter_chart

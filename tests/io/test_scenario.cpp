@@ -7,6 +7,7 @@
 #include <string>
 
 #include "dcem/io/input_error.hpp"
+#include "tests/io/drawing_needed.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace test_scenario {
@@ -80,6 +81,7 @@ TEST_CASE("what a scenario leaves out has the documented defaults") {
   CHECK(propagation.rays == 20'000);
   CHECK(propagation.seed == 1);
   CHECK_FALSE(propagation.min_path_gain_db.has_value());
+  CHECK_FALSE(propagation.valid_until_limit_m.has_value());
   CHECK(propagation.path_loss == AnyPathLoss{});
   CHECK(scenario.time.start_s == 0.0);
   CHECK(scenario.time.frames == 1);
@@ -102,7 +104,8 @@ TEST_CASE("every setting arrives") {
     "propagation": {"line_of_sight": false, "max_reflections": 10, "max_transmissions": 0, "max_diffractions": 0,
       "max_interactions": 3, "discovery": "sampled", "rays": 5e3, "seed": 12, "cache": "off", "diffuse": {"enabled": false},
       "path_loss": {"model": "close_in", "exponent": 2.1, "attenuation_db_per_m": 0.01}, "atmosphere": null,
-      "antenna_array": null, "min_path_gain_db": -150.5},
+      "antenna_array": null, "min_path_gain_db": -150.5,
+      "valid_until_limit_m": 0.25},
     "output": {"paths": true, "links": false, "pdp": {"bin_s": 2e-9, "mode": "coherent"}, "npz": false}, "links": "all")";
   const io::Scenario scenario = files.load();
   const PropagationSettings& propagation = scenario.settings.propagation;
@@ -119,6 +122,7 @@ TEST_CASE("every setting arrives") {
   CHECK(propagation.seed == 12);
   CHECK(propagation.path_loss == AnyPathLoss{CloseIn{2.1, 0.01}});
   CHECK(propagation.min_path_gain_db == -150.5);
+  CHECK(propagation.valid_until_limit_m == 0.25);
   CHECK(scenario.output.paths);
   CHECK_FALSE(scenario.output.links);
   CHECK(scenario.output.pdp);
@@ -130,6 +134,7 @@ TEST_CASE("every setting arrives") {
 }
 
 TEST_CASE("pictures are asked for by true, or with their settings") {
+  DCEM_NEEDS_DRAWING();
   ScenarioCase files;
   files.more = R"(, "output": {"npz": true, "plots": {"max_links": 3, "pdp_frame": 40}})";
   io::OutputSettings output = files.load().output;
@@ -350,8 +355,9 @@ TEST_CASE("materials that nothing uses are checked but not added") {
 
 TEST_CASE("the command line overrides the file and is checked like it") {
   ScenarioCase files;
-  files.more = R"(, "propagation": {"cache": "exact", "rays": 100}, "output": {"paths": true, "pdp": {"bin_s": 1e-8}})";
-  CHECK(contains(files.error(), "propagation.cache: not in this version"));
+  files.more =
+      R"(, "propagation": {"cache": "exactly", "rays": 100}, "output": {"paths": true, "pdp": {"bin_s": 1e-8}})";
+  CHECK(contains(files.error(), "propagation.cache: found '\"exactly\"'"));
   const io::Scenario scenario = files.load({"exact", "off", 7, 9, "pdp"});
   CHECK(scenario.settings.propagation.discovery == Discovery::exact);
   CHECK(scenario.settings.propagation.rays == 7);
@@ -364,8 +370,7 @@ TEST_CASE("the command line overrides the file and is checked like it") {
   CHECK(files.error(only(&io::ScenarioOverrides::rays, 0))
             .starts_with("command line: --rays: found '0'; expected a whole number from 1"));
   CHECK(files.error(only(&io::ScenarioOverrides::seed, -1)).starts_with("command line: --seed:"));
-  CHECK(files.error(only(&io::ScenarioOverrides::cache, "exact"))
-            .starts_with("command line: --cache: not in this version"));
+  CHECK(files.error(only(&io::ScenarioOverrides::cache, "all")).starts_with("command line: --cache: found '\"all\"'"));
   CHECK(files.error(only(&io::ScenarioOverrides::discovery, "best"))
             .starts_with("command line: --discovery: found '\"best\"'"));
   CHECK(files.error(only(&io::ScenarioOverrides::output, "links,kml"))

@@ -33,8 +33,8 @@ LineChart chart_of_nothing(const std::string& title) {
 
 }  // namespace
 
-std::string map_distribution_svg(std::span<const RadioMap> maps, const CombinedMap& combined,
-                                 std::optional<double> time_s) {
+std::vector<LineChart> map_distribution_charts(std::span<const RadioMap> maps, const CombinedMap& combined,
+                                               std::optional<double> time_s) {
   std::vector<Distribution> parts;
   for (const RadioMap& map : maps) {
     parts.push_back(distribution_of(map.transmitter, map.points,
@@ -48,7 +48,7 @@ std::string map_distribution_svg(std::span<const RadioMap> maps, const CombinedM
   if (time_s) title += ", t = " + format_fixed(*time_s, 3) + " s";
   std::vector<LineChart> charts = distribution_charts({title, "incoherent power", "dBm"}, parts);
   if (charts.empty()) charts.push_back(chart_of_nothing(title));
-  return line_chart_svg(charts);
+  return charts;
 }
 
 }  // namespace dcem::io

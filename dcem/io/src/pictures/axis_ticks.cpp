@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "dcem/io/image.hpp"
 #include "dcem/io/text_table.hpp"
 
 namespace dcem::io::detail {
@@ -43,7 +42,7 @@ std::vector<Tick> middle_tick(double low, double high) {
 }  // namespace
 
 int label_length_px(std::string_view text) {
-  return text_length_px(text, label_scale);
+  return static_cast<int>(std::ceil(text_width_px(text, label_style)));
 }
 
 double round_step_at_least(double least) {
@@ -69,10 +68,10 @@ std::vector<Tick> axis_ticks(double low, double high, int length_px, int gap_px)
 
 std::vector<Tick> horizontal_axis_ticks(double low, double high, int length_px) {
   // How long the labels are depends on the step, and the step on the labels.
-  int gap = 60;
+  int gap = 120;
   std::vector<Tick> ticks = axis_ticks(low, high, length_px, gap);
-  for (int attempt = 0; attempt < 4 && longest_label_px(ticks) + 24 > gap; ++attempt) {
-    gap = longest_label_px(ticks) + 24;
+  for (int attempt = 0; attempt < 4 && longest_label_px(ticks) + 40 > gap; ++attempt) {
+    gap = longest_label_px(ticks) + 40;
     ticks = axis_ticks(low, high, length_px, gap);
   }
   return ticks;

@@ -4,12 +4,14 @@
 #include <string_view>
 #include <vector>
 
+#include "dcem/io/src/pictures/canvas.hpp"
+
 namespace dcem::io::detail {
 
-/// Font scale of tick labels and names of axes.
-inline constexpr int label_scale = 2;
+/// Of tick labels, names of axes and legends.
+inline constexpr TextStyle label_style{26.0};
 
-/// Length of a text in that font, in pixels.
+/// Length of a text in that style, in whole pixels.
 int label_length_px(std::string_view text);
 
 struct Tick {

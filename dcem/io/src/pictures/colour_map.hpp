@@ -39,10 +39,11 @@ inline Colour viridis(double share) {
 }
 
 /// The colour of thing number `index`: the seven of Okabe and Ito ("Color Universal Design", 2002), which colour-blind
-/// readers can tell apart, then the same seven lighter, then darker; after 21 they repeat.
+/// readers can tell apart, in an order that keeps the first ones apart in grey; then the same seven lighter, then
+/// darker; after 21 they repeat.
 inline Colour category_colour(std::size_t index) {
   constexpr std::array<Colour, 7> hues{
-      {{230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {240, 228, 66}, {0, 114, 178}, {213, 94, 0}, {204, 121, 167}}};
+      {{230, 159, 0}, {0, 114, 178}, {240, 228, 66}, {213, 94, 0}, {86, 180, 233}, {0, 158, 115}, {204, 121, 167}}};
   const Colour hue = hues[index % hues.size()];
   const std::size_t round = index / hues.size() % 3;
   if (round == 0) return hue;

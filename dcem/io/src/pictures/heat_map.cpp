@@ -4,59 +4,59 @@
 #include <cmath>
 #include <utility>
 
+#include "dcem/io/src/pictures/cell_colours.hpp"
 #include "dcem/io/src/pictures/colour_map.hpp"
+#include "dcem/io/src/pictures/contours.hpp"
 #include "dcem/io/src/pictures/heat_map_plan.hpp"
+#include "dcem/io/src/text/number_text.hpp"
 
 namespace dcem::io {
 namespace {
 
 using namespace detail;
 
-constexpr Colour ink = picture_ink;
-constexpr Colour no_value_grey{217, 217, 217};
-constexpr Colour hatch_ground{245, 245, 245};
 constexpr Colour wall_colour{15, 15, 15};
 constexpr Colour marker_red{213, 47, 30};
-constexpr Hatch object_hatch{{105, 105, 105}, 6, 1};
-constexpr double marker_radius_px = 8.0;
+constexpr double marker_radius_px = 15.0;
+constexpr int label_padding_px = 6;
+const Stroke contour_stroke{{0, 0, 0}, 2.0}, contour_seam{white, 5.0, 0.55};
 
-double share_of_range(double value, const ValueRange& range) {
-  return (value - range.low) / (range.high - range.low);
-}
+/// Areas that labels must not cover.
+class TakenPlaces {
+ public:
+  explicit TakenPlaces(const PixelRect& plot) : plot_(plot) {}
 
-// For each pixel along an axis the cell that its middle lies in.
-std::vector<std::size_t> cells_of_pixels(int length_px, std::size_t cells) {
-  std::vector<std::size_t> result(static_cast<std::size_t>(length_px));
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const double position = (static_cast<double>(i) + 0.5) / length_px * static_cast<double>(cells);
-    result[i] = std::min(static_cast<std::size_t>(position), cells - 1);
+  void take(const PixelRect& area) { taken_.push_back(area); }
+  bool is_free(const PixelRect& area) const {
+    return intersection(area, plot_) == area && std::none_of(taken_.begin(), taken_.end(), [&](const PixelRect& other) {
+             const PixelRect shared = intersection(area, other);
+             return shared.width > 0 && shared.height > 0;
+           });
   }
-  return result;
-}
 
-Colour cell_colour(const HeatMap& map, const HeatMapLayout& layout, std::size_t cell) {
-  if (!is_valued(map, cell)) return no_value_grey;
-  if (!map.categories.empty()) return category_colour(static_cast<std::size_t>(map.values[cell]));
-  return layout.range ? viridis(share_of_range(map.values[cell], *layout.range)) : no_value_grey;
-}
+ private:
+  PixelRect plot_;
+  std::vector<PixelRect> taken_;
+};
 
-void draw_cells(const HeatMap& map, const HeatMapLayout& layout, Image& image) {
-  const PixelRect& plot = layout.plot;
-  const std::vector<std::size_t> columns = cells_of_pixels(plot.width, map.columns);
-  const std::vector<std::size_t> rows = cells_of_pixels(plot.height, map.rows);
-  for (int y = 0; y < plot.height; ++y) {
-    const std::size_t row = rows[static_cast<std::size_t>(plot.height - 1 - y)];
-    for (int x = 0; x < plot.width; ++x) {
-      const std::size_t cell = row * map.columns + columns[static_cast<std::size_t>(x)];
-      const PixelRect dot{plot.x + x, plot.y + y, 1, 1};
-      if (is_hatched(map, cell)) {
-        image.set_pixel(dot.x, dot.y, hatch_ground);
-        image.hatch_rectangle(dot, object_hatch);
-      } else {
-        image.set_pixel(dot.x, dot.y, cell_colour(map, layout, cell));
-      }
-    }
+/// Liang and Barsky (1984): the part of a line within an area and a seam about it; nothing where there is none. What is
+/// far outside would be beyond the coordinates that can be drawn.
+std::optional<Segment> clipped_line(PixelPoint from, PixelPoint to, const PixelRect& area) {
+  constexpr double seam_px = 20.0;
+  const double dx = to.x - from.x, dy = to.y - from.y;
+  const std::array<std::array<double, 2>, 4> borders{{{-dx, from.x - (area.x - seam_px)},
+                                                      {dx, area.right() + seam_px - from.x},
+                                                      {-dy, from.y - (area.y - seam_px)},
+                                                      {dy, area.bottom() + seam_px - from.y}}};
+  double first = 0.0, last = 1.0;
+  for (const auto& [outwards, room] : borders) {
+    if (outwards == 0.0 && room < 0.0) return std::nullopt;
+    if (outwards < 0.0) first = std::max(first, room / outwards);
+    if (outwards > 0.0) last = std::min(last, room / outwards);
   }
+  if (!(first <= last)) return std::nullopt;
+  return Segment{PixelPoint{from.x + first * dx, from.y + first * dy},
+                 PixelPoint{from.x + last * dx, from.y + last * dy}};
 }
 
 // A line along an axis is put onto whole pixels, so that it is sharp.
@@ -65,48 +65,86 @@ double snap(double position_px, double thickness_px) {
   return std::round(position_px - half) + half;
 }
 
-void draw_wall(const HeatMapLayout& layout, const std::array<double, 4>& wall, Colour colour, double thickness_px,
-               double opacity, Image& image) {
+std::optional<Segment> seen_wall(const HeatMapLayout& layout, const std::array<double, 4>& wall, double thickness_px) {
   PixelPoint from = layout.point(wall[0], wall[1]);
   PixelPoint to = layout.point(wall[2], wall[3]);
   if (wall[0] == wall[2]) from.x = to.x = snap(from.x, thickness_px);
   if (wall[1] == wall[3]) from.y = to.y = snap(from.y, thickness_px);
-  image.draw_line(from, to, colour, thickness_px, opacity);
+  return clipped_line(from, to, layout.plot);
 }
 
-void draw_walls(const HeatMap& map, const HeatMapLayout& layout, Image& image) {
-  image.set_clip(layout.plot);
-  // A city at one pixel per metre would drown in thick lines.
-  const double thickness_px = map.walls_m.size() > 2000 ? 1.0 : 2.0;
+void draw_walls(Canvas& canvas, const HeatMap& map, const HeatMapLayout& layout) {
+  // A city at two pixels per metre would drown in thick lines.
+  const double thickness_px = map.walls_m.size() > 2000 ? 2.0 : 4.0;
+  std::vector<Segment> seen;
+  for (const auto& wall : map.walls_m) {
+    if (const auto segment = seen_wall(layout, wall, thickness_px)) seen.push_back(*segment);
+  }
   // The pale seam keeps the dark line visible on the dark end of the colours.
-  for (const auto& wall : map.walls_m) draw_wall(layout, wall, white, thickness_px + 2.0, 0.35, image);
-  for (const auto& wall : map.walls_m) draw_wall(layout, wall, wall_colour, thickness_px, 1.0, image);
-  image.remove_clip();
+  canvas.draw_segments(seen, {white, thickness_px + 3.0, 0.35});
+  canvas.draw_segments(seen, {wall_colour, thickness_px});
 }
 
-void draw_marker(PixelPoint centre, Image& image) {
-  image.fill_disc(centre, marker_radius_px + 1.5, white);
-  image.fill_disc(centre, marker_radius_px, wall_colour);
-  image.fill_disc(centre, marker_radius_px - 2.0, white);
-  image.fill_disc(centre, marker_radius_px - 4.5, marker_red);
+// A text on a pale plate.
+void draw_plate(Canvas& canvas, const PixelRect& area, const std::string& text, const TextStyle& style) {
+  canvas.fill(area, white, 0.8);
+  canvas.draw_text({{area.x + label_padding_px + 0.0, area.y + 0.5 * area.height}}, text, style);
+}
+
+PixelRect plate_about(PixelPoint middle, const std::string& text, const TextStyle& style) {
+  const int width = static_cast<int>(std::ceil(text_width_px(text, style))) + 2 * label_padding_px;
+  const int height = static_cast<int>(style.size_px) + label_padding_px;
+  return {static_cast<int>(middle.x) - width / 2, static_cast<int>(middle.y) - height / 2, width, height};
+}
+
+double length_of(std::span<const PixelPoint> points) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    length += std::hypot(points[i].x - points[i - 1].x, points[i].y - points[i - 1].y);
+  }
+  return length;
+}
+
+void label_contour(Canvas& canvas, std::span<const PixelPoint> points, double level, TakenPlaces& places) {
+  const TextStyle small{22.0, false, wall_colour};
+  std::string text;
+  append_number(text, std::round(level * 1e6) / 1e6);  // a multiple of the step, but for rounding
+  const PixelRect plate = plate_about(points[points.size() / 2], text, small);
+  if (length_of(points) < 6.0 * plate.width || !places.is_free(plate)) return;
+  places.take(plate);
+  draw_plate(canvas, plate, text, small);
+}
+
+// Seams first, then lines, then labels: none of them is crossed by another's seam.
+void draw_contours(Canvas& canvas, const HeatMap& map, const HeatMapLayout& layout, TakenPlaces& places) {
+  if (!draws_contours(map) || !layout.range) return;
+  const std::vector<ContourLine> lines = contour_lines(map, *layout.range, *map.contour_step);
+  std::vector<std::vector<PixelPoint>> drawn;
+  for (const ContourLine& line : lines) {
+    drawn.emplace_back();
+    for (const auto& [x_m, y_m] : line.points) drawn.back().push_back(layout.point(x_m, y_m));
+  }
+  for (const auto& points : drawn) canvas.draw_line(points, contour_seam);
+  for (const auto& points : drawn) canvas.draw_line(points, contour_stroke);
+  for (std::size_t index = 0; index < lines.size(); ++index) {
+    label_contour(canvas, drawn[index], lines[index].level, places);
+  }
+}
+
+void draw_marker(Canvas& canvas, PixelPoint centre) {
+  canvas.fill_disc(centre, marker_radius_px + 3.0, white);
+  canvas.fill_disc(centre, marker_radius_px, wall_colour);
+  canvas.fill_disc(centre, marker_radius_px - 4.0, white);
+  canvas.fill_disc(centre, marker_radius_px - 8.0, marker_red);
 }
 
 PixelRect marker_area(PixelPoint centre) {
-  const int reach = static_cast<int>(marker_radius_px) + 2;
+  const int reach = static_cast<int>(marker_radius_px) + 4;
   return {static_cast<int>(centre.x) - reach, static_cast<int>(centre.y) - reach, 2 * reach, 2 * reach};
 }
 
-bool is_free(const PixelRect& area, const PixelRect& plot, const std::vector<PixelRect>& taken) {
-  const auto overlaps = [&](const PixelRect& other) {
-    const PixelRect shared = intersection(area, other);
-    return shared.width > 0 && shared.height > 0;
-  };
-  return intersection(area, plot) == area && std::none_of(taken.begin(), taken.end(), overlaps);
-}
-
 // The first free place around the marker: right, left, above, below, then the four corners.
-std::optional<PixelRect> place_label(PixelPoint centre, int width, int height, const PixelRect& plot,
-                                     const std::vector<PixelRect>& taken) {
+std::optional<PixelRect> place_label(PixelPoint centre, int width, int height, const TakenPlaces& places) {
   const PixelRect marker = marker_area(centre);
   const int x = static_cast<int>(centre.x);
   const int y = static_cast<int>(centre.y);
@@ -120,96 +158,133 @@ std::optional<PixelRect> place_label(PixelPoint centre, int width, int height, c
                                                    {marker.x - width, marker.bottom()}}};
   for (const auto& corner : corners) {
     const PixelRect area{corner[0], corner[1], width, height};
-    if (is_free(area, plot, taken)) return area;
+    if (places.is_free(area)) return area;
   }
   return std::nullopt;
 }
 
-void draw_transmitters(const HeatMap& map, const HeatMapLayout& layout, Image& image) {
-  constexpr int padding_px = 3;
-  std::vector<PixelRect> taken;
-  std::vector<std::pair<PixelPoint, std::string>> visible;
-  for (const auto& transmitter : map.transmitters) {
+/// Transmitters within the plot.
+struct SeenMarker {
+  PixelPoint centre;
+  const std::string& label;
+};
+
+std::vector<SeenMarker> seen_markers(const HeatMap& map, const HeatMapLayout& layout, TakenPlaces& places) {
+  std::vector<SeenMarker> seen;
+  for (const HeatMap::Marker& transmitter : map.transmitters) {
     const PixelPoint centre = layout.point(transmitter.x_m, transmitter.y_m);
     if (!is_inside(layout, centre)) continue;
-    visible.emplace_back(centre, transmitter.label);
-    taken.push_back(marker_area(centre));
+    seen.push_back({centre, transmitter.label});
+    places.take(marker_area(centre));
   }
-  for (const auto& [centre, label] : visible) draw_marker(centre, image);
-  for (const auto& [centre, label] : visible) {
+  return seen;
+}
+
+void draw_transmitters(Canvas& canvas, const std::vector<SeenMarker>& markers, TakenPlaces& places) {
+  for (const SeenMarker& marker : markers) draw_marker(canvas, marker.centre);
+  for (const auto& [centre, label] : markers) {
     if (label.empty()) continue;
-    const auto area = place_label(centre, label_length_px(label) + 2 * padding_px, label_height_px + 2 * padding_px,
-                                  layout.plot, taken);
+    const PixelRect size = plate_about(centre, label, label_style);
+    const auto area = place_label(centre, size.width, size.height, places);
     if (!area) continue;
-    taken.push_back(*area);
-    image.shade_rectangle(*area, white, 0.8);
-    image.draw_text(area->x + padding_px, area->y + padding_px, label, wall_colour, label_scale);
+    places.take(*area);
+    draw_plate(canvas, *area, label, {label_style.size_px, false, wall_colour});
   }
 }
 
 // A tip above or below the bar: there are values beyond its end.
-void draw_bar_tip(const PixelRect& bar, bool upper, Image& image) {
-  for (int i = 1; i <= bar_tip_px - 2; ++i) {
-    const int inset = i * bar.width / 2 / (bar_tip_px - 2);
-    const int y = upper ? bar.y - 1 - i : bar.bottom() + i;
-    image.fill_rectangle({bar.x + inset, y, bar.width - 2 * inset, 1}, viridis(upper ? 1.0 : 0.0));
-  }
+void draw_bar_tip(Canvas& canvas, const PixelRect& bar, bool upper) {
+  const double foot = upper ? bar.y - 3.0 : bar.bottom() + 3.0, top = upper ? bar.y - 22.0 : bar.bottom() + 22.0;
+  const std::array<PixelPoint, 3> corners{
+      {{double(bar.x), foot}, {double(bar.right()), foot}, {bar.x + 0.5 * bar.width, top}}};
+  canvas.fill_polygon(corners, viridis(upper ? 1.0 : 0.0));
+  canvas.draw_line(corners, ink_stroke, true);
 }
 
-void draw_bar(const HeatMap& map, const HeatMapPlan& plan, Image& image) {
-  if (!plan.layout.range) return;
-  const ValueRange& range = *plan.layout.range;
-  const PixelRect& bar = plan.layout.bar;
-  for (int y = 0; y < bar.height; ++y) {
-    image.fill_rectangle({bar.x, bar.y + y, bar.width, 1}, viridis(1.0 - (y + 0.5) / bar.height));
-  }
-  image.draw_frame({bar.x - 1, bar.y - 1, bar.width + 2, bar.height + 2}, ink);
+void draw_bar_tips(Canvas& canvas, const HeatMap& map, const HeatMapLayout& layout) {
   bool below = false;
   bool above = false;
   for (std::size_t cell = 0; cell < map.values.size(); ++cell) {
-    below = below || (is_valued(map, cell) && map.values[cell] < range.low);
-    above = above || (is_valued(map, cell) && map.values[cell] > range.high);
+    below = below || (is_valued(map, cell) && map.values[cell] < layout.range->low);
+    above = above || (is_valued(map, cell) && map.values[cell] > layout.range->high);
   }
-  if (below) draw_bar_tip(bar, false, image);
-  if (above) draw_bar_tip(bar, true, image);
+  if (below) draw_bar_tip(canvas, layout.bar, false);
+  if (above) draw_bar_tip(canvas, layout.bar, true);
+}
+
+void draw_bar(Canvas& canvas, const HeatMap& map, const HeatMapPlan& plan) {
+  if (!plan.layout.range) return;
+  const PixelRect& bar = plan.layout.bar;
+  Image colours(bar.width, bar.height);
+  for (int y = 0; y < bar.height; ++y) {
+    for (int x = 0; x < bar.width; ++x) colours.set_pixel(x, y, viridis(1.0 - (y + 0.5) / bar.height));
+  }
+  canvas.draw_image(bar.x, bar.y, colours);
+  draw_frame(canvas, bar, ink_stroke, 0.5 * frame_px);
+  draw_bar_tips(canvas, map, plan.layout);
+  const double numbers_x = bar.right() + tick_px + gap_px + longest_label_px(plan.bar_ticks);
   for (const Tick& tick : plan.bar_ticks) {
-    const double share = 1.0 - share_of_range(tick.value, range);
-    const int y = bar.y + std::clamp(static_cast<int>(share * bar.height), 0, bar.height - 1);
-    image.fill_rectangle({bar.right(), y, tick_px + 1, 1}, ink);
+    const double y = bar.bottom() - share_of_range(tick.value, *plan.layout.range) * bar.height;
+    canvas.draw_line(std::array{PixelPoint{bar.right() + 1.0, y}, PixelPoint{bar.right() + 1.0 + tick_px, y}},
+                     ink_stroke);
     // Numbers end at one column, so that their digits stand under each other.
-    const int x = bar.right() + tick_px + gap_px + longest_label_px(plan.bar_ticks) - label_length_px(tick.label);
-    image.draw_text(x, y - 7 * label_scale / 2, tick.label, ink, label_scale);
+    canvas.draw_text({{numbers_x, y}, Anchor::right}, tick.label, label_style);
   }
-  const int name_x = bar.right() + tick_px + gap_px + longest_label_px(plan.bar_ticks) + 2 * gap_px;
-  const int name_y = bar.y + (bar.height - label_length_px(plan.bar_name)) / 2;
-  image.draw_text(name_x, name_y, plan.bar_name, ink, label_scale, TextDirection::upwards);
+  const PixelPoint name{numbers_x + 2.0 * gap_px + 0.5 * label_style.capital_px(), bar.y + 0.5 * bar.height};
+  canvas.draw_text({name, Anchor::middle, TextDirection::upwards}, plan.bar_name, label_style);
 }
 
-void draw_symbol(const LegendItem& item, const PixelRect& swatch, Image& image) {
-  const Symbol symbol = item.symbol;
-  const PixelPoint middle{swatch.x + 0.5 * swatch.width, swatch.y + 0.5 * swatch.height};
-  if (symbol == Symbol::transmitter) {
-    draw_marker(middle, image);
-  } else if (symbol == Symbol::wall) {
-    image.fill_rectangle({swatch.x, static_cast<int>(middle.y) - 1, swatch.width, 2}, wall_colour);
-  } else if (symbol == Symbol::category) {
-    image.fill_rectangle(swatch, category_colour(item.category));
-    image.draw_frame(swatch, ink);
-  } else if (symbol != Symbol::none) {
-    image.fill_rectangle(swatch, symbol == Symbol::no_value ? no_value_grey : hatch_ground);
-    if (symbol == Symbol::hatched) image.hatch_rectangle(swatch, object_hatch);
-    image.draw_frame(swatch, ink);
+// The look of cells, as in the map.
+Image swatch_of(const LegendItem& item) {
+  Image image(swatch_px, swatch_px, no_value_ground);
+  for (int y = 0; y < swatch_px && item.symbol != Symbol::no_value; ++y) {
+    for (int x = 0; x < swatch_px; ++x) {
+      const bool is_category = item.symbol == Symbol::category;
+      image.set_pixel(x, y, is_category ? category_pixel(item.category, x, y) : hatched_colour(hatch_ground, x, y));
+    }
+  }
+  return image;
+}
+
+void draw_symbol(Canvas& canvas, const LegendItem& item, const PixelRect& swatch) {
+  const double middle_y = swatch.y + 0.5 * swatch.height;
+  const std::array<PixelPoint, 2> across{{{double(swatch.x), middle_y}, {double(swatch.right()), middle_y}}};
+  if (item.symbol == Symbol::transmitter) {
+    draw_marker(canvas, {swatch.x + 0.5 * swatch.width, middle_y});
+  } else if (item.symbol == Symbol::wall) {
+    canvas.draw_line(across, {wall_colour, 4.0});
+  } else if (item.symbol == Symbol::contour) {
+    canvas.draw_line(across, contour_stroke);
+  } else if (item.symbol != Symbol::none) {
+    canvas.draw_image(swatch.x, swatch.y, swatch_of(item));
+    draw_frame(canvas, swatch, ink_stroke, 0.0);
   }
 }
 
-void draw_legend(const HeatMapPlan& plan, Image& image) {
+void draw_legend(Canvas& canvas, const HeatMapPlan& plan) {
   for (const LegendItem& item : plan.legend) {
     const int x = plan.left_px + item.x;
     const int y = plan.legend_y + item.y;
-    draw_symbol(item, {x, y, swatch_px, swatch_px}, image);
+    draw_symbol(canvas, item, {x, y, swatch_px, swatch_px});
     const int text_x = item.symbol == Symbol::none ? x : x + swatch_px + gap_px;
-    image.draw_text(text_x, y + (swatch_px - 7 * label_scale) / 2, item.text, ink, label_scale);
+    canvas.draw_text({{double(text_x), y + 0.5 * swatch_px}}, item.text, label_style);
   }
+}
+
+void draw_map(Canvas& canvas, const HeatMap& map, const HeatMapPlan& plan) {
+  const HeatMapLayout& layout = plan.layout;
+  TakenPlaces places(layout.plot);
+  const std::vector<SeenMarker> markers = seen_markers(map, layout, places);
+  canvas.clip(std::span(&layout.plot, 1));
+  canvas.draw_image(layout.plot.x, layout.plot.y, cells_image(map, layout));
+  draw_walls(canvas, map, layout);
+  draw_contours(canvas, map, layout, places);
+  canvas.unclip();
+  draw_axes(canvas, plan.frame);
+  draw_transmitters(canvas, markers, places);
+  draw_bar(canvas, map, plan);
+  draw_legend(canvas, plan);
+  draw_title(canvas, plan.title, plan.left_px);
 }
 
 }  // namespace
@@ -218,25 +293,19 @@ HeatMapLayout heat_map_layout(const HeatMap& map) {
   return detail::plan_heat_map(map).layout;
 }
 
-Image draw_heat_map(const HeatMap& map) {
+void write_heat_map(const HeatMap& map, AtomicFile& file, PictureFormat format) {
   const HeatMapPlan plan = detail::plan_heat_map(map);
-  Image image(plan.layout.width_px, plan.layout.height_px, white);
-  draw_cells(map, plan.layout, image);
-  draw_walls(map, plan.layout, image);
-  detail::draw_axes(image, plan.layout.plot, plan.x, plan.y);
-  draw_transmitters(map, plan.layout, image);
-  draw_bar(map, plan, image);
-  draw_legend(plan, image);
-  image.draw_text(plan.left_px, margin_px, plan.title.text, ink, plan.title.scale);
-  return image;
+  if (!can_draw() && format == PictureFormat::png) return draw_cells(map).write_png(file.stream());
+  require_drawing(file);
+  draw_picture(file.stream(), format, {plan.layout.width_px, plan.layout.height_px, map.title},
+               [&](Canvas& canvas) { draw_map(canvas, map, plan); });
 }
 
-void write_heat_map_png(const HeatMap& map, const std::filesystem::path& path) {
-  draw_heat_map(map).write_png(path);
-}
-
-void write_heat_map_png(const HeatMap& map, AtomicFile& file) {
-  draw_heat_map(map).write_png(file.stream());
+void write_heat_map(const HeatMap& map, const std::filesystem::path& path) {
+  const PictureFormat format = picture_format_of(path);
+  AtomicFile file(path);
+  write_heat_map(map, file, format);
+  file.commit();
 }
 
 }  // namespace dcem::io

@@ -5,19 +5,21 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dcem/io/src/text/number_text.hpp"
+
 namespace dcem::io {
 namespace detail {
 namespace {
 
-constexpr int bar_width_px = 24;
-constexpr int bar_gap_px = 34;
-constexpr int min_plot_px = 72;
-constexpr int min_bar_px = 160;
-constexpr int min_picture_px = 480;
-constexpr double target_plot_px = 800.0;
-constexpr double target_upright_px = 400.0;  // of an axis that is not to the scale of the other
-constexpr double max_cell_px = 240.0;
-constexpr double max_unsampled_px = 1500.0;
+constexpr int bar_width_px = 44;
+constexpr int bar_gap_px = 56;
+constexpr int min_plot_px = 130;
+constexpr int min_bar_px = 300;
+constexpr int min_picture_px = 800;
+constexpr double target_plot_px = 1280.0;
+constexpr double target_upright_px = 640.0;  // of an axis that is not to the scale of the other
+constexpr double max_cell_px = 400.0;
+constexpr double max_unsampled_px = 2000.0;
 
 // Differences of larger values could overflow.
 constexpr double largest_value = 1e100;
@@ -48,6 +50,10 @@ void check(const HeatMap& map) {
   check_categories(map);
   check_axis(map.origin_x_m, map.spacing_x_m);
   check_axis(map.origin_y_m, map.spacing_y_m);
+  require(!map.contour_step || (*map.contour_step > 0.0 && *map.contour_step <= largest_value),
+          "the step of the contours is not above zero");
+  require(map.relief.tones.size() == static_cast<std::size_t>(map.relief.columns) * map.relief.rows,
+          "the relief has not the size of its tones");
   require(!map.range || (map.range->low >= -largest_value && map.range->high <= largest_value &&
                          map.range->low < map.range->high),
           "the range is empty or not finite");
@@ -73,6 +79,14 @@ int legend_item_width(const LegendItem& item) {
   return (item.symbol == Symbol::none ? 0 : swatch_px + gap_px) + label_length_px(item.text);
 }
 
+std::string contour_text(const HeatMap& map) {
+  std::string text = "every ";
+  append_number(text, *map.contour_step);
+  // The difference of two levels in dBm is in dB.
+  const std::string unit = map.unit.starts_with("dB") ? "dB" : map.unit;
+  return text + (unit.empty() ? "" : " " + unit);
+}
+
 std::vector<LegendItem> legend_items(const HeatMap& map, const HeatMapLayout& layout) {
   bool any_grey = false;
   bool any_hatched = false;
@@ -90,6 +104,7 @@ std::vector<LegendItem> legend_items(const HeatMap& map, const HeatMapLayout& la
   }
   if (inside > 0) items.push_back({Symbol::transmitter, "transmitter"});
   if (!map.walls_m.empty()) items.push_back({Symbol::wall, "wall"});
+  if (draws_contours(map)) items.push_back({Symbol::contour, contour_text(map)});
   if (any_grey) items.push_back({Symbol::no_value, map.no_value_label});
   if (any_hatched) items.push_back({Symbol::hatched, "inside an object or on a wall"});
   if (outside > 0) items.push_back({Symbol::none, "transmitters outside the map: " + std::to_string(outside)});
@@ -103,8 +118,8 @@ std::vector<LegendItem> legend_items(const HeatMap& map, const HeatMapLayout& la
 
 // Sets the items into lines no longer than `width_px`; returns the height.
 int flow_legend(std::vector<LegendItem>& items, int width_px) {
-  constexpr int line_px = 30;
-  constexpr int between_px = 28;
+  constexpr int line_px = 50;
+  constexpr int between_px = 44;
   int x = 0;
   int y = 0;
   for (LegendItem& item : items) {
@@ -161,29 +176,29 @@ void choose_ticks(const HeatMap& map, HeatMapPlan& plan) {
   const HeatMapLayout& layout = plan.layout;
   const double right_m = layout.left_m + layout.plot.width / layout.horizontal_px_per_m;
   const double top_m = layout.bottom_m + layout.plot.height / layout.vertical_px_per_m;
-  plan.x = {horizontal_axis_ticks(layout.left_m, right_m, layout.plot.width),
-            axis_name(map.axes.x_label, map.axes.x_unit), layout.left_m, layout.horizontal_px_per_m};
-  plan.y = {axis_ticks(layout.bottom_m, top_m, layout.plot.height, 50), axis_name(map.axes.y_label, map.axes.y_unit),
-            layout.bottom_m, layout.vertical_px_per_m};
-  if (layout.range) plan.bar_ticks = axis_ticks(layout.range->low, layout.range->high, layout.bar.height, 34);
+  plan.frame.x = {horizontal_axis_ticks(layout.left_m, right_m, layout.plot.width),
+                  axis_name(map.axes.x_label, map.axes.x_unit), layout.left_m, layout.horizontal_px_per_m};
+  plan.frame.y = {axis_ticks(layout.bottom_m, top_m, layout.plot.height, 90),
+                  axis_name(map.axes.y_label, map.axes.y_unit), layout.bottom_m, layout.vertical_px_per_m};
+  if (layout.range) plan.bar_ticks = axis_ticks(layout.range->low, layout.range->high, layout.bar.height, 64);
 }
 
 // The columns of the picture from left to right; returns the gap between plot and bar.
 int set_columns(HeatMapPlan& plan, const std::string& title) {
   HeatMapLayout& layout = plan.layout;
-  const int half_x_label = longest_label_px(plan.x.ticks) / 2;
-  plan.left_px = plot_left_px(plan.x.ticks, plan.y.ticks);
+  const int half_x_label = longest_label_px(plan.frame.x.ticks) / 2;
+  plan.left_px = plot_left_px(plan.frame.x.ticks, plan.frame.y.ticks);
   const int bar_gap = std::max(bar_gap_px, half_x_label + gap_px);
   const int bar_px = bar_width_px + tick_px + gap_px + longest_label_px(plan.bar_ticks) + 2 * gap_px + label_height_px;
   const int right = margin_px + (layout.range ? bar_gap + bar_px : half_x_label);
   const int content_px = plan.left_px + layout.plot.width + right;
-  const int title_px = plan.left_px + label_length_px(title) + margin_px;
+  const int title_px = plan.left_px + static_cast<int>(text_width_px(title, title_style)) + 2 * margin_px;
   int legend_px = 0;
   for (const LegendItem& item : plan.legend) {
     legend_px = std::max(legend_px, plan.left_px + legend_item_width(item) + margin_px);
   }
   // A tiny map still has room for its title and its legend.
-  layout.width_px = std::max({content_px, legend_px, min_picture_px, std::min(title_px, 900)});
+  layout.width_px = std::max({content_px, legend_px, min_picture_px, std::min(title_px, 1400)});
   return bar_gap;
 }
 
@@ -199,15 +214,16 @@ HeatMapPlan plan_heat_map(const HeatMap& map) {
   choose_ticks(map, plan);
   plan.legend = legend_items(map, layout);
   const int bar_gap = set_columns(plan, map.title);
-  const int text_width_px = layout.width_px - plan.left_px - margin_px;
-  plan.title = fit_title(map.title, text_width_px);
+  const int line_px = layout.width_px - plan.left_px - margin_px;
+  plan.title = fit_title(map.title, line_px);
 
   layout.plot.x = plan.left_px;
-  layout.plot.y = margin_px + text_height_px(title_scale) + gap_px + bar_tip_px;
+  layout.plot.y = title_bottom_px + bar_tip_px;
+  plan.frame.plot = layout.plot;
   layout.bar = {layout.plot.right() + bar_gap, layout.plot.y, layout.range ? bar_width_px : 0, layout.bar.height};
   const int axis_bottom = layout.plot.bottom() + x_axis_height_px();
   plan.legend_y = std::max(axis_bottom, layout.bar.bottom() + bar_tip_px) + gap_px;
-  const int legend_height = flow_legend(plan.legend, text_width_px);
+  const int legend_height = flow_legend(plan.legend, line_px);
   layout.height_px = plan.legend_y + legend_height + (legend_height > 0 ? gap_px : 0);
   return plan;
 }
@@ -218,6 +234,10 @@ bool is_hatched(const HeatMap& map, std::size_t cell) {
 
 bool is_valued(const HeatMap& map, std::size_t cell) {
   return std::abs(map.values[cell]) <= largest_value && !is_hatched(map, cell);
+}
+
+bool draws_contours(const HeatMap& map) {
+  return map.contour_step && map.categories.empty();
 }
 
 bool is_inside(const HeatMapLayout& layout, PixelPoint place) {
@@ -233,13 +253,17 @@ std::optional<ValueRange> default_value_range(const HeatMap& map) {
   for (std::size_t cell = 0; cell < map.values.size(); ++cell) {
     if (detail::is_valued(map, cell)) values.push_back(map.values[cell]);
   }
+  return value_range(std::move(values), map.unit);
+}
+
+std::optional<ValueRange> value_range(std::vector<double> values, const std::string& unit) {
   if (values.empty()) return std::nullopt;
   // The rank counts from below, so that a map of fewer than 50 values keeps its lowest one.
   const auto rank = static_cast<std::ptrdiff_t>(0.02 * static_cast<double>(values.size()));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   const double low = values[static_cast<std::size_t>(rank)];
   const double high = *std::max_element(values.begin(), values.end());
-  const bool decibels = map.unit.rfind("dB", 0) == 0;
+  const bool decibels = unit.rfind("dB", 0) == 0;
   // Values that differ by rounding alone count as equal; equal values get a bar of their own size around them.
   const bool equal = high - low <= 1e-9 * std::max(std::abs(low), std::abs(high));
   const double own_size = high == 0.0 ? 1.0 : std::abs(high);

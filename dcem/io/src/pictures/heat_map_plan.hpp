@@ -9,11 +9,11 @@
 
 namespace dcem::io::detail {
 
-inline constexpr int bar_tip_px = 14;
-inline constexpr int swatch_px = 22;
+inline constexpr int bar_tip_px = 24;
+inline constexpr int swatch_px = 36;
 
 /// What stands before a text of the legend.
-enum class Symbol { no_value, hatched, wall, transmitter, category, none };
+enum class Symbol { no_value, hatched, wall, transmitter, category, contour, none };
 
 struct LegendItem {
   Symbol symbol = Symbol::none;
@@ -28,8 +28,7 @@ struct HeatMapPlan {
   HeatMapLayout layout;
   FittedTitle title;  // to the width of the picture
   std::string bar_name;
-  PictureAxis x;
-  PictureAxis y;
+  PictureFrame frame;  // the plot and its axes
   std::vector<Tick> bar_ticks;
   std::vector<LegendItem> legend;
   int legend_y = 0;
@@ -43,6 +42,8 @@ HeatMapPlan plan_heat_map(const HeatMap& map);
 bool is_hatched(const HeatMap& map, std::size_t cell);
 /// The cell has a value to be shown.
 bool is_valued(const HeatMap& map, std::size_t cell);
+/// Lines of equal value are drawn; categories have none.
+bool draws_contours(const HeatMap& map);
 /// The place lies in the plot.
 bool is_inside(const HeatMapLayout& layout, PixelPoint place);
 

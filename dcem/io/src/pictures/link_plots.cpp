@@ -41,7 +41,7 @@ void drop_empty_lines(LineChart& chart, bool keep_first) {
   });
 }
 
-/// Vertical lines, which a chart draws as a line that falls to the floor between two bins.
+/// Vertical lines, which a chart draws as lines with gaps; from the top, so that dashes begin there.
 /// `place` is where in its bin a bar stands, so that two of them can be told apart.
 template <typename Power>
 LineChart::Series bars(const char* name, std::span<const PdpTap> taps, double first_ns, double bin_ns, double floor_dbm,
@@ -50,7 +50,7 @@ LineChart::Series bars(const char* name, std::span<const PdpTap> taps, double fi
   for (const PdpTap& tap : taps) {
     const double level = level_dbm(tap);
     if (!(level > floor_dbm)) continue;
-    for (const double value : {floor_dbm, level, nothing}) {
+    for (const double value : {level, floor_dbm, nothing}) {
       series.x.push_back(1e9 * tap.delay_s + first_ns * bin_ns);
       series.y.push_back(value);
     }
@@ -115,7 +115,7 @@ void LinkPlots::count_paths(std::vector<std::string>&& ids, Figures& figures) {
 }
 
 std::string LinkPlots::title(const std::string& what) const {
-  return names_.transmitter + " to " + names_.receiver + ": " + what;
+  return name() + ": " + what;
 }
 
 template <typename Value>
@@ -156,23 +156,45 @@ LineChart LinkPlots::count_chart() const {
   return paths;
 }
 
-std::vector<LineChart> LinkPlots::charts() const {
+LineChart LinkPlots::power_chart() const {
   using Values = LinkStatistics;
   LineChart power = chart("received power", "received power", "dBm");
   power.series = {series("coherent", 1.0, [](const Values& all) { return all.power_dbm; }),
                   series("incoherent", 1.0, [](const Values& all) { return all.power_incoherent_dbm; })};
+  return power;
+}
+
+LineChart LinkPlots::spread_chart() const {
   LineChart delay = chart("rms delay spread", "delay spread", "ns");
   delay.y_scale = ChartScale::linear_from_zero;
-  delay.series = {series("rms delay spread", 1e9, [](const Values& all) { return all.rms_delay_spread_s; })};
-  LineChart k_factor = chart("K factor (line of sight over the rest)", "K factor", "dB");
-  k_factor.series = {series("K factor", 1.0, [](const Values& all) { return all.k_factor_db; })};
+  delay.series = {series("rms delay spread", 1e9, [](const LinkStatistics& all) { return all.rms_delay_spread_s; })};
+  return delay;
+}
+
+LineChart LinkPlots::doppler_chart() const {
+  using Values = LinkStatistics;
   LineChart doppler = chart("Doppler shift, weighted by power", "frequency", "Hz");
   doppler.series = {series("mean", 1.0, [](const Values& all) { return all.mean_doppler_hz; }),
                     series("rms spread", 1.0, [](const Values& all) { return all.rms_doppler_spread_hz; })};
-  std::vector<LineChart> charts{power, mechanism_chart(), delay, k_factor, doppler, count_chart()};
+  return doppler;
+}
+
+std::vector<LineChart> LinkPlots::charts() const {
+  LineChart k_factor = chart("K factor (line of sight over the rest)", "K factor", "dB");
+  k_factor.series = {series("K factor", 1.0, [](const LinkStatistics& all) { return all.k_factor_db; })};
+  std::vector<LineChart> charts{power_chart(), mechanism_chart(), spread_chart(),
+                                k_factor,      doppler_chart(),   count_chart()};
   for (LineChart& one : charts) drop_empty_lines(one, &one == &charts.front());
   std::erase_if(charts, [](const LineChart& one) { return one.series.empty(); });
   return charts;
+}
+
+std::vector<LineChart> LinkPlots::panels() const {
+  std::vector<LineChart> panels{power_chart(), spread_chart(), doppler_chart()};
+  panels[0].title = "received power";
+  panels[1].title = "rms delay spread";
+  panels[2].title = "Doppler shift";
+  return panels;
 }
 
 LineChart LinkPlots::profile_at(std::size_t frame) const {

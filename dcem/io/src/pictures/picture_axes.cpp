@@ -1,32 +1,38 @@
 #include "dcem/io/src/pictures/picture_axes.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace dcem::io::detail {
 namespace {
 
-void draw_x_axis(Image& image, const PixelRect& plot, const PictureAxis& axis) {
-  const int label_y = plot.bottom() + tick_px + gap_px;
-  for (const Tick& tick : axis.ticks) {
-    const double place = plot.x + (tick.value - axis.low) * axis.px_per_unit;
-    const int x = std::clamp(static_cast<int>(place), plot.x, plot.right() - 1);
-    image.fill_rectangle({x, plot.bottom(), 1, tick_px + 1}, picture_ink);
-    image.draw_text(x - label_length_px(tick.label) / 2, label_y, tick.label, picture_ink, label_scale);
-  }
-  const int name_x = plot.x + (plot.width - label_length_px(axis.name)) / 2;
-  image.draw_text(name_x, label_y + label_height_px + gap_px, axis.name, picture_ink, label_scale);
+void draw_segment(Canvas& canvas, PixelPoint from, PixelPoint to, const Stroke& stroke) {
+  canvas.draw_line(std::array{from, to}, stroke);
 }
 
-void draw_y_axis(Image& image, const PixelRect& plot, const PictureAxis& axis) {
-  for (const Tick& tick : axis.ticks) {
-    const double place = plot.bottom() - (tick.value - axis.low) * axis.px_per_unit;
-    const int y = std::clamp(static_cast<int>(place), plot.y, plot.bottom() - 1);
-    image.fill_rectangle({plot.x - 1 - tick_px, y, tick_px + 1, 1}, picture_ink);
-    const int x = plot.x - tick_px - gap_px - label_length_px(tick.label);
-    image.draw_text(x, y - 7 * label_scale / 2, tick.label, picture_ink, label_scale);
+void draw_x_axis(Canvas& canvas, const PictureFrame& frame, AxisLabels labels) {
+  const PixelRect& plot = frame.plot;
+  const double label_y = plot.bottom() + tick_px + gap_px + 0.5 * label_style.capital_px();
+  for (const Tick& tick : frame.x.ticks) {
+    const double x = std::clamp(plot.x + frame.x.offset_px(tick.value), double(plot.x), double(plot.right()));
+    draw_segment(canvas, {x, plot.bottom() + 1.0}, {x, plot.bottom() + 1.0 + tick_px}, ink_stroke);
+    if (labels == AxisLabels::all) canvas.draw_text({{x, label_y}, Anchor::middle}, tick.label, label_style);
   }
-  const int name_y = plot.y + (plot.height - label_length_px(axis.name)) / 2;
-  image.draw_text(margin_px, name_y, axis.name, picture_ink, label_scale, TextDirection::upwards);
+  if (labels != AxisLabels::all) return;
+  const PixelPoint middle{plot.x + 0.5 * plot.width, label_y + label_height_px + gap_px};
+  canvas.draw_text({middle, Anchor::middle}, frame.x.name, label_style);
+}
+
+void draw_y_axis(Canvas& canvas, const PictureFrame& frame) {
+  const PixelRect& plot = frame.plot;
+  for (const Tick& tick : frame.y.ticks) {
+    const double y = std::clamp(plot.bottom() - frame.y.offset_px(tick.value), double(plot.y), double(plot.bottom()));
+    draw_segment(canvas, {plot.x - 1.0 - tick_px, y}, {plot.x - 1.0, y}, ink_stroke);
+    canvas.draw_text({{double(plot.x - tick_px - gap_px), y}, Anchor::right}, tick.label, label_style);
+  }
+  const double name_x = margin_px + 0.5 * label_style.capital_px();
+  canvas.draw_text({{name_x, plot.y + 0.5 * plot.height}, Anchor::middle, TextDirection::upwards}, frame.y.name,
+                   label_style);
 }
 
 }  // namespace
@@ -40,21 +46,40 @@ int x_axis_height_px() {
   return tick_px + 2 * label_height_px + 3 * gap_px;
 }
 
-void draw_axes(Image& image, const PixelRect& plot, const PictureAxis& x, const PictureAxis& y) {
-  image.draw_frame({plot.x - 1, plot.y - 1, plot.width + 2, plot.height + 2}, picture_ink);
-  draw_x_axis(image, plot, x);
-  draw_y_axis(image, plot, y);
+void draw_grid_lines(Canvas& canvas, const PictureFrame& frame) {
+  const PixelRect& plot = frame.plot;
+  const Stroke pale{grid_grey, frame_px};
+  for (const Tick& tick : frame.x.ticks) {
+    const double x = plot.x + frame.x.offset_px(tick.value);
+    if (x > plot.x && x < plot.right()) draw_segment(canvas, {x, double(plot.y)}, {x, double(plot.bottom())}, pale);
+  }
+  for (const Tick& tick : frame.y.ticks) {
+    const double y = plot.bottom() - frame.y.offset_px(tick.value);
+    if (y > plot.y && y < plot.bottom()) draw_segment(canvas, {double(plot.x), y}, {double(plot.right()), y}, pale);
+  }
+}
+
+void draw_axes(Canvas& canvas, const PictureFrame& frame, AxisLabels x_labels) {
+  draw_frame(canvas, frame.plot, ink_stroke, 0.5 * frame_px);
+  draw_x_axis(canvas, frame, x_labels);
+  draw_y_axis(canvas, frame);
 }
 
 FittedTitle fit_title(const std::string& title, int width_px) {
-  if (text_length_px(title, title_scale) <= width_px) return {title, title_scale};
-  FittedTitle fitted{title, label_scale};
-  std::string kept = title;
-  while (!kept.empty() && label_length_px(fitted.text) > width_px) {
+  if (text_width_px(title, title_style) <= width_px) return {title};
+  FittedTitle fitted{title, {label_style.size_px, true}};
+  std::string kept = drawable_text(title);
+  while (!kept.empty() && text_width_px(fitted.text, fitted.style) > width_px) {
+    while ((static_cast<unsigned char>(kept.back()) & 0xC0U) == 0x80U) kept.pop_back();
     kept.pop_back();
     fitted.text = kept + "...";
   }
   return fitted;
+}
+
+void draw_title(Canvas& canvas, const FittedTitle& title, int left_px) {
+  const PixelPoint place{double(left_px), margin_px + 0.5 * title_style.capital_px()};
+  canvas.draw_text({place, Anchor::left}, title.text, title.style);
 }
 
 }  // namespace dcem::io::detail

@@ -38,7 +38,11 @@ std::size_t plotted_links(const Scene& scene, std::span<const Device> receivers)
 
 PlotCollector::PlotCollector(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers,
                              const ResultFacts& facts, const OutputSettings& output)
-    : folder_(folder), scene_(scene), profile_frame_(profile_frame_of(facts, output)), first_frame_(facts.first_frame) {
+    : folder_(folder),
+      scene_(scene),
+      profile_frame_(profile_frame_of(facts, output)),
+      first_frame_(facts.first_frame),
+      formats_(output.plots_formats) {
   const std::span<const Device> transmitters = scene.transmitters();
   each_link(transmitters, receivers, [&](std::size_t transmitter, std::size_t receiver) {
     if (links_.size() == output.plots_max_links) return;
@@ -75,22 +79,28 @@ void PlotCollector::add(const FrameResult& frame) {
 }
 
 template <typename Draw>
-void PlotCollector::write_file(const std::string& name, Draw&& draw) {
-  AtomicFile& file = folder_.open(name);
-  draw(file);
-  file.close();
+void PlotCollector::write_files(const std::string& name, PictureFormat usual, Draw&& draw) {
+  for (const PictureFormat format : formats_or(formats_, usual)) {
+    AtomicFile& file = folder_.open(name + "." + std::string(word_of(format)));
+    draw(file, format);
+    file.close();
+  }
 }
 
 void PlotCollector::write_over_time(const Link& link) {
-  write_file("plot_" + link.name + ".svg", [&](AtomicFile& file) {
-    const std::vector<LineChart> charts = link.plots.charts();
-    file.write(line_chart_svg(charts));
+  const LinkPlots& plots = link.plots;
+  write_files("plot_" + link.name, PictureFormat::svg,
+              [&](AtomicFile& file, PictureFormat format) { write_line_charts(plots.charts(), file, format); });
+  write_files("panels_" + link.name, PictureFormat::pdf, [&](AtomicFile& file, PictureFormat format) {
+    write_panels(plots.name(), plots.panels(), file, format);
   });
-  if (const auto profile = link.plots.profile()) {
-    write_file("pdp_" + link.name + ".png", [&](AtomicFile& file) { write_heat_map_png(*profile, file); });
+  if (const auto profile = plots.profile()) {
+    write_files("pdp_" + link.name, PictureFormat::png,
+                [&](AtomicFile& file, PictureFormat format) { write_heat_map(*profile, file, format); });
   }
-  if (const auto taps = link.plots.taps()) {
-    write_file("taps_" + link.name + ".png", [&](AtomicFile& file) { write_scatter_chart_png(*taps, file); });
+  if (const auto taps = plots.taps()) {
+    write_files("taps_" + link.name, PictureFormat::png,
+                [&](AtomicFile& file, PictureFormat format) { write_scatter_chart(*taps, file, format); });
   }
 }
 
@@ -101,8 +111,10 @@ void PlotCollector::write() {
     const std::size_t frame = profile_frame_.value_or(link.plots.frames() / 2);
     if (frame >= link.plots.frames()) continue;
     const std::string number = std::to_string(first_frame_ + frame);
-    write_file("pdp_" + link.name + "_" + number + ".svg",
-               [&](AtomicFile& file) { file.write(line_chart_svg(link.plots.profile_at(frame))); });
+    const LineChart profile = link.plots.profile_at(frame);
+    write_files("pdp_" + link.name + "_" + number, PictureFormat::svg, [&](AtomicFile& file, PictureFormat format) {
+      write_line_charts(std::span(&profile, 1), file, format);
+    });
   }
 }
 

@@ -7,11 +7,13 @@
 
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/link_plots.hpp"
+#include "dcem/io/picture_format.hpp"
 #include "dcem/io/result_writer.hpp"
 
 namespace dcem::io {
 
-/// Writes `plot_<tx>_<rx>.svg`, `pdp_<tx>_<rx>.png`, `taps_<tx>_<rx>.png` over time, and `pdp_<tx>_<rx>_<frame>.svg`.
+/// Writes `plot_<tx>_<rx>.svg`, `panels_<tx>_<rx>.pdf`, `pdp_<tx>_<rx>.png`, `taps_<tx>_<rx>.png` over time, and
+/// `pdp_<tx>_<rx>_<frame>.svg`; all of them in the formats that are asked for, where some are.
 class PlotCollector {
  public:
   /// Throws std::invalid_argument where the frame asked for is not among those of the run, and where two links would
@@ -33,12 +35,13 @@ class PlotCollector {
   void check_names() const;
   void write_over_time(const Link& link);
   template <typename Draw>
-  void write_file(const std::string& name, Draw&& draw);
+  void write_files(const std::string& name, PictureFormat usual, Draw&& draw);
 
   OutputFolder& folder_;
   const Scene& scene_;
   std::optional<std::size_t> profile_frame_;  // counted from the first of the run; absent: the middle one
   std::size_t first_frame_ = 0;
+  PictureFormats formats_;
   std::vector<Link> links_;  // by transmitter, then receiver
 };
 

@@ -86,8 +86,8 @@ void fields(auto& archive, IsOf<LinkStatistics> auto& value) {
           azimuth_departure_rad, zenith_arrival_rad, zenith_departure_rad, mean_doppler_hz, doppler_spread_hz);
 }
 void fields(auto& archive, IsOf<LinkResult> auto& value) {
-  auto& [transmitter, receiver, complete, paths, diffuse, statistics] = value;
-  archive(transmitter, receiver, complete, paths, diffuse, statistics);
+  auto& [transmitter, receiver, complete, paths, diffuse, statistics, valid_until_m] = value;
+  archive(transmitter, receiver, complete, paths, diffuse, statistics, valid_until_m);
 }
 void fields(auto& archive, IsOf<TreeUpdateReport> auto& value) {
   auto& [kept, refit, rebuilt, subtrees, root_rebuilt, sah_cost, sah_cost_at_build, reinserted, rotated, in_place] =
@@ -95,8 +95,8 @@ void fields(auto& archive, IsOf<TreeUpdateReport> auto& value) {
   archive(kept, refit, rebuilt, subtrees, root_rebuilt, sah_cost, sah_cost_at_build, reinserted, rotated, in_place);
 }
 void fields(auto& archive, IsOf<CacheCounters> auto& value) {
-  auto& [revalidated, reused, expired, born, died] = value;
-  archive(revalidated, reused, expired, born, died);
+  auto& [taken_over, revalidated, reused, expired, born, died] = value;
+  archive(taken_over, revalidated, reused, expired, born, died);
 }
 void fields(auto& archive, IsOf<WorkCounters> auto& value) {
   auto& [rays, legs, proposed, solved, paths, tiles, unfinished, residual_db, nodes_visited, primitives_tested] = value;

@@ -107,7 +107,7 @@ void ResultWriter::append_link(std::string& text, const FrameResult& frame, cons
   line.count(frame.index).number(frame.time_s);
   line.prepared(csv_transmitters_[link.transmitter]).prepared(csv_receivers_[link.receiver]);
   line.flag(values.line_of_sight).count(values.path_count).flag(link.complete);
-  line.empty();  // valid_until_m: nothing is proved about other frames
+  line.number(link.valid_until_m);
   line.number(values.power_dbm).number(values.power_incoherent_dbm).number(values.power_los_dbm);
   line.number(values.power_reflected_dbm).number(values.power_transmitted_dbm);
   line.number(values.power_diffracted_dbm).number(values.power_diffuse_dbm);

@@ -87,7 +87,8 @@ Json tree_json(const TreeUpdateReport& tree) {
 }
 
 Json cache_json(const CacheCounters& cache) {
-  return {{"revalidated", cache.revalidated},
+  return {{"taken_over", cache.taken_over},
+          {"revalidated", cache.revalidated},
           {"reused", cache.reused},
           {"expired", cache.expired},
           {"born", cache.born},
@@ -185,8 +186,8 @@ std::vector<double> RunSummary::frame_times_s() const {
 
 std::string RunSummary::cache_text(const CacheCounters& cache) const {
   if (facts_.cache == CacheMode::off) return "off";
-  return std::string(word_of(facts_.cache)) + ": " + std::to_string(cache.reused) + " paths reused, " +
-         std::to_string(cache.born) + " born, " + std::to_string(cache.died) + " died";
+  return std::string(word_of(facts_.cache)) + ": " + std::to_string(cache.taken_over + cache.reused) +
+         " paths reused, " + std::to_string(cache.born) + " born, " + std::to_string(cache.died) + " died";
 }
 
 std::vector<std::string> RunSummary::warnings() const {

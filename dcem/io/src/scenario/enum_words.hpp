@@ -37,7 +37,8 @@ struct EnumWords<Discovery> {
 };
 template <>
 struct EnumWords<CacheMode> {
-  static constexpr std::array in_files{EnumWord{CacheMode::off, "off"}, EnumWord{CacheMode::seed, "seed"}};
+  static constexpr std::array in_files{EnumWord{CacheMode::off, "off"}, EnumWord{CacheMode::seed, "seed"},
+                                       EnumWord{CacheMode::exact, "exact"}};
   static constexpr const char* otherwise = "automatic";
 };
 template <>

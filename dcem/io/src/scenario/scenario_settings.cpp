@@ -110,21 +110,58 @@ void read_doppler(const JsonValue& value, OutputSettings& output) {
   if (!value.is_boolean()) output.doppler_bin_hz = value.object().number("bin_hz", output.doppler_bin_hz);
 }
 
+[[noreturn]] void refuse_drawing(const JsonValue& value) {
+  value.fail(std::string(no_drawing) + "; expected " + std::string(drawing_expected));
+}
+
+/// Formats of pictures, each once, in the order of the enumeration; other words are none.
+std::vector<PictureFormat> read_formats(const JsonValue& list) {
+  std::vector<PictureFormat> formats;
+  for (const PictureFormat format : {PictureFormat::png, PictureFormat::svg, PictureFormat::pdf}) {
+    for (const JsonValue& word : list.elements()) {
+      if (picture_format(word.word()) != format) continue;
+      if (!can_draw() && format != PictureFormat::png) refuse_drawing(word);
+      if (formats.empty() || formats.back() != format) formats.push_back(format);
+    }
+  }
+  return formats;
+}
+
 void read_plots(const JsonValue& value, OutputSettings& output) {
   output.plots = is_wanted(value);
+  if (output.plots && !can_draw()) refuse_drawing(value);
   if (value.is_boolean()) return;
   const JsonObject object = value.object();
   output.plots_max_links = object.count("max_links", output.plots_max_links);
   if (const auto frame = object.find("pdp_frame")) output.plots_pdp_frame = static_cast<std::size_t>(frame->integer());
+  if (const auto formats = object.find("formats")) output.plots_formats = read_formats(*formats);
 }
 
-/// `true`, or a list of the endings of the files that are wanted.
-MapOutputs read_map_outputs(const JsonValue& value) {
-  if (value.is_boolean() && value.boolean()) return {};
+/// Which endings are wanted.
+MapOutputs read_map_files(const JsonValue& list) {
   std::set<std::string> wanted;
-  for (const JsonValue& ending : value.elements()) wanted.insert(ending.word());
-  const auto wants = [&](const char* ending) { return wanted.contains(ending); };
-  return {wants("csv"), wants("png"), wants("npz"), wants("asc"), wants("svg")};
+  for (const JsonValue& ending : list.elements()) wanted.insert(ending.word());
+  return {wanted.contains("csv"), wanted.contains("npz"), wanted.contains("asc"), read_formats(list)};
+}
+
+ValueRange read_range(const JsonValue& value) {
+  const std::vector<JsonValue> ends = value.elements();
+  const ValueRange range{ends[0].number(), ends[1].number()};
+  if (!(range.low < range.high)) value.fail("no range; expected the lower end first");
+  return range;
+}
+
+/// `true`, a list of endings, or both and how maps are drawn.
+void read_map(const JsonValue& value, OutputSettings& output) {
+  if (value.is_boolean()) return void(value.boolean());
+  if (value.raw().is_array()) return void(output.map = read_map_files(value));
+  const JsonObject object = value.object();
+  MapPictureSettings& pictures = output.map_pictures;
+  if (const auto files = object.find("files")) output.map = read_map_files(*files);
+  if (const auto range = object.find("range_dbm")) pictures.range_dbm = read_range(*range);
+  if (const auto step = object.find("contours_db")) pictures.contours_db = step->number();
+  pictures.finer_cells = object.count("finer_cells", pictures.finer_cells);
+  pictures.hillshade = object.boolean("hillshade", pictures.hillshade);
 }
 
 void read_html(const JsonValue& value, OutputSettings& output) {
@@ -156,7 +193,7 @@ OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) 
   if (const auto doppler = object.find("doppler")) read_doppler(*doppler, output);
   output.npz = object.boolean("npz", false);
   if (const auto plots = object.find("plots")) read_plots(*plots, output);
-  if (const auto map = object.find("map")) output.map = read_map_outputs(*map);
+  if (const auto map = object.find("map")) read_map(*map, output);
   if (const auto html = object.find("html")) read_html(*html, output);
   return output;
 }
@@ -179,6 +216,7 @@ void read_fields(const JsonObject& file, PropagationSettings& settings) {
     settings.antenna_array = read_word<ArrayChannel>(*value);
   }
   if (const auto value = find_unless_null(file, "min_path_gain_db")) settings.min_path_gain_db = value->number();
+  if (const auto value = find_unless_null(file, "valid_until_limit_m")) settings.valid_until_limit_m = value->number();
 }
 
 }  // namespace

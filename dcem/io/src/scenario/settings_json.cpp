@@ -67,7 +67,8 @@ Json propagation_json(const RunFacts& facts) {
           {"diffuse", diffuse_json(settings.diffuse)},
           {"path_loss", path_loss_json(settings.path_loss)},
           {"atmosphere", atmosphere_json(settings.atmosphere)},
-          {"min_path_gain_db", optional_json(settings.min_path_gain_db)}};
+          {"min_path_gain_db", optional_json(settings.min_path_gain_db)},
+          {"valid_until_limit_m", optional_json(settings.valid_until_limit_m)}};
 }
 
 }  // namespace
@@ -87,7 +88,7 @@ nlohmann::ordered_json settings_json(const RunFacts& facts) {
           {"time", {{"start_s", facts.time.start_s}, {"step_s", facts.time.step_s}, {"frames", facts.time.frames}}},
           {"propagation", propagation_json(facts)},
           {"defaults_of_this_version",
-           {{"cache", "seed with sampled discovery, else off"},
+           {{"cache", "exact with exact discovery, seed with sampled"},
             {"discovery", "exact up to three interactions, one of them a diffraction, or two diffractions, and up to " +
                               std::to_string(exact_limit) + " facets; else sampled beyond"}}}};
 }

@@ -51,6 +51,10 @@ const BlockRule& doppler_block() {
   return rule;
 }
 
+ValueRule picture_formats() {
+  return list(word({"png", "svg", "pdf"}), 1, "format");
+}
+
 const BlockRule& plots_block() {
   static const OutputSettings standards{};
   static const BlockRule rule{"output.plots",
@@ -64,7 +68,49 @@ const BlockRule& plots_block() {
                                 {whole_number(0, 999'999'999)},
                                 told("the middle one"),
                                 "Frame of the single power delay profile.",
-                                "40"}}};
+                                "40"},
+                               {"formats",
+                                {picture_formats()},
+                                told("the usual one of each picture: png, svg or pdf"),
+                                "Every picture is written in each of these.",
+                                R"(["pdf"])"}}};
+  return rule;
+}
+
+ValueRule map_files() {
+  return list(word({"csv", "png", "npz", "asc", "svg", "pdf"}), 1, "ending");
+}
+
+const BlockRule& map_block() {
+  static const MapPictureSettings standards{};
+  static const BlockRule rule{
+      "output.map",
+      "The files of dcem map, and how maps are drawn.",
+      {{"files",
+        {map_files()},
+        told("csv, npz and asc, maps as png, the distribution as svg"),
+        "Which files are written; png, svg and pdf are of every picture.",
+        R"(["csv", "pdf"])"},
+       {"range_dbm",
+        {fixed_list(2, number({-1000.0, 1000.0}, "dBm"), "two numbers [lowest, highest]")},
+        told("from the powers of the first frame with a value, the same for all maps of the run"),
+        "Ends of the colours of power.",
+        "[-120, -40]"},
+       {"contours_db",
+        {number({0.5, 1000.0}, "dB")},
+        told("no lines"),
+        "Lines of equal power, and of equal SINR, at its multiples.",
+        "10"},
+       {"finer_cells",
+        {whole_number(1, 16)},
+        standard(standards.finer_cells),
+        "So many cells along each side of one are drawn, linear between the points.",
+        "4"},
+       {"hillshade",
+        {boolean()},
+        standard(standards.hillshade),
+        "Light and shade on objects that are higher than the map.",
+        "false"}}};
   return rule;
 }
 
@@ -99,11 +145,11 @@ const BlockRule& output_block() {
                       yes_or_settings("cfr", cfr_block(), "The frequency response, cfr.npz."),
                       yes_or_settings("doppler", doppler_block(), "The Doppler spectrum, doppler.csv."),
                       yes_or_no("npz", standards.npz, "All paths as arrays for NumPy, paths.npz."),
-                      yes_or_settings("plots", plots_block(), "Pictures of links over time, SVG and PNG."),
+                      yes_or_settings("plots", plots_block(), "Pictures of links over time, SVG, PNG and PDF."),
                       {"map",
-                       {only(true), list(word({"csv", "png", "npz", "asc", "svg"}), 1, "ending")},
+                       {only(true), map_files(), block(map_block())},
                        Absence{Absence::Kind::value, "true"},
-                       "Which files dcem map writes: all, or those of a list.",
+                       "Which files dcem map writes: the usual ones, or those of a list; or how.",
                        R"(["csv", "png"])"},
                       yes_or_settings("html", html_block(), "The viewer, viewer.html.")}};
     for (const char* name : {"mat", "qd", "p2m", "deepmimo", "kml", "gltf"}) {

@@ -157,9 +157,10 @@ std::vector<KeyRule> keys_of_discovery(const PropagationSettings& standards) {
        "200"},
       {"seed", {whole_number(0, 9e18)}, standard(standards.seed), "Turns the sphere of rays.", "1"},
       {"cache",
-       {word<CacheMode>(), later({"exact"})},
-       told("seed with sampled discovery, otherwise off"),
-       "seed (goes with sampled only): what carried a path is tried first in the next frame.",
+       {word<CacheMode>()},
+       told("exact with exact discovery, seed with sampled"),
+       "exact: only what has changed is worked out, and each frame is as from scratch, bit for bit; seed (goes with "
+       "sampled only): what carried a path is tried first in the next frame; off: each frame from scratch.",
        R"("off")"},
   };
 }
@@ -180,6 +181,13 @@ std::vector<KeyRule> keys_of_fields(const PropagationSettings& standards) {
        Absence{Absence::Kind::value, "null"},
        "Weaker paths are dropped once their field is known; null: none.",
        "-150"},
+      {"valid_until_limit_m",
+       {number({1e-3, 100.0}, "m"), null()},
+       Absence{Absence::Kind::value, "null"},
+       "How far ends and bodies may move before a path appears or vanishes is worked out up to this, with cache exact "
+       "and "
+       "at most two interactions; null: it is not.",
+       "0.5"},
   };
 }
 
