@@ -5,4 +5,5 @@
 #include "dcem/paths/halves/sight_bodies.hpp"
 #include "dcem/paths/halves/view_map_bodies.hpp"
 #include "dcem/sim/discovery_bodies.hpp"
+#include "dcem/sim/link_choice_bodies.hpp"
 #include "dcem/sim/search_size_bodies.hpp"

@@ -13,6 +13,7 @@ struct RadioEnd {
   /// The antenna's axes in the world, as columns: the axes of what carries it times the antenna's orientation
   /// (DeviceState::rotation). Where nothing else is said the carrier's axes are the world's.
   Mat3 rotation = rotation_matrix(antenna.orientation);
+  double power_dbm = 0.0;  ///< that it sends; not used of a receiver
 };
 
 }  // namespace dcem

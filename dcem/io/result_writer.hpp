@@ -42,6 +42,7 @@ struct ResultFacts {
   std::size_t first_frame = 0;  ///< `FrameResult::index` of the first of them
   int exact_interactions = 0;   ///< up to which all paths are found, where discovery is sampled beyond them
   double memory_limit_bytes = std::numeric_limits<double>::infinity();  ///< of the arrays of a file, beside their 16 GB
+  bool all_links = true;  ///< every transmitter with every receiver; otherwise a frame says which links there are
 };
 
 /// Whether more is asked for than `links.csv`, whose lines say all that there is to write of a frame.

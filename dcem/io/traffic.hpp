@@ -10,7 +10,8 @@
 
 namespace dcem::io {
 
-/// What loading a scenario keeps of its trace. The size does not grow with the number of vehicles that pass.
+/// What loading a scenario keeps of its trace. The size does not grow with the number of vehicles that pass,
+/// unless each of them is to carry a device.
 struct Traffic {
   /// Vehicles of one shape, and their slots in the scene: bodies [first_body, first_body + slots).
   struct Type {
@@ -36,6 +37,8 @@ struct Traffic {
   /// When the vehicles that the scenario names are there; those that never come are missing.
   std::map<std::string, std::vector<Interval>> presence;
   std::vector<Rider> riders;
+  /// Of every vehicle its type, where the scenario puts devices on vehicles; otherwise empty.
+  std::map<std::string, std::string> types_of_vehicles{};
 };
 
 /// How far an instant may be from a step of the trace to be that step.

@@ -27,6 +27,8 @@ struct Device {
   std::optional<Attachment> attachment;
   Antenna antenna;
   double power_dbm = 0.0;  ///< transmit power; not used for a receiver
+  /// It is a transmitter and a receiver of the scene: of two such devices there is one link (Scene::add_transceiver).
+  bool is_transceiver = false;
 };
 
 /// A device that stands still.

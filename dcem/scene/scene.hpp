@@ -62,6 +62,9 @@ class Scene {
   void add_body_pool(std::size_t count, const TriangleMesh& mesh);
   void add_transmitter(Device device);
   void add_receiver(Device device);
+  /// A device that transmits and receives: it becomes the last transmitter and the last receiver. Two of them have one
+  /// link, from the one with the lesser id; none has a link to itself.
+  void add_transceiver(Device device);
   /// Takes all receivers out of the scene.
   std::vector<Device> take_receivers();
 
@@ -74,6 +77,8 @@ class Scene {
   ChangeSet apply(const Frame& frame);
   /// Where a device is in a frame, and how its antenna is turned.
   DeviceState device_state(const Device& device, const Frame& frame) const;
+  /// The same in the current frame, whose instant is `time_s`.
+  DeviceState device_state_now(const Device& device, double time_s) const;
 
   // The world in the current frame.
 
@@ -138,6 +143,8 @@ class Scene {
   void check_occupants(const Frame& frame) const;
   void take_over(BodyId id, const BodyState& state, ChangeSet& changes);
   std::optional<BodyId> find_in(const Frame& frame, const std::string& id) const;
+  DeviceState state_on(const Device& device, std::optional<BodyId> body, std::span<const BodyState> states,
+                       double time_s) const;
   std::vector<SurfaceMaterial> resolve_materials(const SurfaceMesh& mesh) const;
   static void check_foliage_is_closed(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials);
   void check_device(const Device& device, const std::unordered_set<std::string>& ids) const;

@@ -133,6 +133,13 @@ DCEM_INLINE void Scene::add_receiver(Device device) {
   receivers_.push_back(std::move(device));
 }
 
+DCEM_INLINE void Scene::add_transceiver(Device device) {
+  device.is_transceiver = true;
+  check_device(device, receiver_ids_);
+  add_transmitter(device);
+  add_receiver(std::move(device));
+}
+
 DCEM_INLINE std::vector<Device> Scene::take_receivers() {
   receiver_ids_.clear();
   return std::exchange(receivers_, {});
@@ -225,17 +232,27 @@ DCEM_INLINE std::optional<BodyId> Scene::find_in(const Frame& frame, const std::
 }
 
 DCEM_INLINE DeviceState Scene::device_state(const Device& device, const Frame& frame) const {
+  if (!device.attachment) return state_on(device, std::nullopt, frame.bodies, frame.time_s);
+  DCEM_ASSERT(frame.bodies.size() == bodies_.size());
+  return state_on(device, find_in(frame, device.attachment->object), frame.bodies, frame.time_s);
+}
+
+DCEM_INLINE DeviceState Scene::device_state_now(const Device& device, double time_s) const {
+  if (!device.attachment) return state_on(device, std::nullopt, states_, time_s);
+  return state_on(device, find_body(device.attachment->object), states_, time_s);
+}
+
+DCEM_INLINE DeviceState Scene::state_on(const Device& device, std::optional<BodyId> body,
+                                        std::span<const BodyState> states, double time_s) const {
   const Mat3 mounting = rotation_matrix(device.antenna.orientation);
   if (!device.attachment) {
-    const Placement placement = placement_at(device.motion, frame.time_s);
+    const Placement placement = placement_at(device.motion, time_s);
     return {placement.pose.position_m, placement.velocity.linear_mps, std::nullopt, true,
             rotation_matrix(placement.pose) * mounting};
   }
-  DCEM_ASSERT(frame.bodies.size() == bodies_.size());
-  const std::optional<BodyId> body = find_in(frame, device.attachment->object);
   DCEM_ASSERT(body.has_value() || slot_count_ > 0);
   if (!body) return {Vec3(0.0), Vec3(0.0), std::nullopt, false, mounting};
-  const BodyState& state = frame.bodies[body->value];
+  const BodyState& state = states[body->value];
   const Pose& pose = state.placement.pose;
   const Mat3 turned = rotation_matrix(pose);
   const Vec3 position_m = pose.position_m + turned * device.attachment->offset_m;

@@ -31,6 +31,7 @@
 #include "dcem/sim/detail/receiver_memory.hpp"
 #include "dcem/sim/discovery.hpp"
 #include "dcem/sim/frame_result.hpp"
+#include "dcem/sim/link_choice.hpp"
 #include "dcem/sim/settings.hpp"
 #include "dcem/sim/shell_at_point.hpp"
 
@@ -68,12 +69,17 @@ class BasicSimulator {
   /// Links from all transmitters to receivers of the caller's, in the current frame, by transmitter, then receiver.
   /// `LinkResult::receiver` is the index in `receivers`. Nothing is remembered.
   std::vector<LinkResult> solve(std::span<const Device> receivers, WorkCounters* work = nullptr) const;
+  /// Links between devices of the caller's, in the current frame: those that are asked for, each once, by transmitter,
+  /// then receiver, between devices that are there. Each device is looked from once. Nothing is remembered. Throws
+  /// std::invalid_argument where a number is none of a device.
+  std::vector<LinkResult> solve(std::span<const Device> transmitters, std::span<const Device> receivers,
+                                std::span<const LinkRequest> requests, WorkCounters* work = nullptr) const;
 
   /// Closed shells that hold a point in the current frame or on which it lies, ascending.
   std::vector<ShellAtPoint> shells_at(const Vec3& point_m) const;
 
   /// Whether a device is there in the current frame.
-  bool is_present(const Device& device) const { return scene_.device_state(device, frame_).present; }
+  bool is_present(const Device& device) const { return state_of(device).present; }
 
   /// Moves scene and index to a frame without solving anything.
   TreeUpdateReport move_to(const Frame& frame);
@@ -97,15 +103,23 @@ class BasicSimulator {
 
   /// A transmitter as paths and as fields see it; absent while its object is away.
   struct TransmitterEnds {
+    std::span<const Device> devices;  ///< all of them
     std::vector<std::optional<LinkEnd>> link;
     std::vector<RadioEnd> radio;
     std::vector<ReachedEdges> reached;          ///< the edges within reach; empty lists where no diffraction is wanted
     std::vector<EdgeReach> own_reach;           ///< holds them where nothing is remembered
-    std::span<const KeptHalf> halves;           ///< none where the plan has none
+    HalfRefs halves;                            ///< none where the plan has none
     std::vector<KeptHalf> own_halves;           ///< holds them where nothing is kept
     std::vector<char> embedded;                 ///< edges that no path can use; empty where nobody has looked
     std::vector<std::vector<FacetId>> in_view;  ///< the facets that each may see, where diffuse power is asked for
     WorkCounters work;                          ///< what finding them took
+    std::vector<std::uint32_t> numbers;         ///< of those that were chosen; empty: as they stand in the scene
+
+    /// The number among all devices.
+    std::size_t number(std::size_t index) const { return numbers.empty() ? index : numbers[index]; }
+    const Device& device(std::size_t index) const { return devices[number(index)]; }
+    /// Some of them, for a receiver that has no links with the others.
+    TransmitterEnds only(std::vector<std::uint32_t> chosen) const;
   };
 
   /// One end of a link, as paths and as fields see it.
@@ -136,17 +150,20 @@ class BasicSimulator {
     return make_link_end(Tracer(scene_, index_), state.position_m, state.ignored_body, counters);
   }
   void forget_replaced(const ChangeSet& changes, CacheCounters& counters);
-  Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters,
-                   std::span<PathCache> caches) const;
+  DeviceState state_of(const Device& device) const { return scene_.device_state_now(device, frame_.time_s); }
+  /// Chooses the links of the frame, where not every receiver has one with every transmitter.
+  void choose_links();
+  /// `is_of_frame`: the receivers are those of the scene, with the links that were chosen.
+  Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches,
+                   bool is_of_frame) const;
   static Solved sum_of(std::vector<Solved>&& by_receiver, const TransmitterEnds& transmitters);
-  /// As so many receivers need them. With `reach`, which has an entry per transmitter, edges that were within reach in
-  /// frames before count, too. `embedded` as in `EdgeRules`.
-  /// With `halves`, which has an entry per transmitter too, what is kept of them is brought up to date; without, what
-  /// is kept is used where it is that of the frame, and otherwise they are made, `fine` where very many receivers join
-  /// them.
-  TransmitterEnds transmitter_ends(std::size_t receivers, std::span<EdgeReach> reach = {},
-                                   std::span<KeptHalf> halves = {}, std::vector<char> embedded = {},
-                                   bool fine = false) const;
+  /// Devices as so many receivers need them. With `reach`, which has an entry per transmitter, edges that were within
+  /// reach in frames before count, too. `embedded` as in `EdgeRules`. With `halves`, which has an entry per transmitter
+  /// too, what is kept of them is brought up to date; without, what is kept is used where it is that of the frame, and
+  /// otherwise they are made, `fine` where very many receivers join them.
+  TransmitterEnds transmitter_ends(std::span<const Device> devices, std::size_t receivers,
+                                   std::span<EdgeReach> reach = {}, std::span<KeptHalf> halves = {},
+                                   std::vector<char> embedded = {}, bool fine = false) const;
   void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
   void find_transmitter_halves(TransmitterEnds& ends, std::size_t receivers, std::span<KeptHalf> halves,
                                bool fine) const;
@@ -188,7 +205,7 @@ class BasicSimulator {
 
   /// The links of all receivers of the scene, from what is remembered of the frame before …
   Solved follow_all(const TransmitterEnds& transmitters);
-  /// … and those of one.
+  /// … and those of one; `transmitters` are those that it has links with.
   Solved follow_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                          ReceiverRoom* room);
   void check_some(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
@@ -223,13 +240,16 @@ class BasicSimulator {
   MediumLoss medium_;
   SearchPlan plan_;
   CacheMode cache_;
-  std::vector<std::uint32_t> moved_;       ///< triangles that the index has still to hear of
-  std::vector<PathCache> caches_;          ///< one per receiver of the scene; none where the cache is off
-  std::vector<EdgeReach> reach_;           ///< one per transmitter; none where the cache is off
-  std::optional<FacetOutlines> outlines_;  ///< where views are made
-  std::unique_ptr<LaneScene> lanes_;       ///< where the plan has halves; those that are kept point to it
-  std::vector<KeptHalf> halves_;           ///< one per transmitter, where the plan has them …
-  bool halves_are_current_ = false;        ///< … and whether they are those of the current frame
+  LinkChoice choice_;
+  std::vector<std::vector<std::uint32_t>> chosen_;  ///< by receiver of the scene, where not all have links with all …
+  std::vector<std::size_t> links_of_;               ///< … and how many links each transmitter has
+  std::vector<std::uint32_t> moved_;                ///< triangles that the index has still to hear of
+  std::vector<PathCache> caches_;                   ///< one per receiver of the scene; none where the cache is off
+  std::vector<EdgeReach> reach_;                    ///< one per transmitter; none where the cache is off
+  std::optional<FacetOutlines> outlines_;           ///< where views are made
+  std::unique_ptr<LaneScene> lanes_;                ///< where the plan has halves; those that are kept point to it
+  std::vector<KeptHalf> halves_;                    ///< one per transmitter, where the plan has them …
+  bool halves_are_current_ = false;                 ///< … and whether they are those of the current frame
   // Where the cache is exact.
   std::optional<detail::FrameChange> change_;      ///< since the frame before
   std::vector<detail::ReceiverMemory> receivers_;  ///< one per receiver of the scene
@@ -249,6 +269,7 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
       settings_(std::move(settings)),
       surface_(std::move(surface)),
       index_(settings_.tree),
+      choice_(scene_, settings_.links),
       pool_(std::make_unique<ThreadPool>(settings_.threads)) {
   validate(settings_);
   check_surface_model();

@@ -27,6 +27,12 @@ struct LinkResult {
   std::optional<double> valid_until_m{};
 };
 
+/// A link that is asked for: indices of its ends among devices of the caller's.
+struct LinkRequest {
+  std::size_t transmitter = 0;
+  std::size_t receiver = 0;
+};
+
 /// Work done, counted. Counts do not depend on the number of threads.
 struct WorkCounters {
   std::uint64_t rays = 0;                ///< rays shot to discover sequences, branches included

@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "dcem/accel/wide/settings.hpp"
 #include "dcem/em/diffraction/lossy_wedge.hpp"
@@ -72,10 +75,19 @@ struct PropagationSettings {
   DiffuseSettings diffuse{};                              ///< power that rough surfaces scatter
 };
 
+/// Which links there are. A device never has one to itself.
+struct LinkSettings {
+  /// Only between ends that are at most so far apart in this frame, metres; none: at any distance.
+  std::optional<double> range_m{};
+  /// Only these, by the ids of transmitter and receiver, of two transceivers in any order; none: all.
+  std::optional<std::vector<std::pair<std::string, std::string>>> pairs{};
+};
+
 struct SimulationSettings {
   double frequency_hz = 30e9;
   ItuSettings itu{};  ///< revision of the material tables, and whether they may be extrapolated
   PropagationSettings propagation{};
+  LinkSettings links{};        ///< which links a frame has; maps have all of theirs
   WideTreeSettings tree{};     ///< how the tree is built, and kept while the scene moves. Never changes a result
   unsigned threads = 0;        ///< 0: all cores. Never changes a result
   bool share_map_work = true;  ///< work that is the same at all points of a map is done once. Never changes a result

@@ -49,6 +49,11 @@ class Simulator {
   /// Links from all transmitters to receivers of the caller's, in the current frame, by transmitter, then receiver.
   /// `LinkResult::receiver` is the index in `receivers`. Nothing is remembered.
   std::vector<LinkResult> solve(std::span<const Device> receivers, WorkCounters* work = nullptr) const;
+  /// Links between devices of the caller's, in the current frame: those that are asked for, each once, by transmitter,
+  /// then receiver, between devices that are there. Each device is looked from once. Nothing is remembered. Throws
+  /// std::invalid_argument where a number is none of a device.
+  std::vector<LinkResult> solve(std::span<const Device> transmitters, std::span<const Device> receivers,
+                                std::span<const LinkRequest> requests, WorkCounters* work = nullptr) const;
 
   /// Closed shells that hold a point in the current frame or on which it lies, ascending.
   std::vector<ShellAtPoint> shells_at(const Vec3& point_m) const;

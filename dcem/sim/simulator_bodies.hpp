@@ -55,6 +55,12 @@ DCEM_INLINE TreeUpdateReport Simulator::pass(const Frame& frame, const WorkCount
 DCEM_INLINE std::vector<LinkResult> Simulator::solve(std::span<const Device> receivers, WorkCounters* work) const {
   return body_->simulator.solve(receivers, work);
 }
+
+DCEM_INLINE std::vector<LinkResult> Simulator::solve(std::span<const Device> transmitters,
+                                                     std::span<const Device> receivers,
+                                                     std::span<const LinkRequest> requests, WorkCounters* work) const {
+  return body_->simulator.solve(transmitters, receivers, requests, work);
+}
 DCEM_INLINE std::vector<ShellAtPoint> Simulator::shells_at(const Vec3& point_m) const {
   return body_->simulator.shells_at(point_m);
 }

@@ -12,6 +12,7 @@
 #include "dcem/io/sampling_text.hpp"
 #include "dcem/io/text_table.hpp"
 #include "dcem/sim/discovery.hpp"
+#include "dcem/sim/link_choice.hpp"
 
 #ifndef DCEM_VERSION
 #define DCEM_VERSION "unknown"
@@ -86,7 +87,10 @@ void expand_grids(io::Scenario& scenario, const ScenarioOptions& options) {
     require_memory(options, points_text("grid", grid.id, grid.size()), grid.size(), receiver_bytes);
     receivers += grid.size();
   }
-  require_memory(options, std::to_string(receivers * transmitters) + " links of a frame", receivers, receiver_bytes);
+  // Which links a range leaves, the frames say.
+  if (takes_all_links(scenario.scene, scenario.settings.links)) {
+    require_memory(options, std::to_string(receivers * transmitters) + " links of a frame", receivers, receiver_bytes);
+  }
   for (const ReceiverGrid& grid : scenario.grids) {
     if (grid.samples_per_cell() > 1) {
       scenario.warnings.push_back("grid '" + grid.id + "': samples are for maps; here each cell has its centre alone");

@@ -10,6 +10,7 @@
 #include "dcem/io/result_writer.hpp"
 #include "dcem/io/run_journal.hpp"
 #include "dcem/sim/discovery.hpp"
+#include "dcem/sim/link_choice.hpp"
 #include "job.hpp"
 #include "stop_signal.hpp"
 
@@ -26,7 +27,8 @@ io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Sim
                               job.frames.count(),
                               job.frames.first,
                               exactly_searched_interactions(simulator.settings().propagation, simulator.plan()),
-                              options.memory_limit_bytes.value_or(std::numeric_limits<double>::infinity())};
+                              options.memory_limit_bytes.value_or(std::numeric_limits<double>::infinity()),
+                              takes_all_links(simulator.scene(), simulator.settings().links)};
   try {
     return {folder, simulator.scene(), simulator.scene().receivers(), facts, job.scenario.output};
   } catch (const std::invalid_argument& error) {
@@ -245,7 +247,9 @@ void run_scenario(const ScenarioOptions& options) {
     std::cerr << job.folder.string() << ": the run is complete; nothing is left to resume\n";
     return;
   }
-  warn_of_plots(job, io::plotted_links(simulator.scene(), simulator.scene().receivers()));
+  if (takes_all_links(simulator.scene(), simulator.settings().links)) {
+    warn_of_plots(job, io::plotted_links(simulator.scene(), simulator.scene().receivers()));
+  }
   std::optional<io::JournalReader> former = open_journal(job, options, identity, simulator);
   Run run(job, options, simulator, folder, devices);
   print_warnings(job.scenario.warnings, options);

@@ -361,7 +361,7 @@ def check_page(program, source, schema):
 # --- The two tests --------------------------------------------------------------------------------------------------
 
 def every_key(source, schema):
-    scenarios = [read_scenario(source / "tests/io/every_key" / name) for name in ("drive.json", "traffic.json")]
+    scenarios = [read_scenario(source / "tests/io/every_key" / name) for name in ("drive.json", "traffic.json", "equipped.json")]
     missing = keys_of(schema) - set().union(*(keys_in(schema, scenario) for scenario in scenarios))
     check(not missing, f"in no scenario of tests/io/every_key: {sorted(missing)}")
     return scenarios

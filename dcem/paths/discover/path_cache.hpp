@@ -52,6 +52,23 @@ class PathCache {
     return forgotten;
   }
 
+  /// Says which transmitters, ascending, the receiver has links with in the new frame, where that is not all of them:
+  /// from here on link n is that of `transmitters[n]`. Forgets the others; returns how many sequences that were.
+  std::size_t select(std::span<const std::uint32_t> transmitters) {
+    std::vector<Link> kept(transmitters.size());
+    for (std::size_t link = 0; link < transmitters.size(); ++link) {
+      const auto before = std::lower_bound(transmitters_.begin(), transmitters_.end(), transmitters[link]);
+      if (before == transmitters_.end() || *before != transmitters[link]) continue;
+      const auto place = static_cast<std::size_t>(before - transmitters_.begin());
+      if (place < links_.size()) kept[link] = std::exchange(links_[place], std::nullopt);
+    }
+    std::size_t forgotten = 0;
+    for (const Link& link : links_) forgotten += link ? link->size() : 0;
+    links_ = std::move(kept);
+    transmitters_.assign(transmitters.begin(), transmitters.end());
+    return forgotten;
+  }
+
   ProposalMemory& proposals() { return proposals_; }
   EdgeReach& reach() { return reach_; }
 
@@ -80,6 +97,7 @@ class PathCache {
 
  private:
   std::vector<Link> links_;
+  std::vector<std::uint32_t> transmitters_;  ///< those of `links_`, where they have been selected
   ProposalMemory proposals_;
   EdgeReach reach_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 /// One receiver's half joined with those of all transmitters.
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -33,11 +34,27 @@ struct ReceiverRoom {
   Sight sight{PathHalf::default_pixels};  ///< at what scatters
 };
 
+/// Halves of some transmitters, by number, without copies of them.
+class HalfRefs {
+ public:
+  HalfRefs() = default;
+  explicit HalfRefs(std::span<const KeptHalf> halves) : refs_(halves.begin(), halves.end()) {}
+  void add(const KeptHalf& half) { refs_.emplace_back(half); }
+
+  const KeptHalf& operator[](std::size_t number) const { return refs_[number]; }
+  bool empty() const { return refs_.empty(); }
+  auto begin() const { return refs_.begin(); }
+  auto end() const { return refs_.end(); }
+
+ private:
+  std::vector<std::reference_wrapper<const KeptHalf>> refs_;
+};
+
 /// The halves that a search from one receiver joins.
 struct LinkHalves {
   const FacetOutlines& outlines;
   const LaneScene& lanes;
-  std::span<const KeptHalf> transmitters;  ///< by their numbers; those of absent ones are not looked at
+  const HalfRefs& transmitters;  ///< those of absent ones are not looked at
   const PathHalf& receiver;
   const BeamLists& reached;  ///< by the receiver, where sequences of three elements are joined
 };

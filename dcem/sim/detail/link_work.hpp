@@ -32,7 +32,7 @@ inline int fine_view_pixels_for(std::size_t transmitters) {
 
 /// A device in a frame as fields see it.
 inline RadioEnd radio_end(const Device& device, const DeviceState& state) {
-  return {state.position_m, state.velocity_mps, device.antenna, state.rotation};
+  return {state.position_m, state.velocity_mps, device.antenna, state.rotation, device.power_dbm};
 }
 
 inline void add_diffuse_work(const DiffusePower& diffuse, WorkCounters& work) {

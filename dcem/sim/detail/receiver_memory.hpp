@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "dcem/field/path_contribution.hpp"
@@ -40,14 +42,46 @@ struct ReceiverMemory {
   std::optional<LinkEnd> end;
   KeptHalf half;
   std::vector<LinkMemory> links;  ///< by transmitter
+  /// The transmitters of `links`, ascending; empty: all of them, as they stand in the scene.
+  std::vector<std::uint32_t> numbers;
+
+  /// The links of a frame are those with `transmitters`, or with `count` as they stand in the scene. Returns how many
+  /// paths those links had that are no more.
+  std::size_t select(std::span<const std::uint32_t> transmitters, std::size_t count);
+  /// By the number of the transmitter in the scene; the link must be there.
+  LinkMemory& link(std::size_t transmitter) {
+    if (numbers.empty()) return links[transmitter];
+    const auto place = std::lower_bound(numbers.begin(), numbers.end(), transmitter);
+    return links[static_cast<std::size_t>(place - numbers.begin())];
+  }
 
   void forget() {
     state.reset();
     end.reset();
     links.clear();
+    numbers.clear();
     half.forget_bodies();
   }
 };
+
+inline std::size_t ReceiverMemory::select(std::span<const std::uint32_t> transmitters, std::size_t count) {
+  if (transmitters.empty() && numbers.empty() && count > 0) {
+    links.resize(count);
+    return 0;
+  }
+  std::size_t gone = 0;
+  std::vector<LinkMemory> kept(transmitters.size());
+  auto before = numbers.begin();
+  for (std::size_t now = 0; now < kept.size(); ++now) {
+    before = std::lower_bound(before, numbers.end(), transmitters[now]);
+    if (before == numbers.end() || *before != transmitters[now] || links.empty()) continue;
+    kept[now] = std::exchange(links[static_cast<std::size_t>(before - numbers.begin())], {});
+  }
+  for (const LinkMemory& link : links) gone += link.result ? link.result->paths.size() : 0;
+  links = std::move(kept);
+  numbers.assign(transmitters.begin(), transmitters.end());
+  return gone;
+}
 
 /// Whether a device is as it was, to the last bit: from a coordinate of −0 follow other signs than from 0.
 inline bool same_bits(const std::optional<LinkEnd>& before, const LinkEnd& now) {

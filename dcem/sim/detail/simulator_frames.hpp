@@ -32,11 +32,12 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   frame_ = frame;
   result.update_time_s = update_watch.seconds();
   const detail::Stopwatch solve_watch;
-  const TransmitterEnds transmitters =
-      transmitter_ends(change_ ? receivers_on_the_move() : scene_.receivers().size(), reach_, halves_);
-  halves_are_current_ = !transmitters.halves.empty();
+  choose_links();
+  const TransmitterEnds transmitters = transmitter_ends(
+      scene_.transmitters(), change_ ? receivers_on_the_move() : scene_.receivers().size(), reach_, halves_);
+  halves_are_current_ = !transmitters.halves.empty() && choice_.takes_all();
   if (change_) note_transmitters(transmitters);
-  Solved solved = change_ ? follow_all(transmitters) : solve_all(scene_.receivers(), transmitters, caches_);
+  Solved solved = change_ ? follow_all(transmitters) : solve_all(scene_.receivers(), transmitters, caches_, true);
   result.links = std::move(solved.links);
   if (finds_lifetimes()) find_lifetimes(result.links, transmitters);
   result.work = solved.work;
@@ -46,12 +47,50 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   return result;
 }
 
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::choose_links() {
+  if (choice_.takes_all()) return;
+  const std::span<const Device> receivers = scene_.receivers();
+  std::vector<std::optional<Vec3>> places_m;
+  for (const Device& device : scene_.transmitters()) {
+    const DeviceState state = state_of(device);
+    places_m.push_back(state.present ? std::optional(state.position_m) : std::nullopt);
+  }
+  choice_.place(places_m);
+  chosen_.assign(receivers.size(), {});
+  pool_->for_each(receivers.size(), [&](std::size_t index, unsigned) {
+    const DeviceState state = state_of(receivers[index]);
+    if (state.present) chosen_[index] = choice_.transmitters_of(index, state.position_m);
+  });
+  links_of_.assign(places_m.size(), 0);
+  for (const std::vector<std::uint32_t>& of_one : chosen_) {
+    for (const std::uint32_t transmitter : of_one) ++links_of_[transmitter];
+  }
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::TransmitterEnds::only(
+    std::vector<std::uint32_t> chosen) const {
+  TransmitterEnds some;
+  some.devices = devices;
+  for (const std::uint32_t index : chosen) {
+    some.link.push_back(link[index]);
+    some.radio.push_back(radio[index]);
+    some.reached.push_back(reached[index]);
+    if (!halves.empty()) some.halves.add(halves[index]);
+    if (!in_view.empty()) some.in_view.push_back(in_view[index]);
+  }
+  some.embedded = embedded;
+  some.numbers = std::move(chosen);
+  return some;
+}
+
 /// How many receivers are not where they were in the frame before.
 template <SurfaceModel Surface, SpatialIndex Index>
 std::size_t BasicSimulator<Surface, Index>::receivers_on_the_move() const {
   std::size_t count = 0;
   for (std::size_t index = 0; index < receivers_.size(); ++index) {
-    const DeviceState state = scene_.device_state(scene_.receivers()[index], frame_);
+    const DeviceState state = state_of(scene_.receivers()[index]);
     const std::optional<LinkEnd>& before = receivers_[index].end;
     count += state.present && (!before || before->position_m != state.position_m) ? 1 : 0;
   }
@@ -67,7 +106,7 @@ void BasicSimulator<Surface, Index>::note_transmitters(const TransmitterEnds& en
   transmitter_rests_.assign(count, 0);
   transmitter_is_same_.assign(count, 0);
   for (std::size_t index = 0; index < count; ++index) {
-    const DeviceState state = scene_.device_state(scene_.transmitters()[index], frame_);
+    const DeviceState state = state_of(scene_.transmitters()[index]);
     transmitter_rests_[index] = ends.link[index] && detail::same_bits(transmitters_before_[index], *ends.link[index]);
     transmitter_is_same_[index] =
         transmitter_rests_[index] != 0 && detail::same_bits(transmitter_states_before_[index], state);
@@ -111,7 +150,7 @@ TreeUpdateReport BasicSimulator<Surface, Index>::pass(const Frame& frame, const 
   const TreeUpdateReport report = move_to(frame);
   TraversalCounters not_reported;
   for (std::size_t index = 0; index < halves_.size(); ++index) {
-    const DeviceState state = scene_.device_state(scene_.transmitters()[index], frame_);
+    const DeviceState state = state_of(scene_.transmitters()[index]);
     if (state.present) halves_[index].pass(link_end(state, not_reported), scene_.receivers().size());
   }
   note_rays(spent);
@@ -152,12 +191,13 @@ void BasicSimulator<Surface, Index>::forget_replaced(const ChangeSet& changes, C
 
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::transmitter_ends(
-    std::size_t receivers, std::span<EdgeReach> reach, std::span<KeptHalf> halves, std::vector<char> embedded,
-    bool fine) const {
+    std::span<const Device> devices, std::size_t receivers, std::span<EdgeReach> reach, std::span<KeptHalf> halves,
+    std::vector<char> embedded, bool fine) const {
   TransmitterEnds ends;
+  ends.devices = devices;
   ends.embedded = std::move(embedded);
-  for (const Device& device : scene_.transmitters()) {
-    const DeviceState state = scene_.device_state(device, frame_);
+  for (const Device& device : devices) {
+    const DeviceState state = state_of(device);
     TraversalCounters counters;
     ends.link.push_back(state.present ? std::optional(link_end(state, counters)) : std::nullopt);
     ends.radio.push_back(detail::radio_end(device, state));
@@ -188,8 +228,9 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
   const PathSearchSettings search = search_settings(ends.embedded);
   const bool triples = joins_triples(search);
   const auto serves = [&](const KeptHalf& half) { return !triples || half.lists() != nullptr; };
-  if (halves.empty() && !fine && halves_are_current_ && std::ranges::all_of(halves_, serves)) {
-    ends.halves = halves_;
+  const bool are_kept = ends.devices.data() == scene_.transmitters().data();
+  if (halves.empty() && !fine && are_kept && halves_are_current_ && std::ranges::all_of(halves_, serves)) {
+    ends.halves = HalfRefs(halves_);
     return;
   }
   if (halves.empty()) {
@@ -199,10 +240,13 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
     halves = ends.own_halves;
   }
   const bool over_mirrors = search.max_reflections >= 1 && search.max_interactions >= 2;
-  const HalfLists lists{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors,
-                        fine || (triples && (receivers > 0 || change_)), receivers, pool_.get()};
+  const HalfLists of_all{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors,
+                         fine || (triples && (receivers > 0 || change_)), receivers, pool_.get()};
+  const bool has_choice = !choice_.takes_all() && halves.data() == halves_.data();
   const auto update = [&](std::size_t index, unsigned) {
-    if (!ends.link[index]) return halves[index].forget_bodies();
+    HalfLists lists = of_all;
+    if (has_choice) lists.receivers = std::min(receivers, links_of_[index]);
+    if (!ends.link[index] || (has_choice && links_of_[index] == 0)) return halves[index].forget_bodies();
     halves[index].update(scene_, *outlines_, *ends.link[index], half_settings(search), lists,
                          change_ && &halves[index] == &halves_[index] ? change_->moved() : std::span<const char>{});
   };
@@ -212,7 +256,7 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
   } else {
     for (std::size_t index = 0; index < ends.link.size(); ++index) update(index, 0);
   }
-  ends.halves = halves;
+  ends.halves = HalfRefs(halves);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -228,7 +272,7 @@ void BasicSimulator<Surface, Index>::find_transmitter_reach(TransmitterEnds& end
     if (!ends.link[index]) return reach[index].clear();
     const bool known = reach[index].size() > 0;
     reach[index].next_frame(detail::proposal_lifetime_frames(search));
-    find_reach(tracer, search, *ends.link[index], {scene_.transmitters()[index].id, frame_.index},
+    find_reach(tracer, search, *ends.link[index], {ends.device(index).id, frame_.index},
                known ? search.rays_steady : search.rays, reach[index], spent[index]);
     ends.reached[index] = reach[index].edges();
   });

@@ -43,7 +43,7 @@ void BasicSimulator<Surface, Index>::find_lifetimes(std::vector<LinkResult>& lin
       std::vector<Sequence> open;
       for (const PathContribution& path : link->paths) open.push_back(sequence_of(path.path));
       link->valid_until_m = receiver.valid_until_m(link->transmitter, open);
-      receivers_[index].links[link->transmitter].result->valid_until_m = link->valid_until_m;
+      receivers_[index].link(link->transmitter).result->valid_until_m = link->valid_until_m;
     }
   });
 }

@@ -11,20 +11,55 @@ namespace dcem {
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const Device> receivers,
                                                               WorkCounters* work) const {
-  Solved solved = solve_all(receivers, transmitter_ends(receivers.size()), {});
+  Solved solved = solve_all(receivers, transmitter_ends(scene_.transmitters(), receivers.size()), {}, false);
+  if (work != nullptr) *work += solved.work;
+  return std::move(solved.links);
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const Device> transmitters,
+                                                              std::span<const Device> receivers,
+                                                              std::span<const LinkRequest> requests,
+                                                              WorkCounters* work) const {
+  std::vector<std::vector<std::uint32_t>> wanted(receivers.size());
+  for (const auto& [transmitter, receiver] : requests) {
+    if (transmitter >= transmitters.size() || receiver >= receivers.size()) {
+      throw std::invalid_argument("solve: a link between devices that are not there");
+    }
+    wanted[receiver].push_back(static_cast<std::uint32_t>(transmitter));
+  }
+  const TransmitterEnds ends = transmitter_ends(transmitters, receivers.size());
+  std::vector<Solved> by_receiver(receivers.size());
+  std::vector<ReceiverRoom> rooms = receiver_rooms();
+  pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
+    std::vector<std::uint32_t>& of_one = wanted[index];
+    std::sort(of_one.begin(), of_one.end());
+    of_one.erase(std::unique(of_one.begin(), of_one.end()), of_one.end());
+    by_receiver[index] = solve_receiver(receivers[index], index, ends.only(std::move(of_one)), nullptr,
+                                        {rooms.empty() ? nullptr : &rooms[worker]});
+  });
+  Solved solved = sum_of(std::move(by_receiver), ends);
   if (work != nullptr) *work += solved.work;
   return std::move(solved.links);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_all(
-    std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches) const {
+    std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches,
+    bool is_of_frame) const {
+  const bool takes_all = !is_of_frame || choice_.takes_all();
   std::vector<Solved> by_receiver(receivers.size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
   pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
     PathCache* cache = caches.empty() ? nullptr : &caches[index];
-    by_receiver[index] =
-        solve_receiver(receivers[index], index, transmitters, cache, {rooms.empty() ? nullptr : &rooms[worker]});
+    const Proposals proposals{rooms.empty() ? nullptr : &rooms[worker]};
+    if (takes_all) {
+      by_receiver[index] = solve_receiver(receivers[index], index, transmitters, cache, proposals);
+      return;
+    }
+    const std::size_t gone = cache != nullptr ? cache->select(chosen_[index]) : 0;
+    by_receiver[index] = solve_receiver(receivers[index], index, transmitters.only(chosen_[index]), cache, proposals);
+    by_receiver[index].cache.died += gone;
   });
   return sum_of(std::move(by_receiver), transmitters);
 }
@@ -48,10 +83,11 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
 template <SurfaceModel Surface, SpatialIndex Index>
 std::span<const std::optional<LinkEnd>> BasicSimulator<Surface, Index>::ends_beside(
     const Device& receiver, const TransmitterEnds& transmitters, std::vector<std::optional<LinkEnd>>& others) const {
+  if (!transmitters.numbers.empty()) return transmitters.link;  // the choice has left it out
   const std::span<const Device> devices = scene_.transmitters();
   const auto is_receiver = [&](const Device& device) { return device.id == receiver.id; };
   const auto same = std::find_if(devices.begin(), devices.end(), is_receiver);
-  if (same == devices.end()) return transmitters.link;
+  if (same == devices.end() || transmitters.link.empty()) return transmitters.link;
   others = transmitters.link;
   others[static_cast<std::size_t>(same - devices.begin())].reset();
   return others;
@@ -62,12 +98,13 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, PathCache* cache,
     const Proposals& proposals) const {
   const Tracer tracer(scene_, index_);
-  const DeviceState state = scene_.device_state(receiver, frame_);
+  const DeviceState state = state_of(receiver);
   Solved solved;
   if (!state.present) {
     if (cache != nullptr) solved.cache.died = cache->clear();
     return solved;
   }
+  if (transmitters.link.empty()) return solved;
   SearchCounters counters;
   const LinkEnd end = link_end(state, counters.solver.traversal);
   const PathSearchSettings search = search_settings(transmitters.embedded);
@@ -89,9 +126,9 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
       diffuse_powers(receiver, {end, to}, transmitters, ends, proposals.room, solved.work);
   for (std::size_t transmitter = 0; transmitter < found.size(); ++transmitter) {
     if (!ends[transmitter]) continue;
-    LinkResult& link =
-        solved.links.emplace_back(make_link(std::move(found[transmitter]), std::move(diffuse[transmitter]), transmitter,
-                                            {*ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field));
+    LinkResult& link = solved.links.emplace_back(
+        make_link(std::move(found[transmitter]), std::move(diffuse[transmitter]), transmitters.number(transmitter),
+                  {*ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field));
     link.receiver = index;
     link.complete = !needs_rays(search) || search.max_interactions == 0;
     solved.work.paths += link.paths.size();
@@ -118,7 +155,7 @@ std::vector<DiffusePower> BasicSimulator<Surface, Index>::diffuse_powers(const D
       facets_in_view(room->sight, scene_, *outlines_, end.link, propagation.max_transmissions);
   for (std::size_t index = 0; index < ends.size(); ++index) {
     if (!ends[index]) continue;
-    const DiffuseKey key{propagation.seed, scene_.transmitters()[index].id, receiver.id};
+    const DiffuseKey key{propagation.seed, transmitters.device(index).id, receiver.id};
     powers[index] = integral.evaluate(*ends[index], transmitters.radio[index], end.link, end.radio,
                                       in_both(own, transmitters.in_view[index]), key);
     detail::add_diffuse_work(powers[index], work);
@@ -163,8 +200,7 @@ LinkResult BasicSimulator<Surface, Index>::finish_link(std::vector<PathContribut
     if (!too_weak) link.paths.push_back(std::move(*path));
   }
   trace_elements(link.paths, from, to, evaluator);
-  const double power_dbm = scene_.transmitters()[transmitter].power_dbm;
-  link.statistics = link_statistics(link.paths, power_dbm, line_of_sight, link.diffuse);
+  link.statistics = link_statistics(link.paths, from.radio.power_dbm, line_of_sight, link.diffuse);
   return link;
 }
 
@@ -189,7 +225,7 @@ std::optional<PathContribution> BasicSimulator<Surface, Index>::solve_path(std::
                                                                            const Sequence& sequence) const {
   const Device& from = scene_.transmitters()[transmitter];
   const Device& to = scene_.receivers()[receiver];
-  const DeviceState from_state = scene_.device_state(from, frame_), to_state = scene_.device_state(to, frame_);
+  const DeviceState from_state = state_of(from), to_state = state_of(to);
   if (!from_state.present || !to_state.present) return std::nullopt;
   const Tracer tracer(scene_, index_);
   const PathSearchSettings search = search_settings();

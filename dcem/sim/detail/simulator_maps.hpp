@@ -95,9 +95,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<RadioMap> BasicSimulator<Surface, Index>::radio_maps(const ReceiverList& list,
                                                                  const std::function<void(std::size_t)>& progress,
                                                                  WorkCounters* work) const {
-  const auto position_m = [&](std::size_t point) {
-    return scene_.device_state(list.receivers[point], frame_).position_m;
-  };
+  const auto position_m = [&](std::size_t point) { return state_of(list.receivers[point]).position_m; };
   const auto receiver = [&](std::size_t point) {
     Device device = list.receivers[point];
     device.antenna.array = {};
@@ -115,8 +113,9 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
   // Looking at an edge costs several microseconds; in a city it saves about a tenth of a millisecond per point.
   const bool looks_for_embedded =
       settings_.share_map_work && diffraction_order(settings_.propagation) > 0 && size >= scene_.wedges().size() / 10;
-  TransmitterEnds transmitters = transmitter_ends(
-      size, {}, {}, looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
+  TransmitterEnds transmitters =
+      transmitter_ends(scene_.transmitters(), size, {}, {},
+                       looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
   // Maps hold no channel between elements, and their powers are those of one: none is computed.
   for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
   const Tracer tracer(scene_, index_);

@@ -52,7 +52,9 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   std::vector<ReceiverRoom> rooms = receiver_rooms();
   pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
     ReceiverRoom* const room = rooms.empty() ? nullptr : &rooms[worker];
-    by_receiver[index] = follow_receiver(receivers[index], index, transmitters, room);
+    by_receiver[index] = choice_.takes_all()
+                             ? follow_receiver(receivers[index], index, transmitters, room)
+                             : follow_receiver(receivers[index], index, transmitters.only(chosen_[index]), room);
   });
   return sum_of(std::move(by_receiver), transmitters);
 }
@@ -62,7 +64,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room) {
   detail::ReceiverMemory& memory = receivers_[index];
   const Tracer tracer(scene_, index_);
-  const DeviceState state = scene_.device_state(receiver, frame_);
+  const DeviceState state = state_of(receiver);
   Solved solved;
   if (!state.present) {
     for (const detail::LinkMemory& link : memory.links)
@@ -76,13 +78,13 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const bool stands = detail::same_bits(memory.end, end), is_same = detail::same_bits(memory.state, state);
   memory.end = end;
   memory.state = state;
-  memory.links.resize(transmitters.link.size());
+  solved.cache.died += memory.select(transmitters.numbers, transmitters.link.size());
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
   const RadioEnd radio = detail::radio_end(receiver, state);
   const auto stays = [&](std::size_t transmitter) {
     return !ends[transmitter] || (stands && is_same && memory.links[transmitter].result &&
-                                  transmitter_is_same_[transmitter] != 0 && !change_->any());
+                                  transmitter_is_same_[transmitters.number(transmitter)] != 0 && !change_->any());
   };
   bool all_stay = true;
   for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
@@ -91,14 +93,15 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   if (plan_.joined == 0 && !all_stay) return solve_again(receiver, index, transmitters, room);
   std::optional<Following> following;  // made where something is to be solved
   for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
+    const std::size_t number = transmitters.number(transmitter);
     detail::LinkMemory& link = memory.links[transmitter];
     if (!ends[transmitter]) {
       solved.cache.died += link.result ? link.result->paths.size() : 0;
       link.forget();
       continue;
     }
-    const bool rests = stands && link.result && transmitter_rests_[transmitter] != 0;
-    if (transmitter_rests_[transmitter] == 0) link.pooled.forget();
+    const bool rests = stands && link.result && transmitter_rests_[number] != 0;
+    if (transmitter_rests_[number] == 0) link.pooled.forget();
     if (stays(transmitter)) {
       solved.cache.taken_over += link.result->paths.size();
       solved.links.push_back(*link.result);
@@ -108,7 +111,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
       following.emplace(*this, transmitters, tracer, end, radio);
       look_from_receiver(*following, memory, *room);
     }
-    const bool fields_stay = rests && is_same && transmitter_is_same_[transmitter] != 0;
+    const bool fields_stay = rests && is_same && transmitter_is_same_[number] != 0;
     std::vector<PathContribution> paths = rests && link.standing.is_known() && !joins_triples(following->search)
                                               ? paths_of_standing(*following, memory, transmitter, fields_stay)
                                               : paths_of_moving(*following, memory, *room, transmitter, rests);
@@ -119,7 +122,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
       diffuse = diffuse_powers(receiver, {end, radio}, transmitters, alone, room, solved.work);
     }
     LinkResult result =
-        finish_link(std::move(paths), std::move(diffuse[transmitter]), transmitter,
+        finish_link(std::move(paths), std::move(diffuse[transmitter]), number,
                     {*ends[transmitter], transmitters.radio[transmitter]}, {end, radio}, following->field);
     result.receiver = index;
     result.complete = true;
@@ -161,12 +164,14 @@ template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_again(
     const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room) {
   Solved solved = solve_receiver(receiver, index, transmitters, nullptr, {room});
-  std::vector<detail::LinkMemory> links(transmitters.link.size());
+  detail::ReceiverMemory& memory = receivers_[index];
+  const std::vector<detail::LinkMemory> before = std::exchange(memory.links, {});
+  memory.links.resize(transmitters.link.size());
   for (const LinkResult& link : solved.links) {
-    detail::count_births(receivers_[index].links[link.transmitter].result, link, solved.cache);
-    links[link.transmitter].result = link;
+    detail::LinkMemory& now = memory.link(link.transmitter);
+    detail::count_births(before[static_cast<std::size_t>(&now - memory.links.data())].result, link, solved.cache);
+    now.result = link;
   }
-  receivers_[index].links = std::move(links);
   return solved;
 }
 

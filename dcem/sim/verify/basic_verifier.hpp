@@ -32,7 +32,7 @@ class BasicVerifier {
  private:
   static SimulationSettings alone(SimulationSettings settings);
   static SimulationSettings rival(SimulationSettings settings, Discovery discovery);
-  bool has_the_links(const FrameResult& result) const;
+  bool has_the_links(const FrameResult& result);
   bool is_allowed(const LinkResult& link, std::size_t path) const;
   void check_paths(const FrameResult& result);
   void check_from_scratch(const FrameResult& result, const FrameResult& expected);
@@ -40,7 +40,8 @@ class BasicVerifier {
   void note(const FrameResult& frame, const LinkResult& link, const Path& path, const std::string& what);
 
   Discovery discovery_;
-  BasicSimulator<Surface, BruteForceIndex> alone_;    ///< solves single paths
+  BasicSimulator<Surface, BruteForceIndex> alone_;  ///< solves single paths
+  LinkChoice choice_;
   std::optional<BasicSimulator<Surface>> rival_;      ///< the other discovery
   std::optional<BasicSimulator<Surface>> forgetful_;  ///< where the cache is exact: the same without it
   VerificationReport report_;
@@ -50,7 +51,9 @@ class BasicVerifier {
 
 template <SurfaceModel Surface>
 BasicVerifier<Surface>::BasicVerifier(const Scene& scene, const SimulationSettings& settings, const Surface& surface)
-    : discovery_(resolve_discovery(settings.propagation, scene)), alone_(scene, alone(settings), surface) {
+    : discovery_(resolve_discovery(settings.propagation, scene)),
+      alone_(scene, alone(settings), surface),
+      choice_(scene, settings.links) {
   PropagationSettings automatic = settings.propagation;
   automatic.discovery = Discovery::automatic;
   const bool small = resolve_discovery(automatic, scene) == Discovery::exact;
@@ -104,21 +107,27 @@ void BasicVerifier<Surface>::check(const Frame& frame, const FrameResult& result
   if (complete) compare(result, other);
 }
 
-/// By transmitter, then receiver: every pair of devices that are there and are not the same device.
+/// By transmitter, then receiver: every pair of devices that are there, that the settings leave and that are not the
+/// same device.
 template <SurfaceModel Surface>
-bool BasicVerifier<Surface>::has_the_links(const FrameResult& result) const {
+bool BasicVerifier<Surface>::has_the_links(const FrameResult& result) {
   const auto transmitters = alone_.scene().transmitters(), receivers = alone_.scene().receivers();
-  auto link = result.links.begin();
-  for (std::size_t from = 0; from < transmitters.size(); ++from) {
-    for (std::size_t to = 0; to < receivers.size(); ++to) {
-      const bool linked = transmitters[from].id != receivers[to].id && alone_.is_present(transmitters[from]) &&
-                          alone_.is_present(receivers[to]);
-      if (!linked) continue;
-      if (link == result.links.end() || link->transmitter != from || link->receiver != to) return false;
-      ++link;
-    }
+  const auto place_of = [&](const Device& device) {
+    const DeviceState state = alone_.scene().device_state_now(device, result.time_s);
+    return state.present ? std::optional(state.position_m) : std::nullopt;
+  };
+  std::vector<std::optional<Vec3>> places_m;
+  for (const Device& device : transmitters) places_m.push_back(place_of(device));
+  choice_.place(places_m);
+  std::vector<std::pair<std::size_t, std::size_t>> expected, found;
+  for (std::size_t to = 0; to < receivers.size(); ++to) {
+    const std::optional<Vec3> place_m = place_of(receivers[to]);
+    if (!place_m) continue;
+    for (const std::uint32_t from : choice_.transmitters_of(to, *place_m)) expected.emplace_back(from, to);
   }
-  return link == result.links.end();
+  std::sort(expected.begin(), expected.end());
+  for (const LinkResult& link : result.links) found.emplace_back(link.transmitter, link.receiver);
+  return found == expected;
 }
 
 /// Whether a path is within the declared orders and is not listed before.

@@ -1,8 +1,10 @@
 #include "dcem/io/src/pictures/plot_collector.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "dcem/io/src/text/file_name.hpp"
 
@@ -18,21 +20,29 @@ std::optional<std::size_t> profile_frame_of(const ResultFacts& facts, const Outp
                               " to " + std::to_string(facts.first_frame + facts.frames - 1));
 }
 
-/// Every link that has pictures when there is no end of them, in their order.
+/// Where there are all links: those with numbers below `most` of all that have pictures when there is no end of them.
 template <typename Visit>
-void each_link(std::span<const Device> transmitters, std::span<const Device> receivers, Visit&& visit) {
+void each_link(std::span<const Device> transmitters, std::span<const Device> receivers, std::size_t most,
+               Visit&& visit) {
   for (std::size_t transmitter = 0; transmitter < transmitters.size(); ++transmitter) {
     for (std::size_t receiver = 0; receiver < receivers.size(); ++receiver) {
-      if (transmitters[transmitter].id != receivers[receiver].id) visit(transmitter, receiver);
+      if (transmitters[transmitter].id == receivers[receiver].id) continue;
+      if (most-- == 0) return;
+      visit(transmitter, receiver);
     }
   }
+}
+
+std::pair<std::size_t, std::size_t> ends_of(const LinkResult& link) {
+  return {link.transmitter, link.receiver};
 }
 
 }  // namespace
 
 std::size_t plotted_links(const Scene& scene, std::span<const Device> receivers) {
   std::size_t links = 0;
-  each_link(scene.transmitters(), receivers, [&](std::size_t, std::size_t) { ++links; });
+  each_link(scene.transmitters(), receivers, std::numeric_limits<std::size_t>::max(),
+            [&](std::size_t, std::size_t) { ++links; });
   return links;
 }
 
@@ -40,17 +50,41 @@ PlotCollector::PlotCollector(OutputFolder& folder, const Scene& scene, std::span
                              const ResultFacts& facts, const OutputSettings& output)
     : folder_(folder),
       scene_(scene),
+      receivers_(receivers),
+      pdp_bin_s_(output.pdp_bin_s),
+      pdp_mode_(output.pdp_mode),
       profile_frame_(profile_frame_of(facts, output)),
       first_frame_(facts.first_frame),
       formats_(output.plots_formats) {
-  const std::span<const Device> transmitters = scene.transmitters();
-  each_link(transmitters, receivers, [&](std::size_t transmitter, std::size_t receiver) {
-    if (links_.size() == output.plots_max_links) return;
-    const Device &from = transmitters[transmitter], &to = receivers[receiver];
-    links_.push_back({transmitter, receiver, file_name_part(from.id) + "_" + file_name_part(to.id),
-                      LinkPlots({from.id, to.id, from.power_dbm}, output.pdp_bin_s, output.pdp_mode)});
-  });
+  if (facts.all_links) {
+    each_link(scene.transmitters(), receivers, output.plots_max_links,
+              [&](std::size_t transmitter, std::size_t receiver) { links_.push_back(link(transmitter, receiver)); });
+  } else {
+    room_ = output.plots_max_links;
+  }
   check_names();
+}
+
+PlotCollector::Link PlotCollector::link(std::size_t transmitter, std::size_t receiver) const {
+  const Device &from = scene_.transmitters()[transmitter], &to = receivers_[receiver];
+  return {transmitter, receiver, file_name_part(from.id) + "_" + file_name_part(to.id),
+          LinkPlots({from.id, to.id, from.power_dbm}, pdp_bin_s_, pdp_mode_)};
+}
+
+// Of a choice of links the first ones that there are, as if they had been expected from the first frame on.
+void PlotCollector::add_new_links(const FrameResult& frame) {
+  for (const LinkResult& result : frame.links) {
+    if (room_ == 0) return;
+    const auto place = std::lower_bound(links_.begin(), links_.end(), ends_of(result), [](const Link& one, auto ends) {
+      return std::pair(one.transmitter, one.receiver) < ends;
+    });
+    if (place != links_.end() && std::pair(place->transmitter, place->receiver) == ends_of(result)) continue;
+    const auto added = links_.insert(place, link(result.transmitter, result.receiver));
+    for (const double time_s : times_s_) added->plots.add(scene_, time_s, nullptr);
+    --room_;
+    check_names();
+  }
+  times_s_.push_back(frame.time_s);
 }
 
 // Two links may differ in a way that their file names do not, as in "a" to "b_c" and "a_b" to "c".
@@ -64,6 +98,7 @@ void PlotCollector::check_names() const {
 }
 
 void PlotCollector::add(const FrameResult& frame) {
+  add_new_links(frame);
   // Both lists are by transmitter, then receiver.
   auto result = frame.links.begin();
   for (Link& link : links_) {

@@ -32,6 +32,8 @@ class PlotCollector {
     LinkPlots plots;
   };
 
+  Link link(std::size_t transmitter, std::size_t receiver) const;
+  void add_new_links(const FrameResult& frame);
   void check_names() const;
   void write_over_time(const Link& link);
   template <typename Draw>
@@ -39,10 +41,15 @@ class PlotCollector {
 
   OutputFolder& folder_;
   const Scene& scene_;
+  std::span<const Device> receivers_;
+  double pdp_bin_s_ = 0.0;
+  PdpMode pdp_mode_;
   std::optional<std::size_t> profile_frame_;  // counted from the first of the run; absent: the middle one
   std::size_t first_frame_ = 0;
   PictureFormats formats_;
-  std::vector<Link> links_;  // by transmitter, then receiver
+  std::vector<Link> links_;      // by transmitter, then receiver
+  std::size_t room_ = 0;         // so many links that have not been there yet will have pictures, too …
+  std::vector<double> times_s_;  // … with a gap where these instants are
 };
 
 }  // namespace dcem::io

@@ -82,7 +82,6 @@ void check_is_scenario(const JsonValue& root) {
 Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root, const JsonObject& command_line) {
   root.at("format").word();
   if (const auto schema = root.find("$schema")) schema->text();
-  check_links(root);
   Scenario result;
   result.name = file.stem().string();
   result.settings.frequency_hz = root.at("frequency_hz").number();
@@ -98,6 +97,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   AntennaReader antennas(file.parent_path());
   read_devices(root, file.parent_path(), motions, antennas, result);
   motions.check_all_taken();
+  result.settings.links = read_links(root, result.scene);
   reported_at(root.value(), [&] { validate(result.settings); });
   check_exact_discovery(result, root, command_line);
   check_frequency(result, root.at("frequency_hz"));

@@ -193,22 +193,38 @@ std::size_t most_ports(const Devices& devices) {
   return most;
 }
 
+/// Vehicles may be all that there is.
+void require_devices(const JsonObject& scenario, const Scenario& result) {
+  const auto fail = [&](const char* key) {
+    scenario.fail("the key " + in_quotes(key) + " is missing; expected " + key +
+                  ", or vehicles that carry devices (mobility.devices)");
+  };
+  if (result.scene.transmitters().empty()) fail("transmitters");
+  if (result.scene.receivers().empty() && result.grids.empty()) fail("receivers");
+}
+
 /// A path keeps a number for each pair of ports.
-void check_channel_size(const JsonValue& receivers, const Scenario& result) {
+void check_channel_size(const JsonObject& scenario, const Scenario& result) {
   const std::size_t sent = most_ports(result.scene.transmitters());
   const std::size_t heard = std::max(most_ports(result.scene.receivers()), most_ports(result.grids));
   if (sent * heard <= most_channel_entries) return;
-  receivers.fail("arrays with " + std::to_string(heard) + " ports hear arrays with " + std::to_string(sent) +
-                 "; expected at most " + std::to_string(most_channel_entries) + " pairs of ports");
+  const JsonValue place = scenario.find("receivers").value_or(scenario.value());
+  place.fail("arrays with " + std::to_string(heard) + " ports hear arrays with " + std::to_string(sent) +
+             "; expected at most " + std::to_string(most_channel_entries) + " pairs of ports");
 }
 
 }  // namespace
 
 void read_devices(const JsonObject& scenario, const std::filesystem::path& folder, MotionReader& motions,
                   AntennaReader& antennas, Scenario& result) {
-  read_list(scenario.at("transmitters"), true, folder, motions, antennas, result);
-  read_list(scenario.at("receivers"), false, folder, motions, antennas, result);
-  check_channel_size(scenario.at("receivers"), result);
+  const auto read = [&](const char* list, bool transmits) {
+    if (const auto devices = scenario.find(list)) read_list(*devices, transmits, folder, motions, antennas, result);
+  };
+  read("transmitters", true);
+  read("receivers", false);
+  read_vehicle_devices(scenario, antennas, result);
+  require_devices(scenario, result);
+  check_channel_size(scenario, result);
 }
 
 }  // namespace dcem::io

@@ -38,6 +38,17 @@ std::set<std::string> names_of_interest(const JsonObject& scenario) {
   return names;
 }
 
+/// Vehicles that `devices` lists by their ids.
+void collect_equipped(const JsonObject& mobility, std::set<std::string>& names) {
+  const auto devices = mobility.find("devices");
+  if (!devices || !devices->raw().is_object() || !devices->raw().contains("vehicles")) return;
+  const nlohmann::json& vehicles = devices->raw()["vehicles"];
+  if (!vehicles.is_array()) return;
+  for (const nlohmann::json& id : vehicles) {
+    if (id.is_string()) names.insert(id);
+  }
+}
+
 /// An instant without the last digits of a sum of steps: "0.3".
 std::string instant_text(double time_s) {
   return number_text(std::round(time_s * 1e6) / 1e6) + " s";
@@ -86,7 +97,9 @@ void read_mobility(const JsonObject& scenario, const std::filesystem::path& fold
   mobility.at("material").line();
   const std::filesystem::path trace = existing_file(mobility.at("sumo_fcd"), folder, "expected SUMO's FCD output");
   const VehicleTypes types = read_vehicle_types(mobility, folder);
-  TraceSurvey survey = survey_trace(trace, types, names_of_interest(scenario));
+  SurveyWishes wishes{names_of_interest(scenario), mobility.has("devices")};
+  collect_equipped(mobility, wishes.names);
+  TraceSurvey survey = survey_trace(trace, types, wishes);
   result.time = trace_time(scenario, survey.traffic, std::move(survey.step_times_s));
   result.traffic = std::move(survey.traffic);
 }

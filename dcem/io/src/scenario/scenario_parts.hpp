@@ -39,8 +39,6 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
 OutputSettings read_output(const JsonObject& scenario, const JsonObject& command_line);
 /// The block `noise`, if there is one.
 std::optional<NoiseSettings> read_noise(const JsonObject& scenario);
-/// Refuses what later versions bring beside all links.
-void check_links(const JsonObject& scenario);
 
 // scenario_motion.cpp
 
@@ -102,6 +100,13 @@ class AntennaReader {
 /// Adds the transmitters and receivers to the scene, and the receiver grids beside it. Files are relative to `folder`.
 void read_devices(const JsonObject& scenario, const std::filesystem::path& folder, MotionReader& motions,
                   AntennaReader& antennas, Scenario& result);
+
+// scenario_links.cpp
+
+/// Adds the devices of `mobility.devices`, if there is such a block, to the scene.
+void read_vehicle_devices(const JsonObject& scenario, AntennaReader& antennas, Scenario& result);
+/// The key `links`, between devices that the scene has.
+LinkSettings read_links(const JsonObject& scenario, const Scene& scene);
 
 // scenario_bodies.cpp
 

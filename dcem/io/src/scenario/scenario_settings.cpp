@@ -299,8 +299,4 @@ std::optional<NoiseSettings> read_noise(const JsonObject& scenario) {
   return noise;
 }
 
-void check_links(const JsonObject& scenario) {
-  if (const auto links = scenario.find("links")) links->word();
-}
-
 }  // namespace dcem::io

@@ -46,6 +46,14 @@ Json atmosphere_json(const std::optional<Atmosphere>& atmosphere) {
           {"rain_mm_per_h", atmosphere->rain_mm_per_h}};
 }
 
+Json links_json(const LinkSettings& settings) {
+  if (!settings.range_m && !settings.pairs) return "all";
+  Json links = Json::object();
+  if (settings.range_m) links["range_m"] = *settings.range_m;
+  if (settings.pairs) links["pairs"] = settings.pairs->size();
+  return links;
+}
+
 Json propagation_json(const RunFacts& facts) {
   const PropagationSettings& settings = facts.settings.propagation;
   const bool sampled = facts.discovery == Discovery::sampled;
@@ -86,6 +94,7 @@ nlohmann::ordered_json settings_json(const RunFacts& facts) {
             {"huge_pages", settings.tree.build.huge_pages}}},
           {"instructions", name_of(instruction_set())},
           {"time", {{"start_s", facts.time.start_s}, {"step_s", facts.time.step_s}, {"frames", facts.time.frames}}},
+          {"links", links_json(settings.links)},
           {"propagation", propagation_json(facts)},
           {"defaults_of_this_version",
            {{"cache", "exact with exact discovery, seed with sampled"},

@@ -18,8 +18,8 @@ struct TypeCount {
 
 class Surveyor {
  public:
-  Surveyor(const VehicleTypes& types, const std::set<std::string>& names, TraceSurvey& result)
-      : types_(types), names_(names), result_(result) {}
+  Surveyor(const VehicleTypes& types, const SurveyWishes& wishes, TraceSurvey& result)
+      : types_(types), wishes_(wishes), result_(result) {}
 
   void read(const std::filesystem::path& trace) {
     FcdReader reader(trace);
@@ -48,6 +48,7 @@ class Surveyor {
       }
       TypeCount& count = found->second;
       count.most = std::max(count.most, ++count.now);
+      if (wishes_.all_types) result_.traffic.types_of_vehicles.emplace(vehicle.id, vehicle.type);
     }
   }
 
@@ -60,7 +61,7 @@ class Surveyor {
   }
 
   void note_presence(const FcdStep& step) {
-    for (const std::string& name : names_) {
+    for (const std::string& name : wishes_.names) {
       const auto found =
           std::lower_bound(step.vehicles.begin(), step.vehicles.end(), name,
                            [](const FcdVehicle& vehicle, const std::string& id) { return vehicle.id < id; });
@@ -94,7 +95,7 @@ class Surveyor {
   }
 
   const VehicleTypes& types_;
-  const std::set<std::string>& names_;
+  const SurveyWishes& wishes_;
   TraceSurvey& result_;
   std::unordered_map<std::string, TypeCount> counts_;
   double moved_m_ = 0.0, driven_m_ = 0.0;
@@ -102,11 +103,10 @@ class Surveyor {
 
 }  // namespace
 
-TraceSurvey survey_trace(const std::filesystem::path& trace, const VehicleTypes& types,
-                         const std::set<std::string>& names) {
+TraceSurvey survey_trace(const std::filesystem::path& trace, const VehicleTypes& types, const SurveyWishes& wishes) {
   TraceSurvey survey;
   survey.traffic.trace = trace;
-  Surveyor(types, names, survey).read(trace);
+  Surveyor(types, wishes, survey).read(trace);
   survey.traffic.first_s = survey.step_times_s.front();
   survey.traffic.last_s = survey.step_times_s.back();
   return survey;

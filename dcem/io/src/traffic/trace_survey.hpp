@@ -20,9 +20,14 @@ struct TraceSurvey {
   std::vector<double> step_times_s;  ///< increasing, at least one
 };
 
+/// Which vehicles a reading takes note of.
+struct SurveyWishes {
+  std::set<std::string> names;  ///< when these are there
+  bool all_types = false;       ///< of which type each vehicle is
+};
+
 /// Throws InputError: what `FcdReader` throws, and a vehicle whose type is not in `types`.
-TraceSurvey survey_trace(const std::filesystem::path& trace, const VehicleTypes& types,
-                         const std::set<std::string>& names);
+TraceSurvey survey_trace(const std::filesystem::path& trace, const VehicleTypes& types, const SurveyWishes& wishes);
 
 /// The median of the differences between steps; 0 where there is but one step. A difference within a nanosecond of
 /// whole microseconds is taken for these, or the rounding of the trace's decimals would add up over the frames.

@@ -57,6 +57,52 @@ const BlockRule& time_block() {
   return rule;
 }
 
+const BlockRule& vehicle_share_block() {
+  static const BlockRule rule{
+      "mobility.devices.vehicles",
+      "A share of all vehicles of the trace, drawn by their ids.",
+      {{"share", {number({0.0, 1.0})}, required(), "How many of all, in the mean.", "0.2"},
+       {"seed", {whole_number(0, 9e18)}, Absence{Absence::Kind::value, "1"}, "Another seed draws others.", "1"}}};
+  return rule;
+}
+
+const BlockRule& vehicle_devices_block() {
+  static const BlockRule rule{
+      "mobility.devices",
+      "A device over the middle of the roof of each chosen vehicle, with the vehicle's id; it transmits and receives. "
+      "Of "
+      "two such devices there is one link, from the lesser id.",
+      {{"vehicles",
+        {word({"all"}), list(text(), 1, "id of a vehicle"), block(vehicle_share_block())},
+        required(),
+        "Which vehicles.",
+        R"("all")"},
+       {"height_above_roof_m",
+        {number({0.0, 1000.0}, "m")},
+        Absence{Absence::Kind::value, "0.1"},
+        "Of the antenna.",
+        "0.1"},
+       {"power_dbm", {number({-300.0, 200.0}, "dBm")}, required(), "Transmitted power.", "23"},
+       {"antenna", {block(antenna_block())}, told("isotropic, vertical"), "What it sends and hears with.", ""}}};
+  return rule;
+}
+
+const BlockRule& links_block() {
+  static const BlockRule rule{"links",
+                              "Which links of dcem run there are; one at least of both keys. Maps have all.",
+                              {{"range_m",
+                                {number({1e-3, 1e9}, "m")},
+                                told("at any distance"),
+                                "Only between ends that are no farther apart, in each frame.",
+                                "150"},
+                               {"pairs",
+                                {list(fixed_list(2, text(), "two ids [transmitter, receiver]"), 1, "pair")},
+                                told("any transmitter with any receiver"),
+                                "Only these; of two vehicles with devices in any order.",
+                                R"([["bs", "ue"]])"}}};
+  return rule;
+}
+
 const BlockRule& mobility_block() {
   static const BlockRule rule{
       "mobility",
@@ -69,10 +115,10 @@ const BlockRule& mobility_block() {
         R"("vtypes.add.xml")"},
        {"material", {line()}, required(), "What the vehicles are made of.", R"("metal")"},
        {"devices",
-        {later()},
+        {block(vehicle_devices_block())},
         told("no device but those in transmitters and receivers"),
         "A device on each chosen vehicle.",
-        "{}"}}};
+        ""}}};
   return rule;
 }
 
@@ -144,12 +190,20 @@ std::vector<KeyRule> keys_of_the_scene() {
 
 std::vector<KeyRule> keys_of_the_radio() {
   return {
-      {"transmitters", {list(block(transmitter_block()), 1, "device")}, required(), "What sends.", ""},
-      {"receivers", {list(block(receiver_block()), 1, "device")}, required(), "What hears.", ""},
+      {"transmitters",
+       {list(block(transmitter_block()), 1, "device")},
+       told("those of mobility.devices; there must be one"),
+       "What sends.",
+       ""},
+      {"receivers",
+       {list(block(receiver_block()), 1, "device")},
+       told("those of mobility.devices; there must be one"),
+       "What hears.",
+       ""},
       {"links",
-       {word({"all"}), later()},
+       {word({"all"}), block(links_block())},
        Absence{Absence::Kind::value, R"("all")"},
-       "Which transmitter goes with which receiver: all with all, but never a device with itself.",
+       "Which transmitter goes with which receiver: all with all, or some, but never a device with itself.",
        R"("all")"},
       {"propagation",
        {block(propagation_block())},
