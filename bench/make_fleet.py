@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""Writes a SUMO trace of any number of vehicles at a time, all of which carry devices, and a scenario with their links.
+
+  make_fleet.py FOLDER VEHICLES STEPS [RANGE_M] [INTERACTIONS]
+
+The vehicles drive along parallel streets 40 m apart over a square that grows with their number: 625 vehicles for a square
+kilometre, so that each has the same number of others around it. In the middle lies the town of data/. Nothing is random.
+"""
+import math
+import os
+import sys
+
+STEP_S = 0.1
+SPEED_MPS = 12.5
+VEHICLES_PER_KM2 = 625.0
+STREET_SPACING_M = 40.0
+
+SCENARIO = """{
+  "format": "dcem-scenario/1",
+  "scene": {"obj": "%s"},
+  "materials": {"metal": {"model": "pec"}},
+  "frequency_hz": 5.9e9,
+  "mobility": {"sumo_fcd": "trace.fcd.xml", "vehicle_types": "vtypes.add.xml", "material": "metal",
+    "devices": {"vehicles": "all", "power_dbm": 23}},
+  "links": {"range_m": %g},
+  "propagation": {"max_reflections": 2, "max_transmissions": 0, "max_interactions": %d}
+}
+"""
+
+
+def write_trace(path, vehicles, steps):
+    side_m = 1000.0 * math.sqrt(vehicles / VEHICLES_PER_KM2)
+    streets = max(1, round(side_m / STREET_SPACING_M))
+    with open(path, "w", encoding="utf-8") as file:
+        file.write('<?xml version="1.0" encoding="UTF-8"?>\n<fcd-export>\n')
+        for step in range(steps):
+            file.write(f'    <timestep time="{step * STEP_S:.2f}">\n')
+            for number in range(vehicles):
+                east = number % streets % 2 == 0
+                start_m = side_m * ((number // streets * 0.6180339887 + number % streets * 0.37) % 1.0)
+                along_m = (start_m + SPEED_MPS * STEP_S * step) % side_m - side_m / 2
+                across_m = STREET_SPACING_M * (number % streets + 0.5) - side_m / 2
+                x_m, y_m, angle_deg = (along_m, across_m, 90.0) if east else (across_m, along_m, 0.0)
+                file.write(f'        <vehicle id="v{number}" x="{x_m:.2f}" y="{y_m:.2f}" angle="{angle_deg:.0f}" type="car" '
+                           f'speed="{SPEED_MPS}" pos="0" lane="a_0" slope="0"/>\n')
+            file.write("    </timestep>\n")
+        file.write("</fcd-export>\n")
+
+
+def main():
+    if len(sys.argv) not in (4, 5, 6):
+        sys.exit(__doc__)
+    folder, vehicles, steps = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    range_m = float(sys.argv[4]) if len(sys.argv) > 4 else 150.0
+    interactions = int(sys.argv[5]) if len(sys.argv) > 5 else 0
+    os.makedirs(folder, exist_ok=True)
+    town = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "town.obj")
+    with open(os.path.join(folder, "vtypes.add.xml"), "w", encoding="utf-8") as file:
+        file.write('<additional>\n    <vType id="car" length="4.4" width="1.8" height="1.5"/>\n</additional>\n')
+    with open(os.path.join(folder, "scenario.json"), "w", encoding="utf-8") as file:
+        file.write(SCENARIO % (os.path.relpath(town, folder), range_m, interactions))
+    write_trace(os.path.join(folder, "trace.fcd.xml"), vehicles, steps)
+    print(f"{folder}: {steps} steps of {vehicles} vehicles")
+
+
+if __name__ == "__main__":
+    main()
