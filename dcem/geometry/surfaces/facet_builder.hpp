@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -43,12 +45,14 @@ class FacetBuilder {
   }
 
   SurfaceMesh build() {
-    std::vector<std::vector<std::uint32_t>> sets(mesh_.triangles.size());
-    for (std::uint32_t triangle = 0; triangle < mesh_.triangles.size(); ++triangle) {
-      sets[coplanar_.smallest(triangle)].push_back(triangle);
-    }
-    for (const std::vector<std::uint32_t>& set : sets) {
-      if (!set.empty()) add_set(set);
+    reserve();
+    const std::vector<std::uint32_t> by_set = triangles_by_set();
+    for (auto first = by_set.begin(); first != by_set.end();) {
+      const std::uint32_t set = coplanar_.smallest(*first);
+      const auto last =
+          std::find_if(first, by_set.end(), [&](std::uint32_t other) { return coplanar_.smallest(other) != set; });
+      add_set({first, last});
+      first = last;
     }
     surface_.material_names = std::move(mesh_.material_names);
     surface_.vertices_m = std::move(mesh_.vertices_m);
@@ -56,6 +60,28 @@ class FacetBuilder {
   }
 
  private:
+  using Triangles = std::span<const std::uint32_t>;
+
+  void reserve() {
+    surface_.triangles.reserve(mesh_.triangles.size());
+    surface_.facet_of_triangle.reserve(mesh_.triangles.size());
+    surface_.shell_of_triangle.reserve(mesh_.triangles.size());
+  }
+
+  /// The triangles, set by set: sets in the order of their first triangles, which stand first in them.
+  std::vector<std::uint32_t> triangles_by_set() {
+    std::vector<std::uint32_t> begins(mesh_.triangles.size() + 1, 0);
+    for (std::uint32_t triangle = 0; triangle < mesh_.triangles.size(); ++triangle) {
+      ++begins[coplanar_.smallest(triangle) + 1];
+    }
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    std::vector<std::uint32_t> by_set(mesh_.triangles.size());
+    for (std::uint32_t triangle = 0; triangle < by_set.size(); ++triangle) {
+      by_set[begins[coplanar_.smallest(triangle)]++] = triangle;
+    }
+    return by_set;
+  }
+
   void join_coplanar(const MeshEdges& edges) {
     edges.for_each_place([&](auto first, auto last) {
       open_edges_ += last - first == 1;
@@ -71,11 +97,13 @@ class FacetBuilder {
   bool coplanar(std::uint32_t one, std::uint32_t other) const {
     return mesh_.triangles[one].material == mesh_.triangles[other].material &&
            std::abs(glm::dot(mesh_.normals[one], mesh_.normals[other])) > coplanar_cosine &&
-           largest_stray_m({mesh_.corner_m(one, 0), mesh_.normals[one]}, {other}) <= settings_.planarity_tolerance_m &&
-           largest_stray_m({mesh_.corner_m(other, 0), mesh_.normals[other]}, {one}) <= settings_.planarity_tolerance_m;
+           largest_stray_m({mesh_.corner_m(one, 0), mesh_.normals[one]}, Triangles(&other, 1)) <=
+               settings_.planarity_tolerance_m &&
+           largest_stray_m({mesh_.corner_m(other, 0), mesh_.normals[other]}, Triangles(&one, 1)) <=
+               settings_.planarity_tolerance_m;
   }
 
-  void add_set(const std::vector<std::uint32_t>& set) {
+  void add_set(Triangles set) {
     const Plane plane = mean_plane(set);
     const double limit_m = stray_tolerances * settings_.planarity_tolerance_m;
     if (set.size() == 1 || largest_stray_m(plane, set) <= limit_m) {
@@ -83,10 +111,10 @@ class FacetBuilder {
       return;
     }
     ++surface_.report.uneven_sets;
-    for (const std::uint32_t triangle : set) add_facet(mean_plane({triangle}), {triangle});
+    for (const std::uint32_t& triangle : set) add_facet(mean_plane({&triangle, 1}), {&triangle, 1});
   }
 
-  Plane mean_plane(const std::vector<std::uint32_t>& set) const {
+  Plane mean_plane(Triangles set) const {
     if (set.size() == 1) return {centroid_m(set.front()), mesh_.normals[set.front()]};
     const std::uint32_t largest = *std::max_element(set.begin(), set.end(), [&](std::uint32_t a, std::uint32_t b) {
       return mesh_.areas_m2[a] < mesh_.areas_m2[b];
@@ -107,7 +135,7 @@ class FacetBuilder {
     return a + ((b - a) + (c - a)) / 3.0;
   }
 
-  double largest_stray_m(const Plane& plane, const std::vector<std::uint32_t>& set) const {
+  double largest_stray_m(const Plane& plane, Triangles set) const {
     double largest_m = 0.0;
     for (const std::uint32_t triangle : set) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -117,7 +145,7 @@ class FacetBuilder {
     return largest_m;
   }
 
-  void add_facet(const Plane& plane, const std::vector<std::uint32_t>& set) {
+  void add_facet(const Plane& plane, Triangles set) {
     Facet facet{plane, mesh_.triangles[set.front()].material};
     facet.first_triangle = static_cast<std::uint32_t>(surface_.triangles.size());
     facet.triangle_count = static_cast<std::uint32_t>(set.size());

@@ -73,22 +73,25 @@ inline void check_mesh(const TriangleMesh& mesh) {
   }
 }
 
-/// The corners of all triangles: vertices that no triangle uses weld nothing together.
-inline std::vector<Vec3> triangle_corners(const TriangleMesh& mesh) {
-  std::vector<Vec3> corners_m;
-  corners_m.reserve(3 * mesh.triangles.size());
-  for (const TriangleMesh::Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t vertex : triangle.vertices) corners_m.push_back(mesh.vertices_m[vertex]);
-  }
-  return corners_m;
-}
+/// The vertices that triangles use, and for each vertex its place among them: one that no triangle uses welds nothing
+/// together.
+struct UsedVertices {
+  std::vector<Vec3> vertices_m;
+  std::vector<std::uint32_t> place;
+};
 
-inline std::size_t used_vertex_count(const TriangleMesh& mesh) {
-  std::vector<char> used(mesh.vertices_m.size(), 0);
+inline UsedVertices used_vertices(const TriangleMesh& mesh) {
+  constexpr std::uint32_t unused = ~std::uint32_t{0};
+  UsedVertices used;
+  used.place.resize(mesh.vertices_m.size(), unused);
   for (const TriangleMesh::Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t vertex : triangle.vertices) used[vertex] = 1;
+    for (const std::uint32_t vertex : triangle.vertices) {
+      if (used.place[vertex] != unused) continue;
+      used.place[vertex] = static_cast<std::uint32_t>(used.vertices_m.size());
+      used.vertices_m.push_back(mesh.vertices_m[vertex]);
+    }
   }
-  return static_cast<std::size_t>(std::count(used.begin(), used.end(), char{1}));
+  return used;
 }
 
 /// Sorted names without repetition, and for each name handed in its index there.
@@ -121,6 +124,8 @@ inline void drop_repeated(CleanMesh& clean) {
 }
 
 inline void compute_normals(CleanMesh& clean) {
+  clean.areas_m2.reserve(clean.triangles.size());
+  clean.normals.reserve(clean.triangles.size());
   for (std::uint32_t triangle = 0; triangle < clean.triangles.size(); ++triangle) {
     const Vec3 &a = clean.corner_m(triangle, 0), &b = clean.corner_m(triangle, 1), &c = clean.corner_m(triangle, 2);
     const Vec3 scaled = glm::cross(b - a, c - a);
@@ -136,14 +141,18 @@ inline CleanMesh clean_mesh(const TriangleMesh& mesh, const SurfaceSettings& set
   CleanMesh clean;
   std::vector<std::uint32_t> material;
   std::tie(clean.material_names, material) = detail::sorted_names(mesh.material_names);
-  const WeldedVertices welded = weld(detail::triangle_corners(mesh), settings.weld_tolerance_m);
-  clean.vertices_m = welded.vertices_m;
+  const detail::UsedVertices used = detail::used_vertices(mesh);
+  WeldedVertices welded = weld(used.vertices_m, settings.weld_tolerance_m);
+  clean.vertices_m = std::move(welded.vertices_m);
   clean.report.vertices_read = mesh.vertices_m.size();
-  clean.report.vertices_welded = detail::used_vertex_count(mesh) - welded.vertices_m.size();
+  clean.report.vertices_welded = used.vertices_m.size() - clean.vertices_m.size();
   clean.report.triangles_read = mesh.triangles.size();
-  for (std::size_t index = 0; index < mesh.triangles.size(); ++index) {
-    const std::uint32_t* corner = &welded.new_index[3 * index];
-    CleanTriangle triangle{{corner[0], corner[1], corner[2]}, material[mesh.triangles[index].material]};
+  clean.triangles.reserve(mesh.triangles.size());
+  for (const TriangleMesh::Triangle& read : mesh.triangles) {
+    CleanTriangle triangle{{}, material[read.material]};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      triangle.vertices[corner] = welded.new_index[used.place[read.vertices[corner]]];
+    }
     std::sort(triangle.vertices.begin(), triangle.vertices.end());
     const auto& [a, b, c] = triangle.vertices;
     if (detail::has_area(clean.vertices_m[a], clean.vertices_m[b], clean.vertices_m[c], settings.weld_tolerance_m)) {

@@ -23,6 +23,7 @@ struct MeshEdge {
 class MeshEdges {
  public:
   explicit MeshEdges(const CleanMesh& mesh) {
+    edges_.reserve(3 * mesh.triangles.size());
     for (std::uint32_t index = 0; index < mesh.triangles.size(); ++index) {
       const auto& [a, b, c] = mesh.triangles[index].vertices;
       edges_.insert(edges_.end(), {MeshEdge{a, b, index}, MeshEdge{a, c, index}, MeshEdge{b, c, index}});

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <istream>
 #include <limits>
-#include <sstream>
+#include <streambuf>
 #include <string_view>
 #include <utility>
 
@@ -164,6 +165,15 @@ class ObjCheck {
   CheckedObj result_;
 };
 
+/// A text as tinyobjloader wants it, where it lies: texts of large cities are large.
+class TextBuffer : public std::streambuf {
+ public:
+  explicit TextBuffer(const std::string& text) {
+    char* first = const_cast<char*>(text.data());  // a get area is never written to
+    setg(first, first, first + text.size());
+  }
+};
+
 /// Receives what tinyobjloader reads from a checked text and makes triangles of it.
 class MeshBuilder {
  public:
@@ -176,7 +186,8 @@ class MeshBuilder {
     callback.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
       cast(self).add_polygon({corners, static_cast<std::size_t>(count)});
     };
-    std::istringstream stream(text);
+    TextBuffer buffer(text);
+    std::istream stream(&buffer);
     tinyobj::LoadObjWithCallback(stream, callback, this);
     return std::move(mesh_);
   }
