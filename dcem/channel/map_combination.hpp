@@ -28,6 +28,7 @@ struct CombinedMapPoint {
   std::optional<double> power_incoherent_dbm;  ///< the server's incoherent power
   std::optional<double> sinr_db;               ///< over the others and the noise; absent where there is neither
   std::optional<double> snr_db;                ///< over the noise alone; absent without noise
+  bool sheltered = false;                      ///< as in the maps
 };
 
 /// The maps of all transmitters over one grid or list, taken together; points in the order of the maps.
@@ -79,7 +80,7 @@ inline std::optional<std::size_t> best_server(std::span<const RadioMap> maps, st
 inline CombinedMapPoint combine_point(std::span<const RadioMap> maps, std::size_t cell,
                                       std::optional<double> noise_power_dbm) {
   const RadioMapPoint& any = maps.front().points[cell];
-  CombinedMapPoint point{any.position_m, any.obstructed, best_server(maps, cell), {}, {}, {}, {}};
+  CombinedMapPoint point{any.position_m, any.obstructed, best_server(maps, cell), {}, {}, {}, {}, any.sheltered};
   if (!point.server) return point;
   const LinkStatistics& served = maps[*point.server].points[cell].statistics;
   point.power_dbm = served.power_dbm;

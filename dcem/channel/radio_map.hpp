@@ -21,6 +21,9 @@ struct RadioMapPoint {
   bool obstructed = false;
   LinkStatistics statistics;
   std::string strongest_kinds;  ///< kinds of the strongest path; empty also for the line of sight
+  /// Nothing arrives from any transmitter, and it is indoors: no point of a street without coverage. Whoever makes maps
+  /// of the outdoors may say so; nothing else depends on it.
+  bool sheltered = false;
 };
 
 /// Where the points of a map lie: on a grid, row by row (row 0 has the smallest y), or in a list.

@@ -26,8 +26,8 @@ void write_best_server_csv(AtomicFile& file, const CombinedMap& map);
 void write_sinr_csv(AtomicFile& file, const CombinedMap& map);
 
 /// Arrays over [row, column] or [point]: coordinates, `tx` uint32 (the number of the server in `tx_id`, 0 also where
-/// `served` is false), `served` and `obstructed` bool, the columns of the CSV as float64 with NaN where they are empty;
-/// `tx_id` text, the transmitters in order.
+/// `served` is false), `served`, `obstructed` and `sheltered` bool, the columns of the CSV as float64 with NaN where
+/// they are empty; `tx_id` text, the transmitters in order.
 void write_best_server_npz(AtomicFile& file, const CombinedMap& map);
 void write_sinr_npz(AtomicFile& file, const CombinedMap& map);
 

@@ -70,7 +70,9 @@ struct HeatMap {
   /// Lines where the value, linear between the points, is a multiple of this, in `unit`; absent: none. None either
   /// where there are categories, or more than 1,000 levels.
   std::optional<double> contour_step{};
-  std::vector<std::array<double, 4>> walls_m;  // segments x0, y0, x1, y1
+  std::string hatched_label = "inside an object or on a wall";  // what the legend calls hatched cells
+  std::vector<std::array<double, 4>> walls_m;    // segments x0, y0, x1, y1; thin and grey between hatched cells
+  std::vector<std::array<double, 4>> windows_m;  // the same: walls that let much through, drawn as a hollow line
   std::vector<Marker> transmitters;
   std::optional<ValueRange> range;  // ends of the colour bar; default: `default_value_range`
   /// Where this is not empty the values are numbers of these names, counted from 0. Each name has a colour and an entry

@@ -27,8 +27,8 @@ std::string map_name(const std::string& grid, const std::string& transmitter, st
 void write_map_csv(AtomicFile& file, const RadioMap& map, double frequency_hz);
 
 /// Writes arrays over [row, column], row 0 that of the smallest y, or over [point]: `x_m`, `y_m`, `z_m` and the columns
-/// of the CSV under their names, float64 with NaN where the CSV is empty; `line_of_sight` and `obstructed` bool,
-/// `path_count` uint32, `strongest_kinds` text; and the number `frequency_hz`. Throws `OutputError`.
+/// of the CSV under their names, float64 with NaN where the CSV is empty; `line_of_sight`, `obstructed` and `sheltered`
+/// bool, `path_count` uint32, `strongest_kinds` text; and the number `frequency_hz`. Throws `OutputError`.
 void write_map_npz(AtomicFile& file, const RadioMap& map, double frequency_hz);
 
 /// Writes the coherent power in dBm as an ESRI ASCII grid (`write_esri_grid`). Precondition, as of the picture: a map
@@ -36,8 +36,9 @@ void write_map_npz(AtomicFile& file, const RadioMap& map, double frequency_hz);
 void write_map_asc(AtomicFile& file, const RadioMap& map);
 
 /// The picture of a map: the incoherent power in dBm at each point. It is the mean over a few wavelengths, which is all
-/// that points further apart than half a wavelength can show. Obstructed points are hatched; walls are where the
-/// scene, as it stands now, meets the plane of the grid; every transmitter of the scene has its symbol and its name.
+/// that points further apart than half a wavelength can show. Obstructed and sheltered points are hatched; walls are
+/// where the scene, as it stands now, meets the plane of the grid, windows those that more than a tenth of the power
+/// passes upright; every transmitter of the scene has its symbol and its name.
 /// `time_s` goes into the title where it is given.
 HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame, double frequency_hz,
                     std::optional<double> time_s = {});

@@ -11,6 +11,7 @@
 #include "dcem/io/map_writer.hpp"
 #include "dcem/io/placement_watch.hpp"
 #include "dcem/io/sampling_text.hpp"
+#include "dcem/io/shelter.hpp"
 #include "dcem/io/slow_map.hpp"
 #include "job.hpp"
 #include "map_files.hpp"
@@ -120,6 +121,7 @@ std::optional<FrameMaps> solve_maps(const MapOrders& orders, Simulator& simulato
   const auto make = [&](const auto& places) {
     const auto start = std::chrono::steady_clock::now();
     solved.maps.push_back(simulator.radio_maps(places, tell, &solved.figures.work));
+    io::mark_sheltered(simulator, frame, solved.maps.back());
     solved.figures.solve_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (const RadioMap& map : solved.maps.back()) add_figures(map, solved.figures);
   };

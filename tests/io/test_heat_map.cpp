@@ -279,6 +279,52 @@ TEST_CASE("walls are dark lines within the plot") {
   CHECK(png.at(layout.plot.right() + 4, static_cast<int>(edge.y)) == Colour{255, 255, 255});
 }
 
+TEST_CASE("windows do not look like walls: a pale line between two dark ones, in grey as well") {
+  DCEM_NEEDS_DRAWING();
+  HeatMap map = room();
+  map.walls_m = {{0.0, 6.0, 8.0, 6.0}};
+  map.windows_m = {{8.0, 6.0, 20.0, 6.0}};
+  const HeatMapLayout layout = heat_map_layout(map);
+  const Png png = drawn(map);
+  const auto across = [&](double x_m) {
+    std::vector<double> tones;
+    const PixelPoint place = layout.point(x_m, 6.0);
+    for (int dy = -5; dy <= 5; ++dy) {
+      tones.push_back(lightness(png.at(static_cast<int>(place.x), static_cast<int>(std::lround(place.y)) + dy)));
+    }
+    return tones;
+  };
+  for (const double x_m : {9.5, 14.25, 18.0}) {
+    const std::vector<double> tones = across(x_m);
+    CHECK(*std::max_element(tones.begin() + 3, tones.end() - 3) > 85.0);
+    CHECK(*std::min_element(tones.begin(), tones.begin() + 5) < 30.0);
+    CHECK(*std::min_element(tones.end() - 5, tones.end()) < 30.0);
+  }
+  const std::vector<double> wall = across(4.25);
+  CHECK(*std::max_element(wall.begin() + 4, wall.end() - 5) < 10.0);
+}
+
+TEST_CASE("walls between hatched cells are thin and grey: they hide no street") {
+  DCEM_NEEDS_DRAWING();
+  HeatMap map = room();
+  map.hatched.assign(map.values.size(), 0);
+  for (std::size_t cell = 0; cell < map.values.size(); ++cell) map.hatched[cell] = cell % map.columns < 20 ? 1 : 0;
+  const auto darkest_at = [&](double x_m, bool with_wall) {
+    map.walls_m.clear();
+    if (with_wall) map.walls_m = {{x_m, 2.0, x_m, 10.0}};
+    const HeatMapLayout layout = heat_map_layout(map);
+    const Png png = drawn(map);
+    const PixelPoint place = layout.point(x_m, 6.0);
+    double darkest = 100.0;
+    for (int dx = -2; dx <= 2; ++dx) {
+      darkest = std::min(darkest, lightness(png.at(static_cast<int>(place.x) + dx, static_cast<int>(place.y))));
+    }
+    return darkest;
+  };
+  CHECK(darkest_at(5.0, true) > 35.0);   // between two houses
+  CHECK(darkest_at(10.0, true) < 10.0);  // between a house and a street
+}
+
 TEST_CASE("transmitters are marked where they stand") {
   DCEM_NEEDS_DRAWING();
   HeatMap map = room();
@@ -466,6 +512,7 @@ TEST_CASE("maps that do not fit together are refused") {
   refused([](HeatMap& map) { map.range = ValueRange{1.0, 1.0}; });
   refused([](HeatMap& map) { map.range = ValueRange{no_value, 1.0}; });
   refused([](HeatMap& map) { map.walls_m.push_back({0.0, 0.0, no_value, 1.0}); });
+  refused([](HeatMap& map) { map.windows_m.push_back({0.0, no_value, 0.0, 1.0}); });
   refused([](HeatMap& map) { map.contour_step = 0.0; });
   refused([](HeatMap& map) { map.relief = {2, 2, {0.5F}}; });
   refused([](HeatMap& map) { map.transmitters.push_back({no_value, 0.0, "tx"}); });

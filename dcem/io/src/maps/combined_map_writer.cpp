@@ -42,6 +42,7 @@ void write_npz(AtomicFile& file, const CombinedMap& map, const char* first_name,
   arrays.add_counts("tx", [](const CombinedMapPoint& point) { return point.server.value_or(0); });
   arrays.add_flags("served", [](const CombinedMapPoint& point) { return point.server.has_value(); });
   arrays.add_flags("obstructed", [](const CombinedMapPoint& point) { return point.obstructed; });
+  arrays.add_flags("sheltered", [](const CombinedMapPoint& point) { return point.sheltered; });
   arrays.add_numbers(first_name, [&](const CombinedMapPoint& point) { return point.*first; });
   arrays.add_numbers(second_name, [&](const CombinedMapPoint& point) { return point.*second; });
   arrays.writer().add("tx_id", {map.transmitters.size()}, std::span<const std::string>(map.transmitters));
@@ -62,7 +63,7 @@ std::vector<double> values_of(const CombinedMap& map, Get&& get) {
 
 HeatMap picture_without_values(const CombinedMap& map, const MapOccasion& occasion, const std::string& what) {
   HeatMap picture = empty_map_picture(map.grid(), occasion, map.places.id() + ": " + what);
-  for (const CombinedMapPoint& point : map.points) picture.hatched.push_back(point.obstructed ? 1 : 0);
+  for (const CombinedMapPoint& point : map.points) hatch_point(picture, point);
   return picture;
 }
 

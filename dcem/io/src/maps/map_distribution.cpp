@@ -12,7 +12,7 @@ template <typename Points, typename Get>
 Distribution distribution_of(const std::string& name, const Points& points, Get&& get) {
   Distribution distribution{name, {}, 0};
   for (const auto& point : points) {
-    if (point.obstructed) continue;
+    if (point.obstructed || point.sheltered) continue;
     const std::optional<double> power_dbm = get(point);
     power_dbm ? distribution.values.push_back(*power_dbm) : void(++distribution.without_value);
   }

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "dcem/em/surface/material_table.hpp"
 #include "dcem/io/esri_grid.hpp"
 #include "dcem/io/src/maps/map_arrays.hpp"
 #include "dcem/io/src/pictures/map_picture_parts.hpp"
@@ -59,6 +60,34 @@ std::optional<std::array<double, 4>> cut(const std::array<Vec3, 3>& corners_m, d
   return std::array<double, 4>{from.x, from.y, to.x, to.y};
 }
 
+template <typename Counts>
+std::vector<std::array<double, 4>> cuts_m(const Scene& scene, double height_m, Counts&& counts) {
+  std::vector<std::array<double, 4>> segments_m;
+  const auto boxes = scene.triangle_boxes();
+  for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
+    const bool met = boxes[triangle].min.z <= height_m && height_m <= boxes[triangle].max.z;
+    if (!met || !counts(scene.facet(scene.facet_of_triangle(triangle)).material)) continue;
+    if (const auto segment = cut(scene.corners_m(triangle), height_m)) segments_m.push_back(*segment);
+  }
+  return segments_m;
+}
+
+/// By material: whether more than a tenth of the power passes it upright, as it does windows and doors.
+std::vector<bool> lets_much_through(const Scene& scene, double frequency_hz) {
+  std::vector<bool> lets;
+  for (const Material& material : scene.materials()) {
+    const MaterialTable table({material}, frequency_hz, {.revision = 3, .allow_extrapolation = true});
+    lets.push_back(std::norm(table.response(MaterialId{}, 1.0).transmission.te) > 0.1);
+  }
+  return lets;
+}
+
+void cut_walls(HeatMap& picture, const MapOccasion& occasion, double height_m) {
+  const std::vector<bool> lets = lets_much_through(occasion.scene, occasion.frequency_hz);
+  picture.walls_m = cuts_m(occasion.scene, height_m, [&](MaterialId material) { return !lets[material.value]; });
+  picture.windows_m = cuts_m(occasion.scene, height_m, [&](MaterialId material) { return lets[material.value]; });
+}
+
 }  // namespace
 
 std::string map_name(const std::string& grid, const std::string& transmitter, std::optional<std::size_t> frame) {
@@ -90,6 +119,7 @@ void write_map_npz(AtomicFile& file, const RadioMap& map, double frequency_hz) {
   add("rms_delay_spread_s", &LinkStatistics::rms_delay_spread_s);
   arrays.add_flags("line_of_sight", [](const RadioMapPoint& point) { return point.statistics.line_of_sight; });
   arrays.add_flags("obstructed", [](const RadioMapPoint& point) { return point.obstructed; });
+  arrays.add_flags("sheltered", [](const RadioMapPoint& point) { return point.sheltered; });
   arrays.add_counts("path_count", [](const RadioMapPoint& point) { return point.statistics.path_count; });
   arrays.add_texts("strongest_kinds", [](const RadioMapPoint& point) { return point.strongest_kinds; });
   arrays.writer().add("frequency_hz", {}, std::array{frequency_hz});
@@ -111,7 +141,7 @@ HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame,
   picture.label = "incoherent received power";
   for (const RadioMapPoint& point : map.points) {
     picture.values.push_back(point.statistics.power_incoherent_dbm.value_or(no_value_db));
-    picture.hatched.push_back(point.obstructed ? 1 : 0);
+    hatch_point(picture, point);
   }
   return picture;
 }
@@ -138,7 +168,7 @@ HeatMap empty_map_picture(const ReceiverGrid& grid, const MapOccasion& occasion,
   picture.rows = grid.rows();
   picture.values.reserve(grid.size());
   picture.hatched.reserve(grid.size());
-  picture.walls_m = walls_at_height_m(occasion.scene, grid.origin_m.z);
+  cut_walls(picture, occasion, grid.origin_m.z);
   for (const Device& device : occasion.scene.transmitters()) {
     const DeviceState state = occasion.scene.device_state(device, occasion.frame);
     if (state.present) picture.transmitters.push_back({state.position_m.x, state.position_m.y, device.id});
@@ -147,14 +177,7 @@ HeatMap empty_map_picture(const ReceiverGrid& grid, const MapOccasion& occasion,
 }
 
 std::vector<std::array<double, 4>> walls_at_height_m(const Scene& scene, double height_m) {
-  std::vector<std::array<double, 4>> segments_m;
-  const auto boxes = scene.triangle_boxes();
-  for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
-    const bool met = boxes[triangle].min.z <= height_m && height_m <= boxes[triangle].max.z;
-    if (!met) continue;
-    if (const auto segment = cut(scene.corners_m(triangle), height_m)) segments_m.push_back(*segment);
-  }
-  return segments_m;
+  return cuts_m(scene, height_m, [](MaterialId) { return true; });
 }
 
 }  // namespace dcem::io

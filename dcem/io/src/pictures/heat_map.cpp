@@ -16,9 +16,11 @@ namespace {
 using namespace detail;
 
 constexpr Colour wall_colour{15, 15, 15};
+constexpr Colour window_colour{225, 240, 250};
 constexpr Colour marker_red{213, 47, 30};
 constexpr double marker_radius_px = 15.0;
 constexpr int label_padding_px = 6;
+const Stroke inner_stroke{{150, 150, 150}, 1.5};
 const Stroke contour_stroke{{0, 0, 0}, 2.0}, contour_seam{white, 5.0, 0.55};
 
 /// Areas that labels must not cover.
@@ -73,16 +75,52 @@ std::optional<Segment> seen_wall(const HeatMapLayout& layout, const std::array<d
   return clipped_line(from, to, layout.plot);
 }
 
-void draw_walls(Canvas& canvas, const HeatMap& map, const HeatMapLayout& layout) {
-  // A city at two pixels per metre would drown in thick lines.
-  const double thickness_px = map.walls_m.size() > 2000 ? 2.0 : 4.0;
-  std::vector<Segment> seen;
-  for (const auto& wall : map.walls_m) {
-    if (const auto segment = seen_wall(layout, wall, thickness_px)) seen.push_back(*segment);
+// A city at two pixels per metre would drown in thick lines.
+double wall_thickness_px(const HeatMap& map) {
+  return map.walls_m.size() > 2000 ? 2.0 : 4.0;
+}
+
+bool is_hatched_at(const HeatMap& map, double x_m, double y_m) {
+  const double column = std::round((x_m - map.origin_x_m) / map.spacing_x_m);
+  const double row = std::round((y_m - map.origin_y_m) / map.spacing_y_m);
+  if (!(column >= 0.0 && row >= 0.0 && column < double(map.columns) && row < double(map.rows))) return false;
+  return is_hatched(map, static_cast<std::size_t>(row) * map.columns + static_cast<std::size_t>(column));
+}
+
+/// Hatched on both sides all along: a wall between two houses, or within one.
+bool is_inner(const HeatMap& map, const std::array<double, 4>& wall) {
+  const double dx_m = wall[2] - wall[0], dy_m = wall[3] - wall[1], length_m = std::hypot(dx_m, dy_m);
+  if (!(length_m > 0.0)) return false;
+  const double aside = std::max(map.spacing_x_m, map.spacing_y_m) / length_m;
+  for (const double along : {0.1, 0.5, 0.9}) {
+    for (const double side : {-aside, aside}) {
+      if (!is_hatched_at(map, wall[0] + along * dx_m - side * dy_m, wall[1] + along * dy_m + side * dx_m)) return false;
+    }
   }
+  return true;
+}
+
+void draw_window_lines(Canvas& canvas, std::span<const Segment> lines, double wall_px) {
+  canvas.draw_segments(lines, {wall_colour, wall_px + 3.0});
+  canvas.draw_segments(lines, {window_colour, wall_px});
+}
+
+void draw_walls(Canvas& canvas, const HeatMap& map, const HeatMapLayout& layout) {
+  const double thickness_px = wall_thickness_px(map);
+  std::vector<Segment> walls, inner, windows;
+  for (const auto& wall : map.walls_m) {
+    if (const auto segment = seen_wall(layout, wall, thickness_px)) {
+      (is_inner(map, wall) ? inner : walls).push_back(*segment);
+    }
+  }
+  for (const auto& window : map.windows_m) {
+    if (const auto segment = seen_wall(layout, window, thickness_px + 3.0)) windows.push_back(*segment);
+  }
+  canvas.draw_segments(inner, inner_stroke);
   // The pale seam keeps the dark line visible on the dark end of the colours.
-  canvas.draw_segments(seen, {white, thickness_px + 3.0, 0.35});
-  canvas.draw_segments(seen, {wall_colour, thickness_px});
+  canvas.draw_segments(walls, {white, thickness_px + 3.0, 0.35});
+  canvas.draw_segments(walls, {wall_colour, thickness_px});
+  draw_window_lines(canvas, windows, thickness_px);
 }
 
 // A text on a pale plate.
@@ -253,6 +291,8 @@ void draw_symbol(Canvas& canvas, const LegendItem& item, const PixelRect& swatch
     draw_marker(canvas, {swatch.x + 0.5 * swatch.width, middle_y});
   } else if (item.symbol == Symbol::wall) {
     canvas.draw_line(across, {wall_colour, 4.0});
+  } else if (item.symbol == Symbol::window) {
+    draw_window_lines(canvas, std::span(&across, 1), 4.0);
   } else if (item.symbol == Symbol::contour) {
     canvas.draw_line(across, contour_stroke);
   } else if (item.symbol != Symbol::none) {

@@ -57,8 +57,10 @@ void check(const HeatMap& map) {
   require(!map.range || (map.range->low >= -largest_value && map.range->high <= largest_value &&
                          map.range->low < map.range->high),
           "the range is empty or not finite");
-  for (const auto& wall : map.walls_m) {
-    require(std::isfinite(wall[0] + wall[1] + wall[2] + wall[3]), "a wall has a coordinate that is not finite");
+  for (const auto* walls_m : {&map.walls_m, &map.windows_m}) {
+    for (const auto& wall : *walls_m) {
+      require(std::isfinite(wall[0] + wall[1] + wall[2] + wall[3]), "a wall has a coordinate that is not finite");
+    }
   }
   for (const auto& marker : map.transmitters) {
     require(std::isfinite(marker.x_m + marker.y_m), "a transmitter has a coordinate that is not finite");
@@ -104,9 +106,10 @@ std::vector<LegendItem> legend_items(const HeatMap& map, const HeatMapLayout& la
   }
   if (inside > 0) items.push_back({Symbol::transmitter, "transmitter"});
   if (!map.walls_m.empty()) items.push_back({Symbol::wall, "wall"});
+  if (!map.windows_m.empty()) items.push_back({Symbol::window, "window, or wall that more than a tenth passes"});
   if (draws_contours(map)) items.push_back({Symbol::contour, contour_text(map)});
   if (any_grey) items.push_back({Symbol::no_value, map.no_value_label});
-  if (any_hatched) items.push_back({Symbol::hatched, "inside an object or on a wall"});
+  if (any_hatched) items.push_back({Symbol::hatched, map.hatched_label});
   if (outside > 0) items.push_back({Symbol::none, "transmitters outside the map: " + std::to_string(outside)});
   if (layout.sampling > 1) {
     items.push_back({Symbol::none, "shown: one point in " + std::to_string(layout.sampling) + " along each axis"});

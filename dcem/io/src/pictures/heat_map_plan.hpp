@@ -13,7 +13,7 @@ inline constexpr int bar_tip_px = 24;
 inline constexpr int swatch_px = 36;
 
 /// What stands before a text of the legend.
-enum class Symbol { no_value, hatched, wall, transmitter, category, contour, none };
+enum class Symbol { no_value, hatched, wall, window, transmitter, category, contour, none };
 
 struct LegendItem {
   Symbol symbol = Symbol::none;

@@ -25,6 +25,14 @@ struct MapOccasion {
 /// `what` begins the title.
 HeatMap empty_map_picture(const ReceiverGrid& grid, const MapOccasion& occasion, const std::string& what);
 
+/// Hatches the next cell where its point is obstructed or sheltered; the legend tells of the latter where there are
+/// any.
+template <typename Point>
+void hatch_point(HeatMap& picture, const Point& point) {
+  picture.hatched.push_back(point.obstructed || point.sheltered ? 1 : 0);
+  if (point.sheltered) picture.hatched_label = "inside, on a wall, or unreached under a roof";
+}
+
 /// ", 30 GHz, z = 1.50 m" and, where there are any, the samples of a cell and the instant.
 std::string map_title_end(const ReceiverGrid& grid, const MapOccasion& occasion);
 

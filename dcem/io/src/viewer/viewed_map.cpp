@@ -67,7 +67,7 @@ ViewedMap view_of_maps(std::span<const RadioMap> maps, const CombinedMap& combin
   if (places.is_grid()) viewed.raster = raster_of(places.grid(), step);
   for (const std::size_t index : kept) {
     const RadioMapPoint& point = maps.front().points[index];
-    viewed.obstructed.push_back(point.obstructed);
+    viewed.obstructed.push_back(point.obstructed || point.sheltered);
     if (!places.is_grid()) viewed.points_m.push_back(point.position_m);
   }
   add_powers(viewed, maps, kept);
