@@ -45,6 +45,15 @@ void draw(const io::MapComparison& comparison, const std::string& title, const C
   }
 }
 
+/// The names of both files; where they are the same, as of two runs, with their folders.
+std::string title_of(const std::filesystem::path& first, const std::filesystem::path& second) {
+  const bool differ = first.filename() != second.filename();
+  const auto name = [&](const std::filesystem::path& file) {
+    return differ ? file.filename().string() : (file.parent_path().filename() / file.filename()).string();
+  };
+  return name(first) + " against " + name(second);
+}
+
 }  // namespace
 
 void compare_maps(const CompareOptions& options) {
@@ -57,9 +66,7 @@ void compare_maps(const CompareOptions& options) {
                          "no place has a value here and in " + options.first + "; expected maps of the same places");
   }
   io::OutputFolder folder(options.folder.empty() ? "out/compare" : options.folder);
-  const std::string title = std::filesystem::path(options.first).filename().string() + " against " +
-                            std::filesystem::path(options.second).filename().string();
-  draw(comparison, title, options, folder);
+  draw(comparison, title_of(options.first, options.second), options, folder);
   folder.commit();
   print(comparison);
 }

@@ -53,6 +53,9 @@ std::string points_text(const std::string& kind, const std::string& id, std::siz
 Job prepare_job(const ScenarioOptions& options) {
   const io::ProgressStage stage("reading scenario", progress_mode(options));
   Job job{io::load_scenario(options.scenario, options.overrides), {}, options.folder};
+  constexpr double vehicle_bytes = 15e3;  // measured: box, facets, edges and tree
+  const std::size_t vehicles = job.scenario.scene.slot_count();
+  require_memory(options, std::to_string(vehicles) + " vehicles at a time", vehicles, vehicle_bytes);
   job.frames = parse_frames(options.frames, job.scenario.time.frames);
   io::require_attached_devices(job.scenario, job.frames.first, job.frames.last);
   if (options.threads) job.scenario.settings.threads = *options.threads;

@@ -94,6 +94,21 @@ TEST_CASE("the front bumper, angle and slope of SUMO become the centre of the fo
   CHECK(placement_of(frame, "up").velocity.angular_rad_per_s == Vec3(0.0));
 }
 
+TEST_CASE("a step of more vehicles than memory holds is refused with what they would take") {
+  TrafficCase files;
+  std::string vehicles;
+  for (int number = 0; number <= 100'000; ++number) vehicles += car_at("v" + std::to_string(number), 5.0 * number);
+  files.trace_lines = step("0", vehicles);
+  std::string message;
+  try {
+    files.load();
+  } catch (const io::InputError& error) {
+    message = error.what();
+  }
+  CHECK(message.find("mobility.sumo_fcd: 100001 vehicles at a time need 1500 MB; expected at most 100000") !=
+        std::string::npos);
+}
+
 TEST_CASE("in the world the box of a vehicle ends at its front bumper and stands on the ground") {
   TrafficCase files;
   files.trace_lines = step("0", vehicle("car", R"(x="10" y="20" angle="90" speed="5")"));

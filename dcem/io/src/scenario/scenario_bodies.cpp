@@ -7,10 +7,25 @@
 #include "dcem/io/src/scenario/keys/blocks.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/text_input.hpp"
+#include "dcem/io/text_table.hpp"
 
 namespace dcem::io {
 
 namespace {
+
+/// A step of millions of vehicles is a compressed file of some megabytes.
+constexpr std::size_t most_vehicles = 100'000;
+constexpr double vehicle_bytes = 15e3;  ///< measured: box, facets, edges and tree
+
+void require_few_vehicles(const Traffic& traffic, const JsonValue& mobility) {
+  std::size_t vehicles = 0;
+  for (const Traffic::Type& type : traffic.types) vehicles += type.slots;
+  if (vehicles <= most_vehicles) return;
+  mobility.member("sumo_fcd")
+      .fail(std::to_string(vehicles) + " vehicles at a time need " +
+            memory_text(vehicle_bytes * static_cast<double>(vehicles)) + "; expected at most " +
+            std::to_string(most_vehicles));
+}
 
 ObjSettings read_obj_settings(const JsonObject& owner) {
   ObjSettings settings;
@@ -103,6 +118,7 @@ void BodyLoader::warn(const JsonValue& place, const std::vector<std::string>& do
 void BodyLoader::add_traffic() {
   const JsonValue mobility = scenario_.at("mobility");
   const std::string material = mobility.member("material").line();
+  require_few_vehicles(*result_.traffic, mobility);
   for (Traffic::Type& type : result_.traffic->types) {
     type.first_body = result_.scene.bodies().size();
     reported_at(mobility, [&] { result_.scene.add_body_pool(type.slots, make_box(type.size_m, material)); });
