@@ -279,7 +279,7 @@ TEST_CASE("a map that cannot be written or held says so in one line") {
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;
   write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1,1],"count":[100000,10000]}})");
-  check_refused(folder, "map street.json", "1000000000 points need 368 GB");
+  check_refused(folder, "map street.json", "1000000000 points need 376 GB");
   write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1,1],"count":[0,5]}})");
   check_refused(folder, "map street.json", "count");
   write_scenario(folder, R"({"id":"area","grid":{"origin_m":[0,0,1],"spacing_m":[1e-7,1],"count":[1,5]}})");
