@@ -1,7 +1,8 @@
 /// What the exact memory saves, against how far things move from frame to frame.
 ///
-///   bench_memory FILE.obj --mast X Y Z [--steps M...] [--cars N...] [--receivers N...] [--diffractions N]
-///                [--frames N] [--within M] [--v2v] [--threads N] [--processor-time]
+///   bench_memory FILE.obj --mast X Y Z [--steps M...] [--cars N...] [--receivers N...] [--reflections N]
+///                [--diffractions N] [--interactions N] [--frames N] [--warm N] [--within M] [--v2v] [--threads N]
+///                [--processor-time]
 ///
 /// Receivers and cars drive straight through the streets of a city. Each frame is solved by two simulators in turns,
 /// one that remembers and one that does not, and both must say the same to the last bit: otherwise exit 1. One CSV row
@@ -32,8 +33,8 @@ struct Options {
   std::vector<double> mast_m;
   std::vector<double> steps_m{0.0, 0.014, 0.14, 0.5, 1.4};
   std::vector<std::size_t> cars{0}, receivers{10};
-  int diffractions = 1, interactions = 2;
-  std::size_t frames = 40;
+  int reflections = 2, diffractions = 1, interactions = 2;
+  std::size_t frames = 40, warm = 0;
   double within_m = 150.0, car_step_m = 1.0;
   bool between_vehicles = false, alone = false, processor_time = false;
   unsigned threads = 1;
@@ -43,7 +44,7 @@ dcem::SimulationSettings settings_of(const Options& options, CacheMode cache) {
   dcem::SimulationSettings settings;
   settings.frequency_hz = 30e9;
   settings.threads = options.threads;
-  settings.propagation.max_reflections = 2;
+  settings.propagation.max_reflections = options.reflections;
   settings.propagation.max_transmissions = 0;
   settings.propagation.max_diffractions = options.diffractions;
   settings.propagation.max_interactions = options.interactions;
@@ -88,7 +89,7 @@ bool bench(const Options& options, const DriveOrder& order) {
   const dcem::Scene scene = dcem::bench::street_drive(order);
   Contender off(scene, options, CacheMode::off), exact(scene, options, CacheMode::exact);
   // What a mast lists is worked out over many frames, here in which everything trembles.
-  const std::size_t warm = 10 + 900 / std::max<std::size_t>(1, order.receivers);
+  const std::size_t warm = options.warm > 0 ? options.warm : 10 + 900 / std::max<std::size_t>(1, order.receivers);
   double cold_off_ms = 0.0, cold_exact_ms = 0.0;
   for (std::size_t index = 0; index < warm; ++index) {
     const double time_s = 1e-3 * static_cast<double>(index % 2);
@@ -114,6 +115,7 @@ bool bench(const Options& options, const DriveOrder& order) {
   dcem::bench::CsvRow row;
   row.text(std::filesystem::path(options.file).stem().string() + (order.mast_drives ? " v2v" : ""));
   row.count(options.threads).count(static_cast<std::size_t>(options.diffractions));
+  row.count(static_cast<std::size_t>(options.interactions));
   row.number(order.step_m, 3).count(order.cars).count(order.receivers).count(order.frames);
   row.number(cold_off_ms, 1).number(cold_exact_ms, 1);
   if (options.alone) off.ms.assign(1, 0.0);
@@ -148,16 +150,19 @@ int main(int count, char** arguments) {
   app.add_option("--car-step", options.car_step_m, "of cars, metres a frame");
   app.add_option("--receivers", options.receivers, "how many there are");
   app.add_option("--within", options.within_m, "of the mast, along both axes, m")->check(CLI::PositiveNumber);
+  app.add_option("--reflections", options.reflections, "at most")->check(CLI::Range(0, 3));
   app.add_option("--diffractions", options.diffractions, "at most")->check(CLI::Range(0, 2));
   app.add_option("--interactions", options.interactions, "at most")->check(CLI::Range(0, 3));
   app.add_option("--frames", options.frames, "that are timed")->check(CLI::Range(2, 100'000));
+  app.add_option("--warm", options.warm, "frames before those that are timed; 0: as many as lists of a mast may take");
   app.add_option("--threads", options.threads, "of each simulator")->check(CLI::Range(1, 1024));
   app.add_flag("--alone", options.alone, "with memory alone, to look into: nothing is compared");
   app.add_flag("--processor-time", options.processor_time, "of all threads instead of that by the clock");
   app.add_flag("--v2v", options.between_vehicles, "the transmitter drives, too");
   return dcem::bench::run_program(app, count, arguments, [&] {
     std::puts(
-        "scene,threads,max_diffractions,step_m,cars,receivers,frames,cold_off_ms,cold_exact_ms,off_mean_ms,"
+        "scene,threads,max_diffractions,max_interactions,step_m,cars,receivers,frames,cold_off_ms,cold_exact_ms,off_"
+        "mean_ms,"
         "off_median_ms,off_p95_ms,off_maximum_ms,exact_mean_ms,exact_median_ms,exact_p95_ms,exact_maximum_ms,gain,"
         "paths_a_link,births,deaths,solved_off,"
         "solved_exact,legs_off,legs_exact,memory_mb,identical,hash");

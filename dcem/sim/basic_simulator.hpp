@@ -212,7 +212,9 @@ class BasicSimulator {
                   std::span<const LinkResult> links, ReceiverRoom* room) const;
   Solved solve_again(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                      ReceiverRoom* room);
-  void look_from_receiver(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room) const;
+  void look_from_receiver(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;
+  void look_for_triples(const Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room,
+                        bool stands) const;
   std::vector<PathContribution> paths_of_moving(Following& following, detail::ReceiverMemory& memory,
                                                 ReceiverRoom& room, std::size_t transmitter, bool rests) const;
   bool may_pool(const Following& following, const detail::ReceiverMemory& memory, std::size_t transmitter,
@@ -328,6 +330,8 @@ void BasicSimulator<Surface, Index>::check_surface_model() const {
 #include "dcem/sim/detail/simulator_links.hpp"
 #include "dcem/sim/detail/simulator_maps.hpp"
 #include "dcem/sim/detail/simulator_memory.hpp"
+#include "dcem/sim/detail/simulator_moving.hpp"
+#include "dcem/sim/detail/simulator_standing.hpp"
 
 #if defined(DCEM_ENGINE)
 extern template class dcem::BasicSimulator<dcem::MaterialTable, dcem::WideIndex>;

@@ -31,6 +31,7 @@ struct BeamSource {
   HalfSettings settings;
   bool over_mirrors;           ///< look through the mirrors, too
   ThreadPool* pool = nullptr;  ///< looks through many mirrors at once; none: the calling thread does
+  int most_pieces = 64;        ///< of edges seen over mirrors of the scenery, of an end that stands: see `BeamFinder`
 };
 
 /// What has been found, in the order in which it was.
@@ -63,8 +64,8 @@ class BeamFinder {
   /// What may be seen through the mirrors `first` … `last` − 1 of the scenery and, where they are asked for, of bodies:
   /// the same in the same order from any number of threads.
   void look_through(std::size_t first, std::size_t last, bool bodies, int most_pieces, BeamFinds& finds) const;
-  /// What moves, over the first `count` mirrors: everything in their cones, without a view.
-  void reach_bodies(std::size_t count, BeamFinds& finds) const;
+  /// Chosen bodies, over the mirrors `first` … `last` − 1: everything in their cones, without a view.
+  void reach_bodies(std::size_t first, std::size_t last, const BodyChoice& bodies, BeamFinds& finds) const;
 
  private:
   void look_through_block(std::size_t first, std::size_t last, bool bodies, int most_pieces, BeamFinds& finds) const;

@@ -120,8 +120,9 @@ DCEM_INLINE void BeamFinder::look_through_block(std::size_t first, std::size_t l
   }
 }
 
-DCEM_INLINE void BeamFinder::reach_bodies(std::size_t count, BeamFinds& finds) const {
-  const std::span<const FacetOutlines::BodyFacets> bodies = source_.outlines.bodies();
+DCEM_INLINE void BeamFinder::reach_bodies(std::size_t first, std::size_t last, const BodyChoice& bodies,
+                                          BeamFinds& finds) const {
+  const std::span<const FacetOutlines::BodyFacets> facets_of = source_.outlines.bodies();
   const Vec3& origin_m = source_.lanes.origin_m();
   const auto is_beside = [&](FacetId id, std::span<const HalfSpace> cone) {
     const std::span<const Vec3> hull_m = source_.scene.hull_m(source_.scene.facet(id));
@@ -133,19 +134,20 @@ DCEM_INLINE void BeamFinder::reach_bodies(std::size_t count, BeamFinds& finds) c
   };
   const auto whole = [](WedgeId, const EdgePart& part, auto&& visit) { visit(part.from, part.to); };
   std::vector<FacetId> facets;
-  for (std::uint32_t mirror = 0; mirror < count; ++mirror) {
+  for (auto mirror = static_cast<std::uint32_t>(first); mirror < last; ++mirror) {
     facets.clear();
     source_.outlines.for_each_body_in(mirrors_[mirror].cone, [&](BodyId body) {
-      const FacetOutlines::BodyFacets& of = bodies[body.value - 1];
+      if (!bodies.takes(body.value)) return;
+      const FacetOutlines::BodyFacets& of = facets_of[body.value - 1];
       for (std::uint32_t index = of.first; index < of.first + of.count; ++index) {
         const WorldFacet& facet = source_.scene.facet(FacetId(index));
-        if (!facet.present || facet.body == ignored_body() || is_beside(FacetId(index), mirrors_[mirror].cone))
-          continue;
+        if (!facet.present || FacetId(index) == mirrors_[mirror].facet) continue;
+        if (is_beside(FacetId(index), mirrors_[mirror].cone)) continue;
         facets.push_back(FacetId(index));
         finds.pairs.push_back({index, mirror});
       }
     });
-    find_lit_parts(mirror, facets, whole, finds);
+    if (!facets.empty()) find_lit_parts(mirror, facets, whole, finds);
   }
 }
 

@@ -2,23 +2,22 @@
 /// What an end reaches directly and over each of its mirrors, listed by what is reached.
 ///
 /// Worked out once for many receivers; of an end that stands, what concerns the scenery alone is kept while bodies
-/// move.
+/// move, and what concerns bodies while these stand.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "dcem/paths/halves/beam_finder.hpp"
+#include "dcem/paths/halves/beam_table.hpp"
 
 namespace dcem {
 
 class BeamLists {
  public:
-  static constexpr std::uint32_t nothing = 0xffffffffU;
+  static constexpr std::uint32_t nothing = BeamTable::nothing;
   /// Of an end that is looked at once.
   void find_all(const BeamSource& source);
   /// Of an end that stands, what does not change while bodies move …
@@ -27,8 +26,9 @@ class BeamLists {
   /// over so many mirrors more …
   void begin_scenery(const BeamSource& source);
   bool go_on(const BeamSource& source, std::size_t mirrors);
-  /// … and the rest. The scenery's must be known.
-  void find_bodies(const BeamSource& source);
+  /// … and the rest. The scenery's must be known. `moved` as in `PathHalf::find_bodies`; `follows`: what was listed of
+  /// bodies is that of the frame before, and stays true of those that have not moved.
+  void find_bodies(const BeamSource& source, std::span<const char> moved = {}, bool follows = false);
   /// Whether what moves is listed, too.
   bool has_bodies() const { return has_bodies_; }
 
@@ -42,70 +42,65 @@ class BeamLists {
   std::span<const BeamMirror> mirrors() const { return mirrors_; }
   /// The place of a facet among the mirrors, or `nothing`.
   std::uint32_t mirror_of(FacetId facet) const { return mirror_of_[facet.value]; }
-  /// The parts of edges that the end may see, edge by edge; `EdgePart::edge` is the number of a wedge.
-  std::span<const EdgePart> parts() const { return parts_; }
-  std::span<const EdgePart> parts_of(WedgeId edge) const {
-    return std::span(parts_).subspan(first_part_[edge.value], first_part_[edge.value + 1] - first_part_[edge.value]);
-  }
 
-  /// The places of the mirrors over which the end may light a facet.
-  std::span<const std::uint32_t> mirrors_before(FacetId facet) const {
-    return std::span(before_).subspan(first_before_[facet.value],
-                                      first_before_[facet.value + 1] - first_before_[facet.value]);
+  /// What is listed: of the scenery alone; over bodies that have moved, in what is reached or in the mirror; over other
+  /// bodies. What has been found all at once is in the first.
+  static constexpr std::size_t of_scenery = 0, of_moved = 1, of_others = 2;
+  std::span<const BeamTable, 3> tables() const { return tables_; }
+
+  /// Of all of them, as `BeamTable` has it: the places of the mirrors over which the end may light a facet …
+  template <typename Visit>
+  void for_each_mirror_before(FacetId facet, Visit&& visit) const {
+    for (const BeamTable& table : tables_) std::ranges::for_each(table.mirrors_before(facet), visit);
   }
-  /// Boxes that hold all parts.
-  std::span<const ConeClusters::Box> boxes_of_parts() const { return part_clusters_.boxes(); }
-  /// Calls `visit(part)` for parts on which the point that diffracts between the end and an apex may lie in a cone, for
-  /// the apex at `apex` or within `radius_m` of it.
+  /// … the parts of edges that the end may see …
+  std::vector<EdgePart> parts() const {
+    std::vector<EdgePart> all;
+    for (const BeamTable& table : tables_) all.insert(all.end(), table.parts().begin(), table.parts().end());
+    return all;
+  }
+  template <typename Visit>
+  void for_each_part_of(WedgeId edge, Visit&& visit) const {
+    for (const BeamTable& table : tables_) std::ranges::for_each(table.parts_of(edge), visit);
+  }
   template <typename Visit>
   void for_each_part_in(std::span<const HalfSpace> cone, const Vec3& apex, float radius_m, Visit&& visit) const {
-    part_clusters_.for_each_in(cone, apex, radius_m, visit);
+    for (const BeamTable& table : tables_) table.for_each_part_in(cone, apex, radius_m, visit);
   }
-  /// Calls `visit(part, mirror)` for the parts of an edge that mirrors may light, where the point that diffracts
-  /// towards `point`, or what is within `radius_m` of it, may lie on the part.
+  /// … and those that mirrors may light.
   template <typename Visit>
-  void for_each_lit_part(WedgeId edge, const Vec3& point, float radius_m, Visit&& visit) const;
-  /// The same of all parts of an edge that mirrors may light.
-  template <typename Visit>
-  void for_each_lit_part(WedgeId edge, Visit&& visit) const;
+  void for_each_lit_part(WedgeId edge, const Vec3& point, float radius_m, Visit&& visit) const {
+    for (const BeamTable& table : tables_) table.for_each_lit_part(edge, point, radius_m, visit);
+  }
 
  private:
-  using Lanes = std::array<float, simd_lanes>;
-  /// Eight parts of one edge, each lit by the image in a mirror.
-  struct LitLanes {
-    Lanes from{}, to{}, place{}, distance{};
-    std::array<std::uint32_t, simd_lanes> mirror{};
-  };
-  void note_mirrors(const BeamSource& source, std::size_t layers);
-  void lay_out(const BeamSource& source);
-  void list_lit_parts(const Scene& scene);
+  void note_mirrors(const BeamSource& source, std::size_t first_layer, std::size_t layers);
+  BeamFinds find_moved(const BeamSource& source, std::span<const char> moved) const;
+  BeamFinds find_others(const BeamSource& source, std::span<const char> moved) const;
+  void keep_standing(const BeamSource& source, std::span<const char> moved, std::span<const FacetId> before);
 
   const PathHalf* half_ = nullptr;
   const LaneScene* lanes_ = nullptr;
   bool has_bodies_ = false;
   std::size_t looked_through_ = 0;  ///< so many mirrors, where the scenery's are worked out one after the other
   Vec3 position_m_{0.0};
-  std::array<BeamFinds, 2> found_;  ///< of the scenery alone, or of all; of what moves
+  std::array<BeamFinds, 3> found_;  ///< as the tables; of the scenery until it is laid out
   std::vector<BeamMirror> mirrors_;
   std::vector<std::uint32_t> mirror_of_;
-  std::vector<std::uint32_t> before_;
-  std::vector<std::size_t> first_before_;
-  std::vector<EdgePart> parts_;
-  std::vector<std::size_t> first_part_, first_lit_;
-  EdgeClusters part_clusters_;
-  std::vector<LitLanes> lit_;
+  std::array<BeamTable, 3> tables_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
 
 inline void BeamLists::find_all(const BeamSource& source) {
-  note_mirrors(source, source.half.layers().size());
+  note_mirrors(source, 0, source.half.layers().size());
   has_bodies_ = true;
   found_ = {};
+  tables_ = {};
   const BeamFinder finder(source, mirrors_);
   for (const HalfLayer& layer : half_->layers()) finder.find_parts(layer, BeamFinder::many_pieces, found_[0]);
   if (source.over_mirrors) finder.look_through(0, mirrors_.size(), true, BeamFinder::few_pieces, found_[0]);
-  lay_out(source);
+  tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0]);
 }
 
 inline void BeamLists::find_scenery(const BeamSource& source) {
@@ -114,44 +109,36 @@ inline void BeamLists::find_scenery(const BeamSource& source) {
 }
 
 inline void BeamLists::begin_scenery(const BeamSource& source) {
-  note_mirrors(source, 1);
+  note_mirrors(source, 0, 1);
   has_bodies_ = source.outlines.bodies().empty();
   found_ = {};
+  tables_ = {};
   looked_through_ = 0;
   BeamFinder(source, mirrors_).find_parts(half_->layers()[0], BeamFinder::many_pieces, found_[0]);
 }
 
 inline bool BeamLists::go_on(const BeamSource& source, std::size_t mirrors) {
   const std::size_t last = source.over_mirrors ? std::min(looked_through_ + mirrors, mirrors_.size()) : 0;
-  BeamFinder(source, mirrors_).look_through(looked_through_, last, false, BeamFinder::many_pieces, found_[0]);
+  BeamFinder(source, mirrors_).look_through(looked_through_, last, false, source.most_pieces, found_[0]);
   looked_through_ = last;
   const bool is_done = !source.over_mirrors || last == mirrors_.size();
-  if (is_done) lay_out(source);
+  if (is_done) {
+    tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0]);
+    found_[0] = {};
+  }
   return is_done;
 }
 
-inline void BeamLists::find_bodies(const BeamSource& source) {
-  note_mirrors(source, source.half.layers().size());
-  has_bodies_ = true;
-  found_[1] = {};
-  const BeamFinder finder(source, mirrors_);
-  for (const HalfLayer& layer : half_->layers().subspan(1)) finder.find_parts(layer, BeamFinder::few_pieces, found_[1]);
-  if (source.over_mirrors) {
-    const std::size_t standing = half_->layers()[0].mirrors.size();
-    finder.reach_bodies(standing, found_[1]);
-    finder.look_through(standing, mirrors_.size(), true, BeamFinder::few_pieces, found_[1]);
-  }
-  lay_out(source);
-}
-
-/// Of so many layers: that of the scenery comes first.
-inline void BeamLists::note_mirrors(const BeamSource& source, std::size_t layers) {
+/// Notes the mirrors of some layers: that of the scenery comes first, and stays while the others change.
+inline void BeamLists::note_mirrors(const BeamSource& source, std::size_t first_layer, std::size_t layers) {
   half_ = &source.half;
   lanes_ = &source.lanes;
   position_m_ = half_->position_m() - source.lanes.origin_m();
-  mirror_of_.assign(source.scene.facets().size(), nothing);
-  mirrors_.clear();
-  for (const HalfLayer& layer : half_->layers().first(layers)) {
+  const std::size_t kept = first_layer == 0 ? 0 : half_->layers()[0].mirrors.size();
+  if (kept == 0) mirror_of_.assign(source.scene.facets().size(), nothing);
+  for (std::size_t at = kept; at < mirrors_.size() && kept > 0; ++at) mirror_of_[mirrors_[at].facet.value] = nothing;
+  mirrors_.erase(mirrors_.begin() + static_cast<std::ptrdiff_t>(kept), mirrors_.end());
+  for (const HalfLayer& layer : half_->layers().subspan(first_layer, layers)) {
     for (std::size_t at = 0; at < layer.mirrors.size(); ++at) {
       mirror_of_[layer.mirrors[at].value] = static_cast<std::uint32_t>(mirrors_.size());
       mirrors_.push_back({layer.mirrors[at], layer.images_m[at] - source.lanes.origin_m(), layer.cones[at]});
@@ -159,93 +146,79 @@ inline void BeamLists::note_mirrors(const BeamSource& source, std::size_t layers
   }
 }
 
-/// Lists what has been found by what is reached.
-inline void BeamLists::lay_out(const BeamSource& source) {
-  const Scene& scene = source.scene;
-  parts_ = found_[0].parts;
-  parts_.insert(parts_.end(), found_[1].parts.begin(), found_[1].parts.end());
-  std::ranges::stable_sort(parts_, {}, &EdgePart::edge);
-  first_part_.assign(scene.wedges().size() + 1, 0);
-  for (const EdgePart& part : parts_) ++first_part_[part.edge + 1];
-  for (std::size_t edge = 1; edge < first_part_.size(); ++edge) first_part_[edge] += first_part_[edge - 1];
-  part_clusters_.build(parts_, source.lanes.origin_m(),
-                       [&](const EdgePart& part) -> const Wedge& { return scene.wedge(WedgeId(part.edge)).edge; });
-  first_before_.assign(scene.facets().size() + 1, 0);
-  for (const BeamFinds& found : found_) {
-    for (const auto& pair : found.pairs) ++first_before_[pair[0] + 1];
+inline void BeamLists::find_bodies(const BeamSource& source, std::span<const char> moved, bool follows) {
+  std::vector<FacetId> before;
+  for (const BeamMirror& mirror : mirrors_) before.push_back(mirror.facet);
+  note_mirrors(source, 1, source.half.layers().size() - 1);
+  has_bodies_ = true;
+  if (follows) {
+    keep_standing(source, moved, before);
+  } else {
+    found_[of_others] = find_others(source, moved);
   }
-  for (std::size_t seen = 1; seen < first_before_.size(); ++seen) first_before_[seen] += first_before_[seen - 1];
-  before_.resize(first_before_.back());
-  std::vector<std::size_t> next(first_before_.begin(), first_before_.end() - 1);
-  for (const BeamFinds& found : found_) {
-    for (const auto& [seen, mirror] : found.pairs) before_[next[seen]++] = mirror;
-  }
-  list_lit_parts(scene);
-}
-
-/// Lays out lit parts in eights, edge by edge.
-inline void BeamLists::list_lit_parts(const Scene& scene) {
-  first_lit_.assign(scene.wedges().size() + 1, 0);
-  for (const BeamFinds& found : found_) {
-    for (const std::uint32_t edge : found.lit_edges) ++first_lit_[edge + 1];
-  }
-  for (std::size_t edge = 1; edge < first_lit_.size(); ++edge) {
-    first_lit_[edge] = first_lit_[edge - 1] + (first_lit_[edge] + simd_lanes - 1) / simd_lanes;
-  }
-  LitLanes none;
-  none.to.fill(-1e30F);
-  none.mirror.fill(nothing);
-  lit_.assign(first_lit_.back(), none);
-  std::vector<std::size_t> count(scene.wedges().size(), 0);
-  for (const BeamFinds& found : found_) {
-    for (std::size_t at = 0; at < found.lit.size(); ++at) {
-      const std::uint32_t edge = found.lit_edges[at];
-      const std::size_t number = count[edge]++, lane = number % simd_lanes;
-      LitLanes& eight = lit_[first_lit_[edge] + number / simd_lanes];
-      eight.from[lane] = found.lit[at].from;
-      eight.to[lane] = found.lit[at].to;
-      eight.place[lane] = found.lit[at].place;
-      eight.distance[lane] = found.lit[at].distance;
-      eight.mirror[lane] = found.lit[at].edge;
-    }
+  found_[of_moved] = find_moved(source, moved);
+  for (const std::size_t table : {of_moved, of_others}) {
+    tables_[table].lay_out(source.scene, source.lanes, found_[table]);
   }
 }
 
-template <typename Visit>
-void BeamLists::for_each_lit_part(WedgeId edge, Visit&& visit) const {
-  for (std::size_t at = first_lit_[edge.value]; at < first_lit_[edge.value + 1]; ++at) {
-    const LitLanes& eight = lit_[at];
-    for (std::size_t lane = 0; lane < simd_lanes && eight.mirror[lane] != nothing; ++lane) {
-      visit(EdgePart{edge.value, eight.from[lane], eight.to[lane], eight.place[lane], eight.distance[lane]},
-            eight.mirror[lane]);
-    }
-  }
+/// What is reached over a body that has moved.
+inline BeamFinds BeamLists::find_moved(const BeamSource& source, std::span<const char> moved) const {
+  BeamFinds finds;
+  const BeamFinder finder(source, mirrors_);
+  finder.find_parts(half_->layers()[of_moved], BeamFinder::few_pieces, finds);
+  if (!source.over_mirrors) return finds;
+  const std::size_t standing = half_->layers()[0].mirrors.size(),
+                    last = standing + half_->layers()[of_moved].mirrors.size();
+  const BodyChoice choice{half_->ignored_body(), moved, true};
+  finder.reach_bodies(0, standing, choice, finds);
+  finder.reach_bodies(last, mirrors_.size(), choice, finds);
+  finder.look_through(standing, last, true, BeamFinder::few_pieces, finds);
+  return finds;
 }
 
-template <typename Visit>
-void BeamLists::for_each_lit_part(WedgeId edge, const Vec3& point, float radius_m, Visit&& visit) const {
-  const LaneEdge& line = lanes_->edge(edge);
-  const Vec3 away = point - Vec3(line.start[0], line.start[1], line.start[2]);
-  const Vec3 direction(line.direction[0], line.direction[1], line.direction[2]);
-  const double place_m = glm::dot(away, direction);
-  const Float8 place(static_cast<float>(place_m)),
-      distance(static_cast<float>(glm::length(away - place_m * direction)));
-  const float slack_m = 5e-3F + 2e-6F * static_cast<float>(glm::length(point) + glm::length(away));
-  for (std::size_t at = first_lit_[edge.value]; at < first_lit_[edge.value + 1]; ++at) {
-    const LitLanes& eight = lit_[at];
-    const Float8 own_place(eight.place), own_distance(eight.distance);
-    const Float8 sum = own_distance + distance, between = place - own_place;
-    const Float8 met = own_place + between * (own_distance / sum);
-    const Float8 reach = edge_point_reach_m(own_distance, sum, between, radius_m) +
-                         edge_point_error_m(own_place, own_distance) + slack_m;
-    std::uint32_t left = ~((met + reach < Float8(eight.from)) | (Float8(eight.to) + reach < met)).bits() & 0xffU;
-    for (; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-      if (eight.mirror[lane] == nothing) continue;
-      visit(EdgePart{edge.value, eight.from[lane], eight.to[lane], eight.place[lane], eight.distance[lane]},
-            eight.mirror[lane]);
+/// What is reached over other bodies, and over none that has moved.
+inline BeamFinds BeamLists::find_others(const BeamSource& source, std::span<const char> moved) const {
+  BeamFinds finds;
+  const BeamFinder finder(source, mirrors_);
+  finder.find_parts(half_->layers()[of_others], BeamFinder::few_pieces, finds);
+  if (!source.over_mirrors) return finds;
+  const std::size_t standing = half_->layers()[0].mirrors.size(),
+                    first = standing + half_->layers()[of_moved].mirrors.size();
+  const BodyChoice choice{half_->ignored_body(), moved, false};
+  finder.reach_bodies(0, standing, choice, finds);
+  finder.reach_bodies(first, mirrors_.size(), choice, finds);
+  finder.look_through(first, mirrors_.size(), false, BeamFinder::few_pieces, finds);
+  return finds;
+}
+
+/// Keeps what was listed over bodies and concerns none that has moved now; the mirrors have other places.
+inline void BeamLists::keep_standing(const BeamSource& source, std::span<const char> moved,
+                                     std::span<const FacetId> before) {
+  const auto has_moved = [&](BodyId body) { return moved.empty() ? body != BodyId(0) : moved[body.value] != 0; };
+  const auto place_now = [&](std::uint32_t mirror) {
+    return has_moved(source.scene.facet(before[mirror]).body) ? nothing : mirror_of_[before[mirror].value];
+  };
+  const auto of_edge = [&](std::uint32_t edge) { return source.scene.wedge(WedgeId(edge)).body; };
+  BeamFinds kept;
+  for (const std::size_t table : {of_others, of_moved}) {
+    const BeamFinds& old = found_[table];
+    for (const auto& [seen, mirror] : old.pairs) {
+      const std::uint32_t place = place_now(mirror);
+      if (place != nothing && !has_moved(source.scene.facet(FacetId(seen)).body)) kept.pairs.push_back({seen, place});
+    }
+    for (const EdgePart& part : old.parts) {
+      if (!has_moved(of_edge(part.edge))) kept.parts.push_back(part);
+    }
+    for (std::size_t at = 0; at < old.lit.size(); ++at) {
+      const std::uint32_t place = place_now(old.lit[at].edge);
+      if (place == nothing || has_moved(of_edge(old.lit_edges[at]))) continue;
+      kept.lit.push_back(old.lit[at]);
+      kept.lit.back().edge = place;
+      kept.lit_edges.push_back(old.lit_edges[at]);
     }
   }
+  found_[of_others] = std::move(kept);
 }
 
 }  // namespace dcem

@@ -149,6 +149,17 @@ class ConeClusters {
   struct Box {
     std::array<float, 3> centre{}, half{};
   };
+  /// With room for rounding.
+  static Box box_of(const Aabb<double>& box) {
+    Box result;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<std::size_t>(axis);
+      result.centre[at] = static_cast<float>(0.5 * (box.min[axis] + box.max[axis]));
+      const double size = std::max(std::abs(box.min[axis]), std::abs(box.max[axis]));
+      result.half[at] = static_cast<float>(0.5 * (box.max[axis] - box.min[axis]) + 1e-3 + 1e-6 * size);
+    }
+    return result;
+  }
   /// Boxes of 64 items each.
   std::span<const Box> boxes() const { return boxes_; }
   /// The items in the order of the clusters, eight to a cluster, the last places of which may hold `nothing`.
@@ -184,11 +195,10 @@ class ConeClusters {
     std::uint32_t used = 0;
 
     void set(std::size_t lane, const Aabb<double>& box) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto at = static_cast<std::size_t>(axis);
-        centre[at][lane] = static_cast<float>(0.5 * (box.min[axis] + box.max[axis]));
-        const double size = std::max(std::abs(box.min[axis]), std::abs(box.max[axis]));
-        half[at][lane] = static_cast<float>(0.5 * (box.max[axis] - box.min[axis]) + 1e-3 + 1e-6 * size);
+      const Box own = box_of(box);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        centre[axis][lane] = own.centre[axis];
+        half[axis][lane] = own.half[axis];
       }
       used |= 1U << lane;
     }

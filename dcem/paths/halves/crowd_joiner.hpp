@@ -63,12 +63,12 @@ class CrowdJoiner {
   void single_edges(const SeenLayer& layer, Visit& visit) {
     const float error_m = gates_.error_with(lanes_.reach_m());
     for (const WedgeId edge : layer.edges) {
-      for (const EdgePart& part : mast().parts_of(edge)) {
+      mast().for_each_part_of(edge, [&](const EdgePart& part) {
         for (std::size_t pack = 0; pack < gates_.packs().size(); ++pack) {
           const LaneGate at = lanes_.meet(part, gates_.packs()[pack], error_m, crowd().lanes_of(pack));
           if (at.lanes != 0) gates_.offer(pack, std::array{CrowdStop{edge, at}}, at.lanes, visit);
         }
-      }
+      });
     }
   }
 
@@ -94,11 +94,11 @@ class CrowdJoiner {
 
   template <typename Visit>
   void mirror_pairs(FacetId last, const Vec3& image_m, Visit& visit) {
-    for (const std::uint32_t mirror : mast().mirrors_before(last)) {
+    mast().for_each_mirror_before(last, [&](std::uint32_t mirror) {
       const BeamMirror& first = mast().mirrors()[mirror];
       if (!may_hold(cone_, first.image_m, 1e-6F * static_cast<float>(glm::length(first.image_m))) ||
           !may_hold(first.cone, image_m, gates_.radius_m()))
-        continue;
+        return;
       const LanePoints apex(first.image_m);
       const Float8 error_m(gates_.error_with(glm::length(first.image_m) + glm::length(image_m)));
       for (std::size_t pack = 0; pack < images_.size(); ++pack) {
@@ -110,14 +110,13 @@ class CrowdJoiner {
         gates_.offer(pack, std::array{CrowdStop{last, at_last}, CrowdStop{first.facet, at_first}}, at_last.lanes,
                      visit);
       }
-    }
+    });
   }
 
   template <typename Visit>
   void edges_before_mirror(FacetId last, const Vec3& image_m, Visit& visit) {
     const float error_m = gates_.error_with(glm::length(image_m) + lanes_.reach_m());
-    mast().for_each_part_in(cone_, image_m, gates_.radius_m(), [&](std::uint32_t number) {
-      const EdgePart& part = mast().parts()[number];
+    mast().for_each_part_in(cone_, image_m, gates_.radius_m(), [&](const EdgePart& part) {
       const WedgeId first(part.edge);
       const WorldWedge& wedge = scene_.wedge(first);
       if (wedge.facets[0] == last || wedge.facets[1] == last) return;  // that is in the wedge's own terms

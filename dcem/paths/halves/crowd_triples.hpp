@@ -1,6 +1,7 @@
 #pragma once
 /// Several receivers joined with one transmitter at once over three mirrors and edges: what `TripleJoiner` does for
 /// one, with the receivers as lanes.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -48,6 +49,10 @@ class CrowdTriples {
  private:
   const BeamLists& mast() const { return gates_.mast(); }
   std::size_t pack_count() const { return gates_.packs().size(); }
+  bool is_lit_over_mirrors(FacetId facet) const {
+    return std::ranges::any_of(mast().tables(),
+                               [&](const BeamTable& table) { return !table.mirrors_before(facet).empty(); });
+  }
   /// The edges that the crowd sees, as its middle does.
   void lay_out_edges() {
     std::vector<EdgePart> parts;
@@ -66,7 +71,7 @@ class CrowdTriples {
   template <typename Visit>
   void over_two_mirrors(FacetId middle, bool edges, Visit& visit) {
     const std::span<const std::uint32_t> near = beams_.mirrors_before(middle);
-    const bool mirrors = orders_.reflections >= 3 && !mast().mirrors_before(middle).empty();
+    const bool mirrors = orders_.reflections >= 3 && is_lit_over_mirrors(middle);
     if (near.empty() || (!edges && !mirrors)) return;
     for (const std::uint32_t place : near) {
       for (const double side : {1.0, -1.0}) {
@@ -79,12 +84,12 @@ class CrowdTriples {
 
   template <typename Visit>
   void join_mirrors(std::uint32_t place, FacetId middle, Visit& visit) {
-    for (const std::uint32_t mirror : mast().mirrors_before(middle)) {
+    mast().for_each_mirror_before(middle, [&](std::uint32_t mirror) {
       const BeamMirror& first = mast().mirrors()[mirror];
       const double length_m = glm::length(first.image_m);
       if (!may_hold(images_.cone(), first.image_m, 1e-6F * static_cast<float>(length_m)) ||
           !may_hold(first.cone, images_.middle_m(), gates_.radius_m() + images_.error_m()))
-        continue;
+        return;
       const LanePoints apex(first.image_m);
       const Float8 error_m(images_.error_m() + LaneScene::error_m(length_m));
       for (std::size_t pack = 0; pack < pack_count(); ++pack) {
@@ -92,14 +97,13 @@ class CrowdTriples {
             lanes_.cross(first.facet, apex, images_.in_two().packs[pack], error_m, images_.in_two().lanes[pack]);
         if (at_first.lanes != 0) join_near(place, middle, pack, {first.facet, at_first}, error_m, visit);
       }
-    }
+    });
   }
 
   template <typename Visit>
   void join_edges(std::uint32_t place, FacetId middle, Visit& visit) {
     const float radius_m = gates_.radius_m() + images_.error_m();
-    mast().for_each_part_in(images_.cone(), images_.middle_m(), radius_m, [&](std::uint32_t number) {
-      const EdgePart& part = mast().parts()[number];
+    mast().for_each_part_in(images_.cone(), images_.middle_m(), radius_m, [&](const EdgePart& part) {
       const WedgeId edge(part.edge);
       const WorldWedge& wedge = scene_.wedge(edge);
       if (wedge.facets[0] == middle || wedge.facets[1] == middle) return;  // that is in the wedge's own terms
@@ -128,10 +132,14 @@ class CrowdTriples {
   /// The receivers' last point is on an edge, the two before it on mirrors of the transmitter.
   template <typename Visit>
   void edge_to_two_mirrors(FacetId middle, Visit& visit) {
-    if (edge_numbers_.empty() || mast().mirrors_before(middle).empty()) return;
-    double_images_.for_each(mast(), middle, edges_.boxes(), [&](const BeamMirror& mirror, const Vec3& twice_m) {
-      edges_over(mirror, middle, twice_m, visit);
-    });
+    if (edge_numbers_.empty()) return;
+    for (const BeamTable& table : mast().tables()) {
+      const std::span<const std::uint32_t> mirrors = table.mirrors_before(middle);
+      if (mirrors.empty()) continue;
+      double_images_.for_each(
+          mast(), mirrors, middle, edges_.boxes(),
+          [&](const BeamMirror& mirror, const Vec3& twice_m) { edges_over(mirror, middle, twice_m, visit); });
+    }
   }
 
   template <typename Visit>

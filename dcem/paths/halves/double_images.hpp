@@ -18,13 +18,13 @@ class DoubleImages {
  public:
   DoubleImages(const Scene& scene, const LaneScene& lanes) : scene_(scene), lanes_(lanes) {}
 
-  /// Calls `visit(mirror, image_m)` for each mirror of an end over which it lights `middle`, and its image in both,
-  /// that may see some of the boxes through `middle`.
+  /// Calls `visit(mirror, image_m)` for each of some mirrors of an end, over which it lights `middle`, and its image in
+  /// both, that may see some of the boxes through `middle`.
   template <typename Visit>
-  void for_each(const BeamLists& end, FacetId middle, std::span<const ConeClusters::Box> boxes, Visit&& visit) const {
+  void for_each(const BeamLists& end, std::span<const std::uint32_t> mirrors, FacetId middle,
+                std::span<const ConeClusters::Box> boxes, Visit&& visit) const {
     const WorldFacet& facet = scene_.facet(middle);
     const WindowLanes window(facet.plane, scene_.hull_m(facet), lanes_.origin_m());
-    const std::span<const std::uint32_t> mirrors = end.mirrors_before(middle);
     for (std::size_t first = 0; first < mirrors.size(); first += simd_lanes) {
       const std::size_t count = std::min<std::size_t>(simd_lanes, mirrors.size() - first);
       std::array<Vec3, simd_lanes> images_m;

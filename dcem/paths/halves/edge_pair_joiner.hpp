@@ -19,7 +19,7 @@ class EdgePairJoiner {
   template <typename Visit>
   void for_each_pair(const PathHalf& receiver, const PathHalf& transmitter, const BeamLists* reached, Visit& visit) {
     parts_.clear();
-    if (reached != nullptr) parts_.assign(reached->parts().begin(), reached->parts().end());
+    if (reached != nullptr) parts_ = reached->parts();
     for (std::size_t layer = 0; layer < transmitter.layers().size(); ++layer) {
       if (reached == nullptr || (layer > 0 && !reached->has_bodies())) add_edges(transmitter, layer);
     }

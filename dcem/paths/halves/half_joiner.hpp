@@ -102,13 +102,13 @@ class HalfJoiner {
   template <typename Visit>
   void listed_mirrors(const PathHalf& receiver, const HalfLayer& near, const BeamLists& reached, Visit& visit) {
     for (std::size_t at = 0; at < near.mirrors.size(); ++at) {
-      for (const std::uint32_t place : reached.mirrors_before(near.mirrors[at])) {
+      reached.for_each_mirror_before(near.mirrors[at], [&](std::uint32_t place) {
         const BeamMirror& far = reached.mirrors()[place];
         const float error_m = 1e-6F * static_cast<float>(glm::length(far.image_m));
-        if (!may_hold(near.cones[at], far.image_m, error_m)) continue;
+        if (!may_hold(near.cones[at], far.image_m, error_m)) return;
         gates_.mirrors(receiver, near.mirrors[at], near.images_m[at], reached.half(), far.facet,
                        far.image_m + reached.origin_m(), visit);
-      }
+      });
     }
   }
 
@@ -117,8 +117,8 @@ class HalfJoiner {
   void mirrors_to_parts(const PathHalf& receiver, const HalfLayer& near, const BeamLists& reached, Visit& visit) {
     for (std::size_t at = 0; at < near.mirrors.size(); ++at) {
       const Vec3& image_m = near.images_m[at];
-      const auto join = [&](std::uint32_t part) {
-        const WedgeId edge(reached.parts()[part].edge);
+      const auto join = [&](const EdgePart& part) {
+        const WedgeId edge(part.edge);
         gates_.mirror_to_edge(receiver, near.mirrors[at], image_m, reached.half(), edge, false, visit);
       };
       reached.for_each_part_in(near.cones[at], image_m - reached.origin_m(), 0.0F, join);

@@ -20,6 +20,7 @@ struct HalfLists {
   bool at_once = false;              ///< all of it, now; otherwise of the scenery, when it has become worth while
   std::size_t receivers = 0;         ///< that join the half every time
   ThreadPool* pool = nullptr;        ///< for lists: as in `BeamSource`
+  int most_pieces = BeamFinder::many_pieces;  ///< the same
 };
 
 class KeptHalf {
@@ -46,6 +47,7 @@ class KeptHalf {
     const bool is_known =
         has_scenery_ && has_bodies_ && !moved.empty() && std::ranges::none_of(moved, [](char has) { return has != 0; });
     const bool closer = wanted.lanes != nullptr && wanted.at_once;
+    const bool lists_follow = has_bodies_ && has_listed_bodies_ && !moved.empty();
     if (!has_scenery_ && is_followed && !closer && pays(step_m)) {
       follow(scene, outlines, end, step_m, settings);
     } else if (!has_scenery_) {
@@ -57,12 +59,16 @@ class KeptHalf {
     if (makes_lists && !is_closer_) find_scenery(scene, outlines, end, settings, true);
     if (!is_known) half_.find_bodies(scene, outlines, settings, moved);
     has_bodies_ = true;
+    has_listed_bodies_ = has_listed_bodies_ && is_known;
     if (wanted.lanes == nullptr) return;
-    const BeamSource source{scene, outlines, *wanted.lanes, half_, settings, wanted.over_mirrors, wanted.pool};
+    const BeamSource source{scene,       outlines,          *wanted.lanes, half_, settings, wanted.over_mirrors,
+                            wanted.pool, wanted.most_pieces};
     if (makes_lists) lists_.find_scenery(source);
     has_lists_ = has_lists_ || makes_lists;
     if (keeps_places_ && !has_lists_) go_on_with_lists(source, wanted.receivers);
-    if (wanted.at_once && !outlines.bodies().empty() && (makes_lists || !is_known)) lists_.find_bodies(source);
+    if (!wanted.at_once || outlines.bodies().empty() || (!makes_lists && is_known && has_listed_bodies_)) return;
+    lists_.find_bodies(source, moved, lists_follow && !makes_lists);
+    has_listed_bodies_ = true;
   }
 
   /// Notes a frame whose links are known already: what `update` would do for it is left to the next `update`, which
@@ -89,7 +95,7 @@ class KeptHalf {
   void note(const LinkEnd& end, std::size_t receivers) {
     const bool stands = end_ == end;
     if (!stands) {
-      has_scenery_ = has_bodies_ = has_lists_ = false;
+      has_scenery_ = has_bodies_ = has_lists_ = has_listed_bodies_ = false;
       joins_ = frames_standing_ = 0;
     }
     joins_ += receivers;
@@ -196,7 +202,7 @@ class KeptHalf {
   PathHalf half_;
   BeamLists lists_;
   bool has_scenery_ = false, has_bodies_ = false, has_lists_ = false, is_closer_ = false, keeps_places_ = false;
-  bool images_at_once_ = false;
+  bool images_at_once_ = false, has_listed_bodies_ = false;
   double longest_step_m_ = 0.0;
   std::size_t joins_ = 0;            ///< since the device stands
   std::size_t frames_standing_ = 0;  ///< in which lists have been worked on

@@ -32,24 +32,33 @@ class TripleJoiner {
   /// Calls `visit(sequence)`, from the receiver outwards, for each sequence of three elements; seldom twice for one.
   template <typename Visit>
   void for_each_sequence(const BeamLists& receiver, const BeamLists& transmitter, Visit&& visit) {
-    if (orders_.interactions < 3) return;
     const Ends ends{receiver, transmitter};
-    const bool edges = orders_.diffractions >= 1 && orders_.reflections >= 2;
-    for (std::uint32_t number = 0; number < scene().facets().size(); ++number) {
-      const FacetId middle(number);
-      if (orders_.reflections >= 3) three_mirrors(ends, middle, visit);
-      if (edges) two_mirrors_to_edge(ends, receiver, transmitter, middle, false, visit);
-      if (edges) two_mirrors_to_edge(ends, transmitter, receiver, middle, true, visit);
+    for (const BeamTable& near : receiver.tables()) {
+      for (const BeamTable& far : transmitter.tables()) join(ends, near, far, visit);
     }
-    if (!edges) return;
-    for (std::uint32_t number = 0; number < scene().wedges().size(); ++number) {
-      edge_between_mirrors(ends, WedgeId(number), visit);
+  }
+
+  /// The same of sequences over a body that has moved, in at least one of their elements: then it is in what one of the
+  /// ends reaches over moved bodies.
+  template <typename Visit>
+  void for_each_moved_sequence(const BeamLists& receiver, const BeamLists& transmitter, Visit&& visit) {
+    const Ends ends{receiver, transmitter};
+    for (std::size_t near = 0; near < receiver.tables().size(); ++near) {
+      for (std::size_t far = 0; far < transmitter.tables().size(); ++far) {
+        if (near != BeamLists::of_moved && far != BeamLists::of_moved) continue;
+        join(ends, receiver.tables()[near], transmitter.tables()[far], visit);
+      }
     }
   }
 
  private:
   struct Ends {
     const BeamLists &receiver, &transmitter;
+  };
+  /// A table of an end.
+  struct Listed {
+    const BeamLists& lists;
+    const BeamTable& table;
   };
 
   const Scene& scene() const { return gates_.scene(); }
@@ -65,11 +74,36 @@ class TripleJoiner {
     visit(std::as_const(sequence_));
   }
 
+  /// What the receiver and what the transmitter reach, as far as it stands in a table of each.
   template <typename Visit>
-  void three_mirrors(const Ends& ends, FacetId middle, Visit& visit) {
-    const std::span<const std::uint32_t> near = ends.receiver.mirrors_before(middle);
-    const std::span<const std::uint32_t> far = ends.transmitter.mirrors_before(middle);
-    if (near.empty() || far.empty()) return;
+  void join(const Ends& ends, const BeamTable& near, const BeamTable& far, Visit& visit) {
+    if (orders_.interactions < 3) return;
+    if (orders_.reflections >= 3) {
+      for_each_of_both(near.lit_facets(), far.lit_facets(), [&](std::uint32_t middle) {
+        three_mirrors(ends, FacetId(middle), near.mirrors_before(FacetId(middle)), far.mirrors_before(FacetId(middle)),
+                      visit);
+      });
+    }
+    if (orders_.diffractions < 1 || orders_.reflections < 2) return;
+    two_mirrors_to_edge(ends, {ends.receiver, near}, {ends.transmitter, far}, false, visit);
+    two_mirrors_to_edge(ends, {ends.transmitter, far}, {ends.receiver, near}, true, visit);
+    for_each_of_both(near.lit_edges(), far.lit_edges(),
+                     [&](std::uint32_t edge) { edge_between_mirrors(ends, near, far, WedgeId(edge), visit); });
+  }
+
+  /// Numbers that are in both of two ascending lists.
+  template <typename Visit>
+  static void for_each_of_both(std::span<const std::uint32_t> one, std::span<const std::uint32_t> other,
+                               Visit&& visit) {
+    const bool is_shorter = one.size() < other.size();
+    for (const std::uint32_t number : is_shorter ? one : other) {
+      if (std::ranges::binary_search(is_shorter ? other : one, number)) visit(number);
+    }
+  }
+
+  template <typename Visit>
+  void three_mirrors(const Ends& ends, FacetId middle, std::span<const std::uint32_t> near,
+                     std::span<const std::uint32_t> far, Visit& visit) {
     const Plane& plane = scene().facet(middle).plane;
     for (std::size_t first = 0; first < far.size(); first += simd_lanes) {
       const std::span<const std::uint32_t> eight =
@@ -103,30 +137,32 @@ class TripleJoiner {
 
   /// Over two mirrors of `over` to an edge that `beside` sees; `turned`: `over` is the transmitter.
   template <typename Visit>
-  void two_mirrors_to_edge(const Ends& ends, const BeamLists& over, const BeamLists& beside, FacetId middle,
-                           bool turned, Visit& visit) {
-    if (over.mirrors_before(middle).empty() || beside.parts().empty()) return;
-    images_.for_each(over, middle, beside.boxes_of_parts(), [&](const BeamMirror& mirror, const Vec3& twice_m) {
-      edges_over(mirror, middle, twice_m, beside, [&](WedgeId edge, const Vec3& edge_m, const Vec3& mirror_m) {
-        if (turned) {
-          offer(ends, {edge, middle, mirror.facet}, edge_m, mirror_m, visit);
-        } else {
-          offer(ends, {mirror.facet, middle, edge}, mirror_m, edge_m, visit);
-        }
-      });
-    });
+  void two_mirrors_to_edge(const Ends& ends, const Listed& over, const Listed& beside, bool turned, Visit& visit) {
+    if (beside.table.parts().empty()) return;
+    for (const std::uint32_t number : over.table.lit_facets()) {
+      const FacetId middle(number);
+      const auto meet = [&](const BeamMirror& mirror, const Vec3& twice_m) {
+        edges_over(mirror, middle, twice_m, beside, [&](WedgeId edge, const Vec3& edge_m, const Vec3& mirror_m) {
+          if (turned) {
+            offer(ends, {edge, middle, mirror.facet}, edge_m, mirror_m, visit);
+          } else {
+            offer(ends, {mirror.facet, middle, edge}, mirror_m, edge_m, visit);
+          }
+        });
+      };
+      images_.for_each(over.lists, over.table.mirrors_before(middle), middle, beside.table.boxes_of_parts(), meet);
+    }
   }
 
   /// Calls `visit(edge, point on it, point on the mirror)` for edges that `beside` sees, over two mirrors.
   template <typename Visit>
-  void edges_over(const BeamMirror& mirror, FacetId middle, const Vec3& twice_m, const BeamLists& beside,
-                  Visit&& visit) {
+  void edges_over(const BeamMirror& mirror, FacetId middle, const Vec3& twice_m, const Listed& beside, Visit&& visit) {
     const std::span<const HalfSpace> cone = images_.cone(mirror, middle, twice_m);
-    beside.for_each_part_in(cone, twice_m - lanes_.origin_m(), 0.0F, [&](std::uint32_t number) {
-      const WedgeId edge(beside.parts()[number].edge);
+    beside.table.for_each_part_in(cone, twice_m - lanes_.origin_m(), 0.0F, [&](const EdgePart& part) {
+      const WedgeId edge(part.edge);
       const WorldWedge& wedge = scene().wedge(edge);
       if (wedge.facets[0] == middle || wedge.facets[1] == middle) return;  // that is in the wedge's own terms
-      const auto edge_m = gates_.edge_point(edge, beside.half().position_m(), twice_m);
+      const auto edge_m = gates_.edge_point(edge, beside.lists.half().position_m(), twice_m);
       if (!edge_m) return;
       const auto middle_m = gates_.crossing(middle, twice_m, *edge_m);
       if (!middle_m || !may_face(wedge.edge, *middle_m - *edge_m)) return;
@@ -136,9 +172,9 @@ class TripleJoiner {
   }
 
   template <typename Visit>
-  void edge_between_mirrors(const Ends& ends, WedgeId edge, Visit& visit) {
+  void edge_between_mirrors(const Ends& ends, const BeamTable& near, const BeamTable& far, WedgeId edge, Visit& visit) {
     const WorldWedge& wedge = scene().wedge(edge);
-    ends.receiver.for_each_lit_part(edge, [&](const EdgePart&, std::uint32_t place) {
+    near.for_each_lit_part(edge, [&](const EdgePart&, std::uint32_t place) {
       const BeamMirror& one = ends.receiver.mirrors()[place];
       const auto join = [&](const EdgePart&, std::uint32_t other_place) {
         const BeamMirror& other = ends.transmitter.mirrors()[other_place];
@@ -150,7 +186,7 @@ class TripleJoiner {
         if (!far_m || !may_face(wedge.edge, *far_m - *edge_m)) return;
         offer(ends, {one.facet, edge, other.facet}, *near_m, *far_m, visit);
       };
-      ends.transmitter.for_each_lit_part(edge, one.image_m, 0.0F, join);
+      far.for_each_lit_part(edge, one.image_m, 0.0F, join);
     });
   }
 

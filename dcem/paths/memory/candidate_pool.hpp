@@ -17,17 +17,10 @@
 #include "dcem/paths/halves/join_gates.hpp"
 #include "dcem/paths/halves/pair_gates.hpp"
 #include "dcem/paths/halves/place.hpp"
+#include "dcem/paths/memory/candidate_way.hpp"
 #include "dcem/paths/memory/edge_candidates.hpp"
-#include "dcem/paths/memory/way_reach.hpp"
 
 namespace dcem {
-
-/// A way over one or two elements, from the receiver outwards.
-struct CandidateWay {
-  Sequence elements;
-  std::array<Vec3, 2> points_m;
-  Vec3 apex_m;  ///< the transmitter, or its image in the mirror next to it
-};
 
 class CandidatePool {
  public:
@@ -53,9 +46,6 @@ class CandidatePool {
   }
   /// Works out the way of a candidate to a receiver in the place; false where its points are not on what they must be.
   bool aim(const JoinGates& gates, const Vec3& receiver_m, std::size_t number, CandidateWay& way) const;
-  /// How far its points move, metres, while the receiver moves by at most `moved_m`.
-  std::array<double, 2> reach_m(const Scene& scene, const Vec3& receiver_m, const CandidateWay& way,
-                                double moved_m) const;
 
   /// The elements of a candidate, from the receiver outwards, as one number.
   std::uint64_t key(std::size_t number) const {
@@ -141,7 +131,7 @@ inline void CandidatePool::find_single_mirrors() {
 inline void CandidatePool::find_over_mirror(const Scene& scene, const FacetOutlines& outlines,
                                             const PlaceMirror& mirror) {
   const Vec3 image = mirror.image_m - reached_.origin_m();
-  for (const std::uint32_t far : reached_.mirrors_before(mirror.facet)) {
+  for (const std::uint32_t far : reached_.tables()[BeamLists::of_scenery].mirrors_before(mirror.facet)) {
     if (orders_.reflections < 2) break;
     const BeamMirror& first = reached_.mirrors()[far];
     const float error_m = 1e-6F * static_cast<float>(glm::length(first.image_m));
@@ -159,8 +149,7 @@ inline void CandidatePool::find_edges_over(const Scene& scene, const FacetOutlin
     images_m[corner] = mirrored(plane, place_->corners_m()[corner]);
   }
   const Vec3 image = mirror.image_m - reached_.origin_m();
-  reached_.for_each_part_in(mirror.cone, image, static_cast<float>(place_->radius_m()), [&](std::uint32_t number) {
-    const EdgePart& part = reached_.parts()[number];
+  reached_.for_each_part_in(mirror.cone, image, static_cast<float>(place_->radius_m()), [&](const EdgePart& part) {
     const WorldWedge& wedge = scene.wedge(WedgeId(part.edge));
     if (holds_edge(plane, wedge.edge, scene.settings().weld_tolerance_m)) return;
     // The wedge's solid is convex: what all corners are inside of, the whole place is.
@@ -177,10 +166,10 @@ inline void CandidatePool::find_over_edges(const Scene& scene) {
   const Vec3 middle = place_->box().middle_m - reached_.origin_m();
   for (const WedgeId edge : place_->scenery().edges) {
     const Wedge& wedge = scene.wedge(edge).edge;
-    for (const EdgePart& part : reached_.parts_of(edge)) {
+    reached_.for_each_part_of(edge, [&](const EdgePart& part) {
       direct_.push_back({edge, alone});
       edges_.add(wedge, part);
-    }
+    });
     if (orders_.interactions < 2 || orders_.reflections < 1) continue;
     reached_.for_each_lit_part(edge, middle, radius_m, [&](const EdgePart& part, std::uint32_t far) {
       const Plane& plane = scene.facet(reached_.mirrors()[far].facet).plane;
@@ -231,27 +220,6 @@ inline bool CandidatePool::aim(const JoinGates& gates, const Vec3& receiver_m, s
   const auto edge_m = gates.edge_point(one.edge, way.apex_m, near_image_m);
   if (!edge_m || !put(near, gates.crossing(near, near_image_m, *edge_m)) || !put(one.edge, edge_m)) return false;
   return may_face(scene.wedge(one.edge).edge, way.points_m[0] - way.points_m[1]);
-}
-
-/// `apex_m` of the way is the image of the standing end from which its points follow.
-inline std::array<double, 2> CandidatePool::reach_m(const Scene& scene, const Vec3& receiver_m, const CandidateWay& way,
-                                                    double moved_m) const {
-  const SequenceElement near = way.elements[0];
-  const auto plane_of = [&](SequenceElement element) -> const Plane& { return scene.facet(element.mirror()).plane; };
-  if (near.is_edge()) {
-    const double edge_m = edge_reach_m(scene.wedge(near.edge()).edge, way.apex_m, receiver_m, moved_m);
-    if (way.elements.size() == 1) return {edge_m, 0.0};
-    return {edge_m, crossing_reach_m(plane_of(way.elements[1]), way.apex_m, 0.0, way.points_m[0], edge_m)};
-  }
-  if (way.elements.size() == 1) return {crossing_reach_m(plane_of(near), way.apex_m, 0.0, receiver_m, moved_m), 0.0};
-  const Vec3 image_m = mirrored(plane_of(near), receiver_m);
-  const SequenceElement far = way.elements[1];
-  if (far.is_edge()) {
-    const double edge_m = edge_reach_m(scene.wedge(far.edge()).edge, way.apex_m, image_m, moved_m);
-    return {crossing_reach_m(plane_of(near), way.points_m[1], edge_m, image_m, moved_m), edge_m};
-  }
-  const double far_m = crossing_reach_m(plane_of(far), way.apex_m, 0.0, image_m, moved_m);
-  return {crossing_reach_m(plane_of(near), way.points_m[1], far_m, image_m, moved_m), far_m};
 }
 
 }  // namespace dcem

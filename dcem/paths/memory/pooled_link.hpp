@@ -183,7 +183,7 @@ class PooledLink {
     for (int attempt = 0; attempt < 2 && !now_alone; ++attempt) {
       const float moved_m = std::min(slot.ahead_m, longest_m);
       if (moved_m < shortest_m) break;
-      const auto reach_m = pool_->reach_m(judge.gates.scene(), judge.receiver.position_m, way_, moved_m);
+      const auto reach_m = way_reach_m(judge.gates.scene(), judge.receiver.position_m, way_, moved_m);
       const bool held = asked(reach_m, moved_m);
       if (held) slot.refused_until_m = way_m_ + moved_m;
       slot.ahead_m = held ? 2.0F * moved_m : 0.25F * moved_m;

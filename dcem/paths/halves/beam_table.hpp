@@ -1,0 +1,175 @@
+#pragma once
+/// What an end reaches directly and over some of its mirrors, laid out by what is reached.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dcem/paths/halves/beam_finder.hpp"
+#include "dcem/paths/halves/row_index.hpp"
+
+namespace dcem {
+
+class BeamTable {
+ public:
+  static constexpr std::uint32_t nothing = 0xffffffffU;
+
+  /// The lanes must stay.
+  void lay_out(const Scene& scene, const LaneScene& lanes, const BeamFinds& finds);
+
+  /// Facets that are lit over mirrors, ascending, and the places of the mirrors over which one may be …
+  std::span<const std::uint32_t> lit_facets() const { return before_rows_.used(); }
+  std::span<const std::uint32_t> mirrors_before(FacetId facet) const {
+    const RowIndex::Row row = before_rows_.row(facet.value);
+    return std::span(before_).subspan(row.first, row.last - row.first);
+  }
+  /// … and edges that are.
+  std::span<const std::uint32_t> lit_edges() const { return lit_rows_.used(); }
+  /// Calls `visit(part, mirror)` for the parts of an edge that mirrors may light, where the point that diffracts
+  /// towards `point`, or what is within `radius_m` of it, may lie on the part.
+  template <typename Visit>
+  void for_each_lit_part(WedgeId edge, const Vec3& point, float radius_m, Visit&& visit) const;
+  /// The same of all parts of an edge that mirrors may light.
+  template <typename Visit>
+  void for_each_lit_part(WedgeId edge, Visit&& visit) const;
+
+  /// The parts of edges that the end may see, edge by edge; `EdgePart::edge` is the number of a wedge.
+  std::span<const EdgePart> parts() const { return parts_; }
+  std::span<const EdgePart> parts_of(WedgeId edge) const {
+    const RowIndex::Row row = part_rows_.row(edge.value);
+    return std::span(parts_).subspan(row.first, row.last - row.first);
+  }
+  /// Boxes that hold all parts: of bodies one for each of them.
+  std::span<const ConeClusters::Box> boxes_of_parts() const {
+    return body_boxes_.empty() ? part_clusters_.boxes() : std::span<const ConeClusters::Box>(body_boxes_);
+  }
+  /// Calls `visit(part)` for parts on which the point that diffracts between the end and an apex may lie in a cone, for
+  /// the apex at `apex` or within `radius_m` of it.
+  template <typename Visit>
+  void for_each_part_in(std::span<const HalfSpace> cone, const Vec3& apex, float radius_m, Visit&& visit) const {
+    part_clusters_.for_each_in(cone, apex, radius_m, [&](std::uint32_t number) { visit(parts_[number]); });
+  }
+
+ private:
+  using Lanes = std::array<float, simd_lanes>;
+  /// Eight parts of one edge, each lit by the image in a mirror.
+  struct LitLanes {
+    Lanes from{}, to{}, place{}, distance{};
+    std::array<std::uint32_t, simd_lanes> mirror{};
+  };
+  void lay_out_parts(const Scene& scene, const BeamFinds& finds);
+  void find_body_boxes(const Scene& scene);
+  void lay_out_lit_parts(const Scene& scene, const BeamFinds& finds);
+  static EdgePart part_in(const LitLanes& eight, WedgeId edge, std::size_t lane) {
+    return {edge.value, eight.from[lane], eight.to[lane], eight.place[lane], eight.distance[lane]};
+  }
+
+  const LaneScene* lanes_ = nullptr;
+  RowIndex before_rows_, part_rows_, lit_rows_;
+  std::vector<std::uint32_t> before_;
+  std::vector<EdgePart> parts_;
+  EdgeClusters part_clusters_;
+  std::vector<ConeClusters::Box> body_boxes_;  ///< none where there are parts of the scenery
+  std::vector<LitLanes> lit_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+inline void BeamTable::lay_out(const Scene& scene, const LaneScene& lanes, const BeamFinds& finds) {
+  lanes_ = &lanes;
+  before_.resize(finds.pairs.size());
+  before_rows_.build(
+      scene.facets().size(), finds.pairs.size(), 1, [&](std::size_t item) { return finds.pairs[item][0]; },
+      [&](std::size_t item, std::uint32_t place) { before_[place] = finds.pairs[item][1]; });
+  lay_out_parts(scene, finds);
+  lay_out_lit_parts(scene, finds);
+}
+
+inline void BeamTable::lay_out_parts(const Scene& scene, const BeamFinds& finds) {
+  parts_.resize(finds.parts.size());
+  part_rows_.build(
+      scene.wedges().size(), parts_.size(), 1, [&](std::size_t item) { return finds.parts[item].edge; },
+      [&](std::size_t item, std::uint32_t place) { parts_[place] = finds.parts[item]; });
+  part_clusters_.build(parts_, lanes_->origin_m(),
+                       [&](const EdgePart& part) -> const Wedge& { return scene.wedge(WedgeId(part.edge)).edge; });
+  find_body_boxes(scene);
+}
+
+/// Bodies are small and apart: a box around parts of several of them says little.
+inline void BeamTable::find_body_boxes(const Scene& scene) {
+  body_boxes_.clear();
+  for (std::size_t first = 0, last = 0; first < parts_.size(); first = last) {
+    const BodyId body = scene.wedge(WedgeId(parts_[first].edge)).body;
+    if (body == BodyId(0)) return body_boxes_.clear();
+    Aabb<double> box;
+    for (; last < parts_.size() && scene.wedge(WedgeId(parts_[last].edge)).body == body; ++last) {
+      const Wedge& edge = scene.wedge(WedgeId(parts_[last].edge)).edge;
+      box.extend(edge.start_m - lanes_->origin_m());
+      box.extend(edge.end_m - lanes_->origin_m());
+    }
+    body_boxes_.push_back(ConeClusters::box_of(box));
+  }
+}
+
+/// In eights, edge by edge.
+inline void BeamTable::lay_out_lit_parts(const Scene& scene, const BeamFinds& finds) {
+  LitLanes none;
+  none.to.fill(-1e30F);
+  none.mirror.fill(nothing);
+  lit_.clear();
+  lit_rows_.build(
+      scene.wedges().size(), finds.lit.size(), simd_lanes, [&](std::size_t item) { return finds.lit_edges[item]; },
+      [&](std::size_t item, std::uint32_t place) {
+        if (lit_.empty()) lit_.assign(lit_rows_.size() / simd_lanes, none);
+        LitLanes& eight = lit_[place / simd_lanes];
+        const std::size_t lane = place % simd_lanes;
+        const EdgePart& part = finds.lit[item];
+        eight.from[lane] = part.from;
+        eight.to[lane] = part.to;
+        eight.place[lane] = part.place;
+        eight.distance[lane] = part.distance;
+        eight.mirror[lane] = part.edge;
+      });
+}
+
+template <typename Visit>
+void BeamTable::for_each_lit_part(WedgeId edge, Visit&& visit) const {
+  const RowIndex::Row row = lit_rows_.row(edge.value);
+  for (std::size_t at = row.first / simd_lanes; at < row.last / simd_lanes; ++at) {
+    const LitLanes& eight = lit_[at];
+    for (std::size_t lane = 0; lane < simd_lanes && eight.mirror[lane] != nothing; ++lane) {
+      visit(part_in(eight, edge, lane), eight.mirror[lane]);
+    }
+  }
+}
+
+template <typename Visit>
+void BeamTable::for_each_lit_part(WedgeId edge, const Vec3& point, float radius_m, Visit&& visit) const {
+  const RowIndex::Row row = lit_rows_.row(edge.value);
+  if (row.first == row.last) return;
+  const LaneEdge& line = lanes_->edge(edge);
+  const Vec3 away = point - Vec3(line.start[0], line.start[1], line.start[2]);
+  const Vec3 direction(line.direction[0], line.direction[1], line.direction[2]);
+  const double place_m = glm::dot(away, direction);
+  const Float8 place(static_cast<float>(place_m)),
+      distance(static_cast<float>(glm::length(away - place_m * direction)));
+  const float slack_m = 5e-3F + 2e-6F * static_cast<float>(glm::length(point) + glm::length(away));
+  for (std::size_t at = row.first / simd_lanes; at < row.last / simd_lanes; ++at) {
+    const LitLanes& eight = lit_[at];
+    const Float8 own_place(eight.place), own_distance(eight.distance);
+    const Float8 sum = own_distance + distance, between = place - own_place;
+    const Float8 met = own_place + between * (own_distance / sum);
+    const Float8 reach = edge_point_reach_m(own_distance, sum, between, radius_m) +
+                         edge_point_error_m(own_place, own_distance) + slack_m;
+    std::uint32_t left = ~((met + reach < Float8(eight.from)) | (Float8(eight.to) + reach < met)).bits() & 0xffU;
+    for (; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      if (eight.mirror[lane] != nothing) visit(part_in(eight, edge, lane), eight.mirror[lane]);
+    }
+  }
+}
+
+}  // namespace dcem

@@ -1,0 +1,72 @@
+#pragma once
+/// How a `BasicSimulator` finds the paths of a link whose ends stand, from what it has noted of it; included by
+/// basic_simulator.hpp.
+#include <utility>
+
+#include "dcem/paths/memory/standing_link.hpp"
+#include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/detail/simulator_memory.hpp"
+
+namespace dcem {
+
+/// Notes what may carry a path as long as the ends stand.
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::note_standing(Following& following, StandingLink<PathContribution>& standing,
+                                                   std::size_t transmitter, const Sequence& sequence,
+                                                   const std::optional<PathContribution>& found) const {
+  const LinkEnd& from = *following.transmitters.link[transmitter];
+  if (found) {
+    standing.add({following.ways.find_open(from, following.end, sequence), found, following.solver.had_choice()});
+  } else if (auto way = following.ways.find(from, following.end, sequence, following.counters.solver)) {
+    standing.add({std::move(*way), std::nullopt});
+  }
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_standing(Following& following,
+                                                                                detail::ReceiverMemory& memory,
+                                                                                std::size_t transmitter,
+                                                                                bool fields_stay) const {
+  StandingLink<PathContribution>& standing = memory.links[transmitter].standing;
+  const auto has_moved = [&](SequenceElement element) {
+    const BodyId body = element.is_edge() ? scene_.wedge(element.edge()).body : scene_.facet(element.mirror()).body;
+    return change_->moved()[body.value] != 0;
+  };
+  if (change_->any_moved()) standing.drop(has_moved);
+  for (auto& entry : standing.entries()) {
+    if ((entry.has_choice && change_->any()) || change_->boxes().meet(entry.way.points_m, entry.way.around)) {
+      ++following.cache.revalidated;
+      const bool was = entry.outcome.has_value();
+      entry.outcome = following.solve(transmitter, entry.way.sequence);
+      entry.has_choice = following.solver.had_choice();
+      ++(entry.outcome ? following.cache.reused : following.cache.expired);
+      if (!was && !entry.outcome) --following.cache.expired;
+    } else if (entry.outcome) {
+      ++following.cache.taken_over;
+      if (!fields_stay) {
+        entry.outcome = following.field.evaluate(std::move(entry.outcome->path),
+                                                 following.transmitters.radio[transmitter], following.radio);
+      }
+    }
+  }
+  if (change_->any_moved() && following.search.max_interactions > 0) {
+    const auto add = [&](const Sequence& sequence) {
+      ++following.counters.sequences_proposed;
+      note_standing(following, standing, transmitter, sequence, following.solve(transmitter, sequence));
+    };
+    const JoinOrders orders = joined_orders(following.search);
+    const KeptHalf& mast = following.transmitters.halves[transmitter];
+    HalfJoiner(scene_, *outlines_, orders).for_each_moved_sequence(memory.half.half(), mast.half(), add);
+    if (joins_triples(following.search)) {
+      TripleJoiner(scene_, *outlines_, *lanes_, orders)
+          .for_each_moved_sequence(*memory.half.lists(), *mast.lists(), add);
+    }
+  }
+  std::vector<PathContribution> paths;
+  for (const auto& entry : standing.entries()) {
+    if (entry.outcome) paths.push_back(*entry.outcome);
+  }
+  return paths;
+}
+
+}  // namespace dcem
