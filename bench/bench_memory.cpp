@@ -1,7 +1,8 @@
 /// What the exact memory saves, against how far things move from frame to frame.
 ///
 ///   bench_memory FILE.obj --mast X Y Z [--steps M...] [--cars N...] [--receivers N...] [--reflections N]
-///                [--diffractions N] [--interactions N] [--frames N] [--warm N] [--within M] [--v2v] [--threads N]
+///                [--diffractions N] [--interactions N] [--frames N] [--warm N] [--within M] [--v2v] [--mast-step M]
+///                [--threads N]
 ///                [--processor-time]
 ///
 /// Receivers and cars drive straight through the streets of a city. Each frame is solved by two simulators in turns,
@@ -14,6 +15,7 @@
 #include <ctime>
 #include <filesystem>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,7 @@ struct Options {
   int reflections = 2, diffractions = 1, interactions = 2;
   std::size_t frames = 40, warm = 0;
   double within_m = 150.0, car_step_m = 1.0;
+  std::optional<double> mast_step_m;
   bool between_vehicles = false, alone = false, processor_time = false;
   unsigned threads = 1;
 };
@@ -159,6 +162,8 @@ int main(int count, char** arguments) {
   app.add_flag("--alone", options.alone, "with memory alone, to look into: nothing is compared");
   app.add_flag("--processor-time", options.processor_time, "of all threads instead of that by the clock");
   app.add_flag("--v2v", options.between_vehicles, "the transmitter drives, too");
+  app.add_option("--mast-step", options.mast_step_m,
+                 "of a transmitter that drives, metres a frame; default: as receivers");
   return dcem::bench::run_program(app, count, arguments, [&] {
     std::puts(
         "scene,threads,max_diffractions,max_interactions,step_m,cars,receivers,frames,cold_off_ms,cold_exact_ms,off_"
@@ -171,8 +176,8 @@ int main(int count, char** arguments) {
       for (const std::size_t receivers : options.receivers) {
         for (const double step_m : options.steps_m) {
           const dcem::Vec3 mast_m(options.mast_m[0], options.mast_m[1], options.mast_m[2]);
-          all_same = bench(options, {options.file, mast_m, options.between_vehicles, options.within_m, step_m,
-                                     receivers, cars, options.frames, options.car_step_m}) &&
+          all_same = bench(options, {options.file, mast_m, options.between_vehicles, options.mast_step_m,
+                                     options.within_m, step_m, receivers, cars, options.frames, options.car_step_m}) &&
                      all_same;
         }
       }

@@ -65,9 +65,10 @@ class Streets {
 struct DriveOrder {
   std::string file;  ///< OBJ
   Vec3 mast_m{0.0};
-  bool mast_drives = false;  ///< the transmitter moves like a receiver instead
-  double within_m = 150.0;   ///< of the mast, along both axes
-  double step_m = 0.14;      ///< of receivers, from frame to frame
+  bool mast_drives = false;                          ///< the transmitter moves like a receiver instead …
+  std::optional<double> mast_step_m = std::nullopt;  ///< … but so far from frame to frame
+  double within_m = 150.0;                           ///< of the mast, along both axes
+  double step_m = 0.14;                              ///< of receivers, from frame to frame
   std::size_t receivers = 1, cars = 0, frames = 40;
   double car_step_m = 1.0;
 };
@@ -82,15 +83,16 @@ inline Scene street_drive(const DriveOrder& order) {
   WideIndex index;
   index.build(scene.triangle_view(), scene.triangle_boxes(), scene.first_triangles());
   Streets streets(scene, index, order.mast_m, order.within_m);
-  const auto driving = [&](const std::string& id, double height_m) {
-    const auto way = streets.way(height_m, order.step_m * static_cast<double>(order.frames), 0.3);
+  const auto driving = [&](const std::string& id, double height_m, double step_m) {
+    const auto way = streets.way(height_m, step_m * static_cast<double>(order.frames), 0.3);
     Device device = device_at(id, way.from_m, 30.0);
-    device.motion = LinearMotion{{way.from_m}, order.step_m * way.ahead, 0.0};
+    device.motion = LinearMotion{{way.from_m}, step_m * way.ahead, 0.0};
     return device;
   };
-  scene.add_transmitter(order.mast_drives ? driving("sender", 1.6) : device_at("mast", order.mast_m, 30.0));
+  scene.add_transmitter(order.mast_drives ? driving("sender", 1.6, order.mast_step_m.value_or(order.step_m))
+                                          : device_at("mast", order.mast_m, 30.0));
   for (std::size_t number = 0; number < order.receivers; ++number) {
-    scene.add_receiver(driving("receiver" + std::to_string(number), 1.5));
+    scene.add_receiver(driving("receiver" + std::to_string(number), 1.5, order.step_m));
   }
   TriangleMesh box;
   const Vec3 low_m(-2.2, -0.9, 0.0), high_m(2.2, 0.9, 1.5);

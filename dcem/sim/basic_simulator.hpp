@@ -224,8 +224,8 @@ class BasicSimulator {
                                                std::size_t transmitter) const;
   std::vector<PathContribution> paths_of_standing(Following& following, detail::ReceiverMemory& memory,
                                                   std::size_t transmitter, bool fields_stay) const;
-  void note_standing(Following& following, StandingLink<PathContribution>& standing, std::size_t transmitter,
-                     const Sequence& sequence, const std::optional<PathContribution>& found) const;
+  std::optional<PathContribution> note_standing(Following& following, StandingLink<PathContribution>& standing,
+                                                std::size_t transmitter, const Sequence& sequence) const;
   bool finds_lifetimes() const;
   void find_lifetimes(std::vector<LinkResult>& links, const TransmitterEnds& transmitters);
   void note_transmitters(const TransmitterEnds& ends);

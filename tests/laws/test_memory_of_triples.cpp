@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -117,7 +118,6 @@ void follow_drive(std::uint64_t seed, Sums& sums) {
   std::vector<bool> away(scene.bodies().size(), false);
   CAPTURE(seed);
   double time_s = 0.0;
-  Scene at(scene);
   for (std::size_t index = 0; index < frames; ++index) {
     if (draw.below(8) != 0) time_s += draw.below(4) == 0 ? 0.25 : 1.0;
     Frame frame = scene.frame_at(std::min(time_s, static_cast<double>(frames)), index);
@@ -125,9 +125,9 @@ void follow_drive(std::uint64_t seed, Sums& sums) {
       if (draw.below(16) == 0) away[body] = !away[body];
       frame.bodies[body].present = !away[body];
     }
+    if (draw.below(12) == 0) trial.own().move_to(scene.frame_at(draw.between(0, frames), index));
     const FrameResult expected = trial.advance(frame);
-    at.apply(frame);
-    sums.places.add(at, expected.links);
+    sums.places.add(scene, expected.links);
   }
   const MemoryTally& tally = trial.tally();
   sums.tally.frames += tally.frames;
@@ -139,7 +139,86 @@ void follow_drive(std::uint64_t seed, Sums& sums) {
   sums.tally.work_anew += tally.work_anew;
 }
 
+/// A street in which two cars drive beside one that is parked, between a lamp and a post.
+Scene quiet_street(std::size_t count) {
+  TriangleMesh mesh;
+  add_sheet(mesh, Vec3(0.0), Vec3(30, 0, 0), Vec3(0, 30, 0), "opaque");
+  add_box_faces(mesh, Vec3(-9, 4, 0), Vec3(5, 9, 7), "metal");
+  add_box_faces(mesh, Vec3(-7, -9, 0), Vec3(8, -4.5, 5), "metal");
+  Scene scene = scene_of(mesh);
+  TriangleMesh car;
+  add_box_faces(car, Vec3(-1.5, -0.8, 0.02), Vec3(1.5, 0.8, 1.4), "metal");
+  scene.add_object("parked", car, LinearMotion{{Vec3(2, 2.5, 0), 0.05, 0, 0}});
+  scene.add_object("left", car, straight_way(count, Vec3(-9, -1.5, 0), Vec3(6, -1, 0)));
+  scene.add_object("right", car, straight_way(count, Vec3(9, 0.8, 0), Vec3(-5, 1, 0)));
+  return scene;
+}
+
+const MemoryOrders three{2, 0, 1, 3};
+
 }  // namespace
+
+TEST_CASE("over three interactions, small steps end in the bits of large ones, from one thread or two") {
+  Scene scene = quiet_street(8);
+  scene.add_transmitter(device_at("lamp", Vec3(-6, 0, 4), 30.0));
+  scene.add_receiver(device_at("post", Vec3(5, -3, 1.2)));
+  scene.add_receiver(device_at("bench", Vec3(-4, 3, 0.8)));
+  SimulationSettings settings = memory_settings(three);
+  MemoryTrial large(scene, settings);
+  settings.threads = 2;
+  MemoryTrial small(scene, settings);
+  for (std::size_t step = 0; step <= 28; ++step) {
+    const FrameResult frame = small.advance_to(0.25 * static_cast<double>(step), step);
+    if (step % 4 != 0) continue;
+    const Frame same = scene.frame_at(0.25 * static_cast<double>(step), step);
+    CHECK((bits(scene, large.advance(same).links) == bits(scene, frame.links)));
+  }
+  CHECK(small.has_remembered());
+  CHECK(4 * small.tally().taken_over > small.tally().paths);
+  CHECK(small.tally().paths > 20 * small.tally().links);
+}
+
+TEST_CASE("over three interactions, swapped ends have the same paths while cars drive") {
+  Scene there = quiet_street(12), back = quiet_street(12);
+  const Vec3 lamp_m(-6, 0, 4), post_m(5, -3, 1.2);
+  there.add_transmitter(device_at("lamp", lamp_m));
+  there.add_receiver(device_at("post", post_m));
+  back.add_transmitter(device_at("post", post_m));
+  back.add_receiver(device_at("lamp", lamp_m));
+  MemoryTrial one(there, memory_settings(three)), other(back, memory_settings(three));
+  const auto touched = [](const FrameResult& frame, bool turned) {
+    std::multiset<std::vector<std::uint32_t>> all;
+    for (const PathContribution& path : frame.links.at(0).paths) {
+      std::vector<std::uint32_t> names;
+      for (const SequenceElement element : sequence_of(path.path)) names.push_back(element.code());
+      if (turned) std::ranges::reverse(names);
+      all.insert(names);
+    }
+    return all;
+  };
+  for (std::size_t index = 0; index < 12; ++index) {
+    const auto time_s = static_cast<double>(index);
+    CHECK((touched(one.advance_to(time_s, index), false) == touched(other.advance_to(time_s, index), true)));
+  }
+  CHECK(one.has_remembered());
+}
+
+TEST_CASE("a receiver steps aside and back while cars drive, and looks where they are now") {
+  Scene scene = quiet_street(30);
+  scene.add_transmitter(moving_device("sender", straight_way(30, Vec3(-6, 0, 4), Vec3(-5, 1, 4))));
+  scene.add_receiver(moving_device("post", way_of(30, [](double at) {
+                                     return Pose{Vec3(std::fmod(at, 6) == 3 ? 4.5 : 5, -3, 1.2), 0, 0, 0};
+                                   })));
+  MemoryTrial trial(scene, memory_settings(three));
+  for (std::size_t index = 0; index < 24; ++index) {
+    Frame frame = scene.frame_at(static_cast<double>(index), index);
+    // In every other frame the sender alone moves on.
+    frame.bodies = scene.frame_at(static_cast<double>(index / 2), index).bodies;
+    trial.advance(frame);
+  }
+  CHECK(trial.tally().different == 0);
+  CHECK(trial.tally().paths > 20 * trial.tally().frames);
+}
 
 TEST_CASE("memory changes no bit of drives through random streets, over three interactions") {
   Sums sums;

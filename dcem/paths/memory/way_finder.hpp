@@ -48,12 +48,6 @@ class WayFinder {
     return way(transmitter, receiver, sequence);
   }
 
-  /// The way over a sequence that carries a path.
-  StandingWay find_open(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence) {
-    aim(transmitter, receiver, sequence);
-    return way(transmitter, receiver, sequence);
-  }
-
   /// Something opaque that stands in a way over known points, counted from the transmitter.
   std::optional<Blocker> blocker(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
                                  const std::vector<Vec3>& points_m, SolverCounters& counters) const {

@@ -64,8 +64,8 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_moving(Fo
     const std::span<const SequenceElement> elements = proposed[number];
     sequence.assign(elements.begin(), elements.end());
     ++following.counters.sequences_proposed;
-    std::optional<PathContribution> found = following.solve(transmitter, sequence);
-    if (notes) note_standing(following, standing, transmitter, sequence, found);
+    std::optional<PathContribution> found =
+        notes ? note_standing(following, standing, transmitter, sequence) : following.solve(transmitter, sequence);
     if (found) paths.push_back(std::move(*found));
   }
   if (notes) standing.complete();

@@ -1,6 +1,7 @@
 #pragma once
 /// How a `BasicSimulator` finds the paths of a link whose ends stand, from what it has noted of it; included by
 /// basic_simulator.hpp.
+#include <optional>
 #include <utility>
 
 #include "dcem/paths/memory/standing_link.hpp"
@@ -9,17 +10,19 @@
 
 namespace dcem {
 
-/// Notes what may carry a path as long as the ends stand.
+/// What a sequence brings between ends that stand. Notes it where it may carry a path as long as they do; where the
+/// scenery stops it, it does not, and need not be solved.
 template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::note_standing(Following& following, StandingLink<PathContribution>& standing,
-                                                   std::size_t transmitter, const Sequence& sequence,
-                                                   const std::optional<PathContribution>& found) const {
-  const LinkEnd& from = *following.transmitters.link[transmitter];
-  if (found) {
-    standing.add({following.ways.find_open(from, following.end, sequence), found, following.solver.had_choice()});
-  } else if (auto way = following.ways.find(from, following.end, sequence, following.counters.solver)) {
-    standing.add({std::move(*way), std::nullopt});
-  }
+std::optional<PathContribution> BasicSimulator<Surface, Index>::note_standing(Following& following,
+                                                                              StandingLink<PathContribution>& standing,
+                                                                              std::size_t transmitter,
+                                                                              const Sequence& sequence) const {
+  std::optional<StandingWay> way = following.ways.find(*following.transmitters.link[transmitter], following.end,
+                                                       sequence, following.counters.solver);
+  if (!way) return std::nullopt;
+  std::optional<PathContribution> found = following.solve(transmitter, sequence);
+  standing.add({std::move(*way), found, following.solver.had_choice()});
+  return found;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -52,7 +55,7 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_standing(
   if (change_->any_moved() && following.search.max_interactions > 0) {
     const auto add = [&](const Sequence& sequence) {
       ++following.counters.sequences_proposed;
-      note_standing(following, standing, transmitter, sequence, following.solve(transmitter, sequence));
+      note_standing(following, standing, transmitter, sequence);
     };
     const JoinOrders orders = joined_orders(following.search);
     const KeptHalf& mast = following.transmitters.halves[transmitter];
