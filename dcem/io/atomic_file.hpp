@@ -30,6 +30,9 @@ class AtomicFile {
   /// Throws `OutputError` where the folder is missing or cannot be written, or where `target` exists and is not a
   /// regular file.
   explicit AtomicFile(std::filesystem::path target);
+  /// The same with the temporary file in another folder of the same file system; that of `target` may be missing until
+  /// `commit()`.
+  AtomicFile(std::filesystem::path target, const std::filesystem::path& aside);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;
   /// Removes the temporary file unless `commit()` succeeded.
@@ -41,6 +44,10 @@ class AtomicFile {
   /// Writes bytes and throws `OutputError` at once when the disk does not take them.
   void write(std::string_view bytes);
 
+  /// Gives back the file handle until the next `write()`, for programs that write to more files than they may have
+  /// open. Throws `OutputError` as `write()` does.
+  void rest();
+
   /// Flushes, checks for errors and closes; the file stays aside. A program that collects hundreds of files calls it
   /// to give back the file handle. Calling it twice is harmless.
   void close();
@@ -50,6 +57,9 @@ class AtomicFile {
   void commit();
 
   [[nodiscard]] const std::filesystem::path& target() const { return target_; }
+  /// Where it is until `commit()`, for libraries that write a file by its name. They write all of it, and nothing goes
+  /// to `stream()`.
+  [[nodiscard]] const std::filesystem::path& aside() const { return temporary_; }
 
  private:
   [[noreturn]] void fail(int error_number) const;
@@ -57,7 +67,7 @@ class AtomicFile {
   std::filesystem::path target_;
   std::filesystem::path temporary_;  // empty after commit() and in a moved-from object
   std::ofstream stream_;
-  bool closed_ = false;
+  bool resting_ = false, closed_ = false;
 };
 
 class FolderClaim;
@@ -76,15 +86,15 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();
 
-  /// Starts the file `name` in this folder. The reference stays valid as long as this object.
-  /// Throws `std::invalid_argument` for a name that is not a plain file name or that was opened before, and
-  /// `OutputError` as `AtomicFile` does.
+  /// Starts the file `name` in this folder, or in one below it: "qd/nodes.csv"; those appear with the files. The
+  /// reference stays valid as long as this object. Throws `std::invalid_argument` for a name that leads out of the
+  /// folder or that was opened before, and `OutputError` as `AtomicFile` does.
   AtomicFile& open(const std::string& name);
 
   /// The names of the files opened so far, in that order.
   [[nodiscard]] std::vector<std::string> names() const;
 
-  /// Closes and checks every file, removes those of a former result (plain names in this folder), then renames all in
+  /// Closes and checks every file, removes those of a former result (names as `open` takes them), then renames all in
   /// the order in which they were opened. Throws `OutputError`; should a rename fail in the midst, the files of this
   /// object that already had their final name are removed, so that no partial result stays.
   void commit(const std::vector<std::string>& former = {});
@@ -94,6 +104,7 @@ class OutputFolder {
  private:
   void create_folders();
   void remove_created_folders() noexcept;
+  void make_room(const std::filesystem::path& file);
   void rename_all();
 
   std::filesystem::path folder_;

@@ -253,11 +253,12 @@ TEST_CASE("a folder that cannot be written fails at once") {
   CHECK(base.names() == Names{"file"});
 }
 
-TEST_CASE("names of a folder's files are plain and differ") {
+TEST_CASE("names of a folder's files stay inside and differ") {
   const TemporaryFolder base;
   OutputFolder folder(base / "out");
   folder.open("a.csv");
-  for (const char* name : {"a.csv", "", ".", "..", "b/c.csv", "../c.csv", "/tmp/c.csv"}) {
+  for (const char* name :
+       {"a.csv", "", ".", "..", "../c.csv", "b/../c.csv", "b/", "./c.csv", "b//c.csv", "/etc/c.csv"}) {
     CHECK_THROWS_AS(folder.open(name), std::invalid_argument);
   }
 }
@@ -322,6 +323,55 @@ TEST_CASE("a commit takes away the former result, and nothing else") {
   folder.commit({"old.csv", "both.csv", "folder", "link", "absent", "../x"});
   CHECK(base.names() == Names{"both.csv", "folder", "link", "notes.txt"});
   CHECK(file_bytes(base / "both.csv") == "new");
+}
+
+TEST_CASE("files below the folder appear with the others, in folders that go with them") {
+  const TemporaryFolder base;
+  {
+    OutputFolder folder(base / "out/");  // as users write it
+    folder.open("a.csv").write("a");
+    folder.open("below/deep/b.csv").write("b");
+    folder.open("below/c.csv").write("c");
+    CHECK_FALSE(std::filesystem::exists(base / "out/below"));
+    CHECK(folder.names() == Names{"a.csv", "below/deep/b.csv", "below/c.csv"});
+    folder.commit();
+  }
+  CHECK(file_bytes(base / "out/below/deep/b.csv") == "b");
+  CHECK(file_bytes(base / "out/below/c.csv") == "c");
+  std::ofstream(base / "out/below/notes.txt") << "mine";
+  OutputFolder next(base / "out");
+  next.open("a.csv").write("new");
+  next.commit({"a.csv", "below/deep/b.csv", "below/c.csv"});
+  CHECK_FALSE(std::filesystem::exists(base / "out/below/deep"));
+  CHECK(file_bytes(base / "out/below/notes.txt") == "mine");
+  CHECK(file_bytes(base / "out/a.csv") == "new");
+}
+
+TEST_CASE("a folder below that is a link is neither followed nor replaced") {
+  const TemporaryFolder base;
+  std::filesystem::create_directories(base / "elsewhere");
+  std::ofstream(base / "elsewhere/b.csv") << "mine";
+  std::filesystem::create_directories(base / "out");
+  std::filesystem::create_directory_symlink(base / "elsewhere", base / "out/below");
+  OutputFolder folder(base / "out");
+  CHECK(contains(message_of([&] { folder.open("below/b.csv"); }), "/out/below: is not a folder; expected "));
+  folder.open("a.csv").write("a");
+  folder.commit({"below/b.csv"});
+  CHECK(file_bytes(base / "elsewhere/b.csv") == "mine");
+}
+
+TEST_CASE("a file that rests between its pieces has all of them") {
+  const TemporaryFolder base;
+  AtomicFile file(base / "a.csv");
+  file.rest();
+  for (const char* piece : {"one ", "two ", "three"}) {
+    file.write(piece);
+    file.rest();
+    file.rest();
+  }
+  CHECK_FALSE(std::filesystem::exists(base / "a.csv"));
+  file.commit();
+  CHECK(file_bytes(base / "a.csv") == "one two three");
 }
 
 }  // namespace test_atomic_file

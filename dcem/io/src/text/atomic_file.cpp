@@ -32,9 +32,11 @@ void check_target(const fs::path& target) {
 OutputError::OutputError(const fs::path& path, const std::string& problem, const std::string& expectation)
     : std::runtime_error(path.string() + ": " + problem + "; expected " + expectation) {}
 
-AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
+AtomicFile::AtomicFile(fs::path target) : AtomicFile(target, target.parent_path()) {}
+
+AtomicFile::AtomicFile(fs::path target, const fs::path& aside) : target_(std::move(target)) {
   check_target(target_);
-  const fs::path temporary = take_temporary_beside(target_);
+  const fs::path temporary = take_temporary_beside(aside / target_.filename());
   errno = 0;
   stream_.open(temporary, std::ios::binary | std::ios::trunc);
   if (!stream_) {
@@ -49,6 +51,7 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : target_(std::move(other.target_)),
       temporary_(std::exchange(other.temporary_, {})),
       stream_(std::move(other.stream_)),
+      resting_(other.resting_),
       closed_(std::exchange(other.closed_, true)) {}
 
 AtomicFile::~AtomicFile() {
@@ -65,11 +68,20 @@ void AtomicFile::fail(int error_number) const {
 
 void AtomicFile::write(std::string_view bytes) {
   errno = 0;
+  if (std::exchange(resting_, false)) stream_.open(temporary_, std::ios::binary | std::ios::app);
   if (!stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()))) fail(errno);
+}
+
+void AtomicFile::rest() {
+  if (closed_ || resting_) return;
+  close();
+  closed_ = false;
+  resting_ = true;
 }
 
 void AtomicFile::close() {
   if (closed_) return;
+  if (resting_) return void(closed_ = true);
   errno = 0;
   const bool written = static_cast<bool>(stream_.flush());
   const int error_number = errno;
@@ -108,20 +120,27 @@ OutputFolder::~OutputFolder() {
 }
 
 AtomicFile& OutputFolder::open(const std::string& name) {
-  if (!is_plain_name(name)) {
-    throw std::invalid_argument("OutputFolder: '" + name + "' is not a plain file name");
+  if (!is_name_inside(name)) {
+    throw std::invalid_argument("OutputFolder: '" + name + "' is not the name of a file in the folder");
   }
   const fs::path target = folder_ / name;
   const bool known =
       std::any_of(files_.begin(), files_.end(), [&](const auto& file) { return file->target() == target; });
   if (known) throw std::invalid_argument("OutputFolder: '" + name + "' was opened before");
-  files_.push_back(std::make_unique<AtomicFile>(target));
+  for (fs::path above = fs::path(name).parent_path(); !above.empty(); above = above.parent_path()) {
+    std::error_code ignored;
+    const fs::file_status status = fs::symlink_status(folder_ / above, ignored);
+    if (!fs::exists(status) || fs::is_directory(status)) continue;
+    throw OutputError(folder_ / above, "is not a folder", "a folder, or nothing");
+  }
+  files_.push_back(std::make_unique<AtomicFile>(target, folder_));
   return *files_.back();
 }
 
 std::vector<std::string> OutputFolder::names() const {
   std::vector<std::string> names;
-  for (const auto& file : files_) names.push_back(file->target().filename().string());
+  for (const auto& file : files_)
+    names.push_back(fs::path(file->target()).lexically_relative(folder_).generic_string());
   return names;
 }
 
@@ -137,13 +156,26 @@ void OutputFolder::commit(const std::vector<std::string>& former) {
   committed_ = true;
 }
 
+/// Creates the folders of a file below this one.
+void OutputFolder::make_room(const fs::path& file) {
+  if (file.parent_path() == folder_) return;
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error)
+    throw OutputError(file.parent_path(), "cannot be created (" + error.message() + ")", "a folder for results");
+}
+
 void OutputFolder::rename_all() {
   std::size_t renamed = 0;
   try {
-    for (; renamed < files_.size(); ++renamed) files_[renamed]->commit();
+    for (; renamed < files_.size(); ++renamed) {
+      make_room(files_[renamed]->target());
+      files_[renamed]->commit();
+    }
   } catch (...) {
-    std::error_code ignored;
-    for (std::size_t i = 0; i < renamed; ++i) fs::remove(files_[i]->target(), ignored);
+    std::vector<std::string> taken = names();
+    taken.resize(renamed);
+    remove_files(folder_, taken);
     throw;
   }
 }

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
@@ -69,6 +70,14 @@ void remove_unfinished_result(const fs::path& folder) {
   fs::remove(folder / note_name, ignored);
 }
 
+bool leads_through_link(const fs::path& folder, const fs::path& name) {
+  for (fs::path above = name.parent_path(); !above.empty(); above = above.parent_path()) {
+    std::error_code error;
+    if (!fs::is_directory(fs::symlink_status(folder / above, error))) return true;
+  }
+  return false;
+}
+
 void remove_temporaries(const fs::path& folder) {
   std::vector<fs::path> dead;
   std::error_code error;
@@ -129,14 +138,19 @@ void remove_leftovers(const fs::path& folder) noexcept {
 void remove_files(const fs::path& folder, const std::vector<std::string>& names) noexcept {
   for (const std::string& name : names) {
     std::error_code error;
-    if (is_plain_name(name) && fs::is_regular_file(fs::symlink_status(folder / name, error))) {
-      fs::remove(folder / name, error);
+    if (!is_name_inside(name) || leads_through_link(folder, name)) continue;
+    if (!fs::is_regular_file(fs::symlink_status(folder / name, error))) continue;
+    fs::remove(folder / name, error);
+    for (fs::path above = fs::path(name).parent_path(); !above.empty(); above = above.parent_path()) {
+      if (!fs::remove(folder / above, error) || error) break;  // a folder that is not empty stays
     }
   }
 }
 
-bool is_plain_name(const std::string& name) {
-  return !name.empty() && name != "." && name != ".." && fs::path(name).filename() == fs::path(name);
+bool is_name_inside(const std::string& name) {
+  const fs::path path(name);
+  if (path.empty() || path.is_absolute() || !path.has_filename() || path.lexically_normal() != path) return false;
+  return std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == "." || part == ".."; });
 }
 
 }  // namespace dcem::io

@@ -44,10 +44,11 @@ class CommitNote {
 /// of a result that was not whole. Errors are left to whoever writes there next.
 void remove_leftovers(const std::filesystem::path& folder) noexcept;
 
-/// Removes the files of these names that are in the folder, where they are plain names of regular files.
+/// Removes the files of these names that are in the folder or in one below it, where they are regular files, and
+/// folders below it that are empty then. Goes through no link.
 void remove_files(const std::filesystem::path& folder, const std::vector<std::string>& names) noexcept;
 
-/// Whether a text is the name of a file in a folder, and no way out of it.
-bool is_plain_name(const std::string& name);
+/// Whether a text is the name of a file in a folder or below it, and no way out: "links.csv", "qd/nodes.csv".
+bool is_name_inside(const std::string& name);
 
 }  // namespace dcem::io
