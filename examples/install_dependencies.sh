@@ -8,7 +8,7 @@ set -euo pipefail
 packages=(
   g++ make cmake python3
   libglm-dev libtinyobjloader-dev nlohmann-json3-dev libstb-dev libexpat1-dev zlib1g-dev libzip-dev libcli11-dev
-  doctest-dev libjs-three libcairo2-dev fonts-dejavu-core
+  doctest-dev libjs-three libcairo2-dev fonts-dejavu-core libmatio-dev libhdf5-dev libgeographiclib-dev
   "$@"
 )
 

@@ -10,6 +10,7 @@
 #include "dcem/core/instruction_set.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/optional_libraries.hpp"
 #include "dcem/io/picture_format.hpp"
 #include "options.hpp"
 #include "stop_signal.hpp"
@@ -36,7 +37,8 @@ struct Options {
 
 std::string version_text() {
   return "dcem " DCEM_VERSION "\nrays are traced with: " + std::string(name_of(instruction_set())) +
-         "\npictures are drawn with: " + io::drawing_library();
+         "\npictures are drawn with: " + io::drawing_library() +
+         "\nfiles for other programs with: " + io::exchange_libraries();
 }
 
 // Commands of later versions are known by name, so that the answer is not "unknown".
@@ -49,7 +51,7 @@ void add_absent_command(CLI::App& app, const std::string& name, const std::strin
 
 void add_commands(CLI::App& app, Options& options) {
   app.set_version_flag("--version", version_text,
-                       "Print the version, which instructions trace rays, and what draws pictures");
+                       "Print the version, which instructions trace rays, and which libraries draw and write");
   app.require_subcommand(1);
   CLI::App* run = app.add_subcommand("run", "Every frame of a scenario: paths, received power, delay profiles");
   add_run_options(*run, options.scenario);
