@@ -1,11 +1,12 @@
 #pragma once
 /// Results of a run, frame by frame: `paths.jsonl` (or `.jsonl.gz`), `links.csv`, `pdp.csv`, `doppler.csv`, `cfr.npz`,
-/// `paths.npz` and pictures of links.
+/// `paths.npz`, pictures of links and files for other programs.
 ///
 /// Numbers have the fewest digits that read back as the same double. What is not defined is an empty field in CSV and
 /// `null` in JSON, never NaN or infinity. The same results give the same bytes. docs/results.md names every column.
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,7 @@ struct ResultFacts {
   int exact_interactions = 0;   ///< up to which all paths are found, where discovery is sampled beyond them
   double memory_limit_bytes = std::numeric_limits<double>::infinity();  ///< of the arrays of a file, beside their 16 GB
   bool all_links = true;  ///< every transmitter with every receiver; otherwise a frame says which links there are
+  std::optional<GeoAnchor> geo{};                                       ///< where on the Earth the scene lies
 };
 
 /// Whether more is asked for than `links.csv`, whose lines say all that there is to write of a frame.
@@ -52,6 +54,7 @@ bool needs_paths(const OutputSettings& output);
 std::size_t plotted_links(const Scene& scene, std::span<const Device> receivers);
 
 class CsvLine;
+class FrameExport;
 class GzipEncoder;
 class PathCollector;
 class PathLines;
@@ -100,12 +103,14 @@ class ResultWriter {
 
   OutputSettings output_;
   ResultFacts facts_;
+  const Scene& scene_;
   Sheet paths_, links_, profile_, doppler_;
   std::unique_ptr<PathLines> lines_;
   // Absent: not asked for.
   std::unique_ptr<ResponseCollector> responses_;
   std::unique_ptr<PathCollector> arrays_;
   std::unique_ptr<PlotCollector> plots_;
+  std::vector<std::unique_ptr<FrameExport>> exports_;
   // Names as they stand in the files, prepared once.
   std::vector<std::string> csv_transmitters_, csv_receivers_;
   std::vector<double> power_dbm_;  // of each transmitter

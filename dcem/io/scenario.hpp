@@ -8,6 +8,8 @@
 
 #include "dcem/channel/power_delay_profile.hpp"
 #include "dcem/channel/thermal_noise.hpp"
+#include "dcem/io/exchange_settings.hpp"
+#include "dcem/io/geo_anchor.hpp"
 #include "dcem/io/heat_map.hpp"
 #include "dcem/io/picture_format.hpp"
 #include "dcem/io/traffic.hpp"
@@ -35,6 +37,7 @@ struct MapOutputs {
   bool npz = true;
   bool asc = true;
   PictureFormats pictures{};  ///< of maps and of the distribution over the points
+  bool kml = false;           ///< of grids, with a picture of their cells beside it
 };
 
 /// How maps are drawn.
@@ -78,6 +81,7 @@ struct OutputSettings {
   ViewerSettings viewer{};
   std::optional<std::size_t> paths_top{};  ///< of each link so many are listed, the strongest; absent: all
   bool paths_gzip = false;
+  ExchangeSettings exchange{};  ///< files for other programs
 };
 
 /// What the command line may override. Absent: the scenario file decides.
@@ -102,6 +106,7 @@ struct Scenario {
   SimulationSettings settings;
   TimeSettings time;
   OutputSettings output;
+  std::optional<GeoAnchor> geo{};        ///< absent: a plane without a place on the Earth
   std::optional<NoiseSettings> noise{};  ///< of the receivers; absent: maps know no noise
   std::vector<ReceiverGrid> grids;       ///< not yet among the scene's receivers
   std::vector<PointList> point_lists;    ///< which of the scene's receivers are points of a list

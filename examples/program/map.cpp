@@ -231,8 +231,11 @@ void add_format(io::PictureFormat format, std::vector<io::PictureFormat>& format
 void choose_outputs(const std::string& list, io::OutputSettings& output) {
   output.map = {false, false, false, std::vector<io::PictureFormat>{}};
   output.html = false;
-  const std::vector<std::pair<std::string, bool*>> kinds{
-      {"csv", &output.map.csv}, {"npz", &output.map.npz}, {"asc", &output.map.asc}, {"html", &output.html}};
+  const std::vector<std::pair<std::string, bool*>> kinds{{"csv", &output.map.csv},
+                                                         {"npz", &output.map.npz},
+                                                         {"asc", &output.map.asc},
+                                                         {"html", &output.html},
+                                                         {"kml", &output.map.kml}};
   for (const std::string& word : words_of(list)) {
     const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == word; });
     if (kind != kinds.end()) {
@@ -240,7 +243,8 @@ void choose_outputs(const std::string& list, io::OutputSettings& output) {
     } else if (const auto format = io::picture_format(word)) {
       add_format(*format, *output.map.pictures);
     } else {
-      throw UsageError("--output: '" + word + "' is no file of a map", "some of csv, png, npz, asc, svg, pdf and html");
+      throw UsageError("--output: '" + word + "' is no file of a map",
+                       "some of csv, png, npz, asc, svg, pdf, kml and html");
     }
   }
   if (output.html && !io::viewer_is_built_in()) {
@@ -259,7 +263,7 @@ void require_files(const MapOrders& orders, const io::OutputSettings& output) {
   const io::MapOutputs& map = output.map;
   const bool has_charts = io::can_draw() && !io::formats_or(map.pictures, io::PictureFormat::svg).empty();
   if (!orders.grids.empty() || map.csv || map.npz || has_charts || output.html) return;
-  throw UsageError("--output has no effect: asc is of grids, and the scenario has lists of points alone",
+  throw UsageError("--output has no effect: asc and kml are of grids, and the scenario has lists of points alone",
                    "some of csv, npz, png, svg, pdf and html");
 }
 
@@ -286,6 +290,9 @@ void warn_of_plain_pictures(Job& job) {
 void map_scenario(const ScenarioOptions& options) {
   Job job = prepare_job(options);
   if (options.map_output) choose_outputs(*options.map_output, job.scenario.output);
+  if (job.scenario.output.map.kml && !job.scenario.geo) {
+    throw UsageError("--output kml: the scene has no place on the Earth", "the block geo in the scenario");
+  }
   const std::vector<ReceiverList> lists = io::take_point_lists(job.scenario);
   const MapOrders orders{job.scenario.grids, lists};
   check_orders(job.scenario.scene, orders, options);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "dcem/io/map_distribution.hpp"
+#include "dcem/io/map_overlay.hpp"
 #include "dcem/io/map_writer.hpp"
 
 namespace dcem::program {
@@ -50,6 +51,7 @@ MapFiles::MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& si
       time_s_(number_ ? std::optional(frame.time_s) : std::nullopt),
       frequency_hz_(simulator.settings().frequency_hz),
       has_noise_(job.scenario.noise.has_value()),
+      geo_(job.scenario.geo),
       notes_(std::move(notes)) {}
 
 void MapFiles::write(const std::vector<RadioMap>& maps, const CombinedMap& combined) {
@@ -62,7 +64,7 @@ void MapFiles::write(const std::vector<RadioMap>& maps, const CombinedMap& combi
 
 /// Pictures are of grids alone, as rasters are.
 bool MapFiles::draws(const MapPlaces& places) const {
-  return places.is_grid() && !io::formats_or(wanted_.pictures, io::PictureFormat::png).empty();
+  return places.is_grid() && (wanted_.kml || !io::formats_or(wanted_.pictures, io::PictureFormat::png).empty());
 }
 
 /// Nothing where no picture shows it.
@@ -101,6 +103,10 @@ void MapFiles::draw(const std::string& name, io::HeatMap picture) {
   }
   put_pictures(name, io::PictureFormat::png,
                [&](io::AtomicFile& file, io::PictureFormat format) { io::write_heat_map(picture, file, format); });
+  if (!wanted_.kml) return;
+  put(name + ".kml", [&](io::AtomicFile& kml) {
+    put(name + "_cells.png", [&](io::AtomicFile& cells) { io::write_ground_overlay(kml, cells, picture, *geo_); });
+  });
 }
 
 void MapFiles::write_one(const RadioMap& map) {

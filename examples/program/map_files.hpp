@@ -53,6 +53,7 @@ class MapFiles {
   const std::optional<double> time_s_;
   const double frequency_hz_;
   const bool has_noise_;
+  const std::optional<io::GeoAnchor> geo_;
   const std::vector<std::string> notes_;
   io::Relief relief_;  ///< of the grid whose maps are written
 };

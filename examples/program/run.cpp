@@ -28,7 +28,8 @@ io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Sim
                               job.frames.first,
                               exactly_searched_interactions(simulator.settings().propagation, simulator.plan()),
                               options.memory_limit_bytes.value_or(std::numeric_limits<double>::infinity()),
-                              takes_all_links(simulator.scene(), simulator.settings().links)};
+                              takes_all_links(simulator.scene(), simulator.settings().links),
+                              job.scenario.geo};
   try {
     return {folder, simulator.scene(), simulator.scene().receivers(), facts, job.scenario.output};
   } catch (const std::invalid_argument& error) {

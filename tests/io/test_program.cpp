@@ -387,7 +387,7 @@ TEST_CASE("bad usage and bad input end with one line, exit code 2 and no output"
   check_refused(folder, "run street.json --threads none", "--threads");
   check_refused(folder, "run street.json --cache exact --discovery sampled", "cache exact");
   check_refused(folder, "run street.json --discovery guess", "--discovery");
-  check_refused(folder, "run street.json --output gltf", "not in this version");
+  check_refused(folder, "run street.json --output kml", "no place on the Earth");
   check_refused(folder, "run street.json --rays 0", "rays");
   check_refused(folder, "run street.json -o full/result", "full");
   check_refused(folder, "map street.json", "grid");

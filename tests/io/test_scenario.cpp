@@ -373,8 +373,8 @@ TEST_CASE("the command line overrides the file and is checked like it") {
   CHECK(files.error(only(&io::ScenarioOverrides::cache, "all")).starts_with("command line: --cache: found '\"all\"'"));
   CHECK(files.error(only(&io::ScenarioOverrides::discovery, "best"))
             .starts_with("command line: --discovery: found '\"best\"'"));
-  CHECK(files.error(only(&io::ScenarioOverrides::output, "links,kml"))
-            .starts_with("command line: --output.kml: not in this version"));
+  CHECK(files.error(only(&io::ScenarioOverrides::output, "links,kmz"))
+            .starts_with("command line: --output.kmz: unknown key"));
   CHECK(
       files.error(only(&io::ScenarioOverrides::output, "links,")).starts_with("command line: --output.: unknown key"));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "dcem/io/src/exchange/mat_writer.hpp"
 #include "dcem/io/src/results/array_parts.hpp"
 #include "dcem/io/src/results/link_entries.hpp"
 
@@ -34,8 +35,9 @@ std::complex<double> amplitude_of(const PathContribution& path) {
 }  // namespace
 
 PathCollector::PathCollector(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers,
-                             const ResultFacts& facts)
-    : file_(folder.open("paths.npz")),
+                             const ResultFacts& facts, const OutputSettings& output)
+    : npz_(output.npz ? &folder.open("paths.npz") : nullptr),
+      mat_(output.exchange.mat ? &folder.open("paths.mat") : nullptr),
       facts_(facts),
       transmitters_(ids_of(scene.transmitters())),
       receivers_(ids_of(receivers)) {
@@ -47,8 +49,16 @@ void PathCollector::check_memory() const {
                        static_cast<double>(receivers_.size()) * static_cast<double>(transmitters_.size());
   const double bytes = links * static_cast<double>(longest_list_) *
                        (bytes_per_path + bytes_per_interaction * static_cast<double>(most_interactions_));
-  require_array_memory("output.npz: the paths of this run", bytes, " as arrays", facts_.memory_limit_bytes,
-                       "fewer frames, receivers or paths");
+  const std::string remedy = "fewer frames, receivers or paths";
+  require_array_memory(std::string(npz_ != nullptr ? "output.npz" : "output.mat") + ": the paths of this run", bytes,
+                       " as arrays", facts_.memory_limit_bytes, remedy);
+  if (mat_ == nullptr) return;
+  const double largest = std::max(64.0, 24.0 * static_cast<double>(most_interactions_));  // transfer, or vertices
+  const double array_bytes = links * static_cast<double>(longest_list_) * largest;
+  if (array_bytes <= most_mat_array_bytes) return;
+  throw std::invalid_argument("output.mat: one array of this run's paths needs " + memory_text(array_bytes) +
+                              "; expected at most " + memory_text(most_mat_array_bytes) +
+                              ", which is all that a MAT file can hold (" + remedy + ", or output.npz)");
 }
 
 void PathCollector::add(const FrameResult& frame) {
@@ -91,23 +101,25 @@ NpzWriter::Shape PathCollector::shape(bool by_interaction, std::initializer_list
   return shape;
 }
 
-void PathCollector::add_fields(NpzWriter& npz) const {
+template <typename Archive>
+void PathCollector::add_fields(Archive& archive) const {
   using Complex64 = std::complex<double>;
-  npz.add("valid", shape(false), dense<bool>(false, [](const Row&) { return true; }));
+  archive.add("valid", shape(false), dense<bool>(false, [](const Row&) { return true; }));
   const auto amplitudes = dense<Complex64>(0.0, [](const Row& row) { return row.amplitude; });
-  npz.add("a", shape(false), std::span<const Complex64>(amplitudes));
+  archive.add("a", shape(false), std::span<const Complex64>(amplitudes));
   std::vector<Complex64> transfers(links() * longest_list_ * 4);
   for (const Row& row : rows_) {
     const std::size_t first = (row.link * longest_list_ + row.slot) * 4;
     for (std::size_t entry = 0; entry < 4; ++entry) transfers[first + entry] = row.transfer(entry / 2, entry % 2);
   }
-  npz.add("transfer", shape(false, {2, 2}), std::span<const Complex64>(transfers));
+  archive.add("transfer", shape(false, {2, 2}), std::span<const Complex64>(transfers));
 }
 
-void PathCollector::add_angles(NpzWriter& npz) const {
+template <typename Archive>
+void PathCollector::add_angles(Archive& archive) const {
   const auto add = [&](const char* name, double filler, auto&& value) {
     const std::vector<double> values = dense<double>(filler, value);
-    npz.add(name, shape(false), std::span<const double>(values));
+    archive.add(name, shape(false), std::span<const double>(values));
   };
   add("tau", -1.0, [](const Row& row) { return row.delay_s; });
   add("theta_t", 0.0, [](const Row& row) { return row.departure.zenith_rad; });
@@ -117,7 +129,8 @@ void PathCollector::add_angles(NpzWriter& npz) const {
   add("doppler", 0.0, [](const Row& row) { return row.doppler_hz; });
 }
 
-void PathCollector::add_interactions(NpzWriter& npz) const {
+template <typename Archive>
+void PathCollector::add_interactions(Archive& archive) const {
   const std::size_t places = links() * longest_list_;
   std::vector<std::uint32_t> codes(most_interactions_ * places, 0);
   std::vector<double> vertices(codes.size() * 3, 0.0);
@@ -129,20 +142,32 @@ void PathCollector::add_interactions(NpzWriter& npz) const {
       for (int axis = 0; axis < 3; ++axis) vertices[place * 3 + static_cast<std::size_t>(axis)] = touch.point_m[axis];
     }
   }
-  npz.add("interactions", shape(true), std::span<const std::uint32_t>(codes));
-  npz.add("vertices", shape(true, {3}), std::span<const double>(vertices));
+  archive.add("interactions", shape(true), std::span<const std::uint32_t>(codes));
+  archive.add("vertices", shape(true, {3}), std::span<const double>(vertices));
+}
+
+template <typename Archive>
+void PathCollector::add_all(Archive& archive) const {
+  add_fields(archive);
+  add_angles(archive);
+  add_interactions(archive);
+  archive.add("time_s", {times_s_.size()}, std::span<const double>(times_s_));
+  archive.add("tx_id", {transmitters_.size()}, std::span<const std::string>(transmitters_));
+  archive.add("rx_id", {receivers_.size()}, std::span<const std::string>(receivers_));
+  archive.add("frequency_hz", {}, std::span<const double>(&facts_.frequency_hz, 1));
 }
 
 void PathCollector::write() {
-  NpzWriter npz(NpzCompression::deflate);  // lists are padded to the longest one
-  add_fields(npz);
-  add_angles(npz);
-  add_interactions(npz);
-  npz.add("time_s", {times_s_.size()}, std::span<const double>(times_s_));
-  npz.add("tx_id", {transmitters_.size()}, std::span<const std::string>(transmitters_));
-  npz.add("rx_id", {receivers_.size()}, std::span<const std::string>(receivers_));
-  npz.add("frequency_hz", {}, std::span<const double>(&facts_.frequency_hz, 1));
-  npz.write(file_);
+  if (npz_ != nullptr) {
+    NpzWriter npz(NpzCompression::deflate);  // lists are padded to the longest one
+    add_all(npz);
+    npz.write(*npz_);
+  }
+  if (mat_ != nullptr) {
+    MatWriter mat(*mat_);
+    add_all(mat);
+    mat.finish();
+  }
 }
 
 }  // namespace dcem::io

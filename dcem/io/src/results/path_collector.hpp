@@ -1,5 +1,5 @@
 #pragma once
-/// The paths of a run as dense arrays, for `paths.npz`. Private to dcem::io.
+/// The paths of a run as dense arrays, for `paths.npz` and `paths.mat`. Private to dcem::io.
 #include <complex>
 #include <cstdint>
 #include <span>
@@ -18,10 +18,11 @@ namespace dcem::io {
 class PathCollector {
  public:
   /// Throws std::invalid_argument as `add` does.
-  PathCollector(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts);
+  PathCollector(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers, const ResultFacts& facts,
+                const OutputSettings& output);
 
   /// Throws std::invalid_argument, with the memory needed, as soon as the arrays of `ResultFacts::frames` frames with
-  /// lists as long as those seen so far would need more than 16 GB.
+  /// lists as long as those seen so far would need more than 16 GB, or one of them more than a MAT file can hold.
   void add(const FrameResult& frame);
   void write();
 
@@ -48,11 +49,18 @@ class PathCollector {
   template <typename Value, typename Pick>
   std::vector<Value> dense(Value filler, Pick&& value) const;
   NpzWriter::Shape shape(bool by_interaction, std::initializer_list<std::size_t> more = {}) const;
-  void add_fields(NpzWriter& npz) const;
-  void add_angles(NpzWriter& npz) const;
-  void add_interactions(NpzWriter& npz) const;
+  // Into either archive: both have the same functions.
+  template <typename Archive>
+  void add_all(Archive& archive) const;
+  template <typename Archive>
+  void add_fields(Archive& archive) const;
+  template <typename Archive>
+  void add_angles(Archive& archive) const;
+  template <typename Archive>
+  void add_interactions(Archive& archive) const;
 
-  AtomicFile& file_;
+  AtomicFile* npz_ = nullptr;  // absent: not asked for
+  AtomicFile* mat_ = nullptr;
   ResultFacts facts_;
   std::vector<std::string> transmitters_, receivers_;
   std::vector<double> times_s_;

@@ -4,6 +4,7 @@
 #include "dcem/channel/coherence.hpp"
 #include "dcem/channel/doppler_spectrum.hpp"
 #include "dcem/core/units.hpp"
+#include "dcem/io/src/exchange/frame_export.hpp"
 #include "dcem/io/src/pictures/plot_collector.hpp"
 #include "dcem/io/src/results/path_collector.hpp"
 #include "dcem/io/src/results/path_lines.hpp"
@@ -22,7 +23,8 @@ AtomicFile* open_sheet(OutputFolder& folder, bool wanted, const char* name) {
 }  // namespace
 
 bool needs_paths(const OutputSettings& output) {
-  return output.paths || output.pdp || output.doppler || output.cfr || output.npz || output.plots || output.html;
+  return output.paths || output.pdp || output.doppler || output.cfr || output.npz || output.exchange.mat ||
+         output.plots || output.html || wants_exports(output);
 }
 
 ResultWriter::Sheet::Sheet() = default;
@@ -37,7 +39,10 @@ void ResultWriter::Sheet::flush(std::size_t limit) {
 
 ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers,
                            const ResultFacts& facts, const OutputSettings& output)
-    : output_(output), facts_(facts), lines_(std::make_unique<PathLines>(scene, receivers, facts, output.paths_top)) {
+    : output_(output),
+      facts_(facts),
+      scene_(scene),
+      lines_(std::make_unique<PathLines>(scene, receivers, facts, output.paths_top)) {
   paths_.file = open_sheet(folder, output.paths, output.paths_gzip ? "paths.jsonl.gz" : "paths.jsonl");
   if (output.paths && output.paths_gzip) paths_.gzip = std::make_unique<GzipEncoder>(*paths_.file);
   links_.file = open_sheet(folder, output.links, "links.csv");
@@ -47,8 +52,10 @@ ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<c
   profile_.text = std::string(facts.diffuse ? diffuse_pdp_csv_header : pdp_csv_header) + '\n';
   doppler_.text = std::string(doppler_csv_header) + '\n';
   if (output.cfr) responses_ = std::make_unique<ResponseCollector>(folder, scene, receivers, facts, output);
-  if (output.npz) arrays_ = std::make_unique<PathCollector>(folder, scene, receivers, facts);
+  if (output.npz || output.exchange.mat)
+    arrays_ = std::make_unique<PathCollector>(folder, scene, receivers, facts, output);
   if (output.plots) plots_ = std::make_unique<PlotCollector>(folder, scene, receivers, facts, output);
+  exports_ = make_exports({folder, scene, receivers, facts, output});
   for (const Device& device : scene.transmitters()) {
     csv_transmitters_.push_back(csv_field(device.id));
     power_dbm_.push_back(device.power_dbm);
@@ -73,6 +80,9 @@ void ResultWriter::write(const FrameResult& frame) {
   if (responses_) responses_->add(frame);
   if (arrays_) arrays_->add(frame);
   if (plots_) plots_->add(frame);
+  if (exports_.empty()) return;
+  const Frame instant = frame_now(scene_, frame);
+  for (const auto& file : exports_) file->add(frame, instant);
 }
 
 std::string ResultWriter::link_lines(const FrameResult& frame) const {
@@ -92,6 +102,7 @@ void ResultWriter::finish() {
   if (responses_) responses_->write();
   if (arrays_) arrays_->write();
   if (plots_) plots_->write();
+  for (const auto& file : exports_) file->finish();
 }
 
 CsvLine ResultWriter::begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const {

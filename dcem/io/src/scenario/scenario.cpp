@@ -89,6 +89,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   result.settings.tree = read_tree(root);
   result.settings.propagation = read_propagation(root, command_line);
   result.time = read_time(root);
+  result.geo = read_geo(root);
   result.output = read_output(root, command_line);
   result.noise = read_noise(root);
   read_mobility(root, file.parent_path(), result);

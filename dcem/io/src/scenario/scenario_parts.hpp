@@ -37,6 +37,12 @@ SurfaceSettings read_surface_settings(const JsonObject& scene);
 /// `command_line` holds what overrides the file: `--discovery`, `--rays`, …
 PropagationSettings read_propagation(const JsonObject& scenario, const JsonObject& command_line);
 OutputSettings read_output(const JsonObject& scenario, const JsonObject& command_line);
+/// The keys of `output` for files that other programs read.
+ExchangeSettings read_exchange(const JsonObject& object, bool has_place);
+/// Refuses what needs a place on the Earth.
+[[noreturn]] void require_place(const JsonValue& place);
+/// The block `geo`, if there is one.
+std::optional<GeoAnchor> read_geo(const JsonObject& scenario);
 /// The block `noise`, if there is one.
 std::optional<NoiseSettings> read_noise(const JsonObject& scenario);
 

@@ -141,7 +141,8 @@ void read_plots(const JsonValue& value, OutputSettings& output) {
 MapOutputs read_map_files(const JsonValue& list) {
   std::set<std::string> wanted;
   for (const JsonValue& ending : list.elements()) wanted.insert(ending.word());
-  return {wanted.contains("csv"), wanted.contains("npz"), wanted.contains("asc"), read_formats(list)};
+  return {wanted.contains("csv"), wanted.contains("npz"), wanted.contains("asc"), read_formats(list),
+          wanted.contains("kml")};
 }
 
 ValueRange read_range(const JsonValue& value) {
@@ -175,16 +176,8 @@ void read_html(const JsonValue& value, OutputSettings& output) {
   output.viewer.max_frames = object.count("max_frames", output.viewer.max_frames);
 }
 
-/// Refuses the files that this version does not write.
-void refuse_later_outputs(const JsonObject& output) {
-  for (const keys::KeyRule& key : keys::output_block().keys) {
-    if (keys::is_later(key)) output.boolean(key.name, false);
-  }
-}
-
-OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) {
+OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said, bool has_place) {
   const JsonObject object = value.object();
-  refuse_later_outputs(object);
   OutputSettings output;
   if (const auto paths = object.find("paths")) read_paths(*paths, output);
   output.links = object.boolean("links", links_unless_said);
@@ -193,8 +186,12 @@ OutputSettings read_output_keys(const JsonValue& value, bool links_unless_said) 
   if (const auto doppler = object.find("doppler")) read_doppler(*doppler, output);
   output.npz = object.boolean("npz", false);
   if (const auto plots = object.find("plots")) read_plots(*plots, output);
-  if (const auto map = object.find("map")) read_map(*map, output);
+  if (const auto map = object.find("map")) {
+    read_map(*map, output);
+    if (output.map.kml && !has_place) require_place(*map);
+  }
   if (const auto html = object.find("html")) read_html(*html, output);
+  output.exchange = read_exchange(object, has_place);
   return output;
 }
 
@@ -284,9 +281,10 @@ PropagationSettings read_propagation(const JsonObject& scenario, const JsonObjec
 }
 
 OutputSettings read_output(const JsonObject& scenario, const JsonObject& command_line) {
-  if (const auto value = command_line.find("--output")) return read_output_keys(*value, false);
+  const bool has_place = scenario.has("geo");
+  if (const auto value = command_line.find("--output")) return read_output_keys(*value, false, has_place);
   const auto value = scenario.find("output");
-  return value ? read_output_keys(*value, true) : OutputSettings{};
+  return value ? read_output_keys(*value, true, has_place) : OutputSettings{};
 }
 
 std::optional<NoiseSettings> read_noise(const JsonObject& scenario) {

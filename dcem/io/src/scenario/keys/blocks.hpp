@@ -16,6 +16,9 @@ const BlockRule& receiver_block();
 const BlockRule& antenna_block();
 const BlockRule& propagation_block();
 const BlockRule& output_block();
+/// The keys of `output` for files that other programs read.
+std::vector<KeyRule> exchange_keys();
+const BlockRule& geo_block();
 const BlockRule& material_block();
 
 }  // namespace dcem::io::keys

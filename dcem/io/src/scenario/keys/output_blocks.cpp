@@ -10,7 +10,7 @@ const BlockRule& paths_block() {
   static const OutputSettings standards{};
   static const BlockRule rule{
       "output.paths",
-      "The list of paths, paths.jsonl.",
+      "The list of paths, paths.jsonl; a path takes some 800 bytes there.",
       {{"top", {whole_number(1, 999'999'999)}, told("all"), "Of each link the strongest paths alone, so many.", "10"},
        {"gzip", {boolean()}, standard(standards.paths_gzip), "Compressed, as paths.jsonl.gz.", "true"}}};
   return rule;
@@ -78,7 +78,7 @@ const BlockRule& plots_block() {
 }
 
 ValueRule map_files() {
-  return list(word({"csv", "png", "npz", "asc", "svg", "pdf"}), 1, "ending");
+  return list(word({"csv", "png", "npz", "asc", "svg", "pdf", "kml"}), 1, "ending");
 }
 
 const BlockRule& map_block() {
@@ -89,7 +89,7 @@ const BlockRule& map_block() {
       {{"files",
         {map_files()},
         told("csv, npz and asc, maps as png, the distribution as svg"),
-        "Which files are written; png, svg and pdf are of every picture.",
+        "Which files are written; png, svg and pdf are of every picture, kml lays grids over the Earth and needs geo.",
         R"(["csv", "pdf"])"},
        {"range_dbm",
         {fixed_list(2, number({-1000.0, 1000.0}, "dBm"), "two numbers [lowest, highest]")},
@@ -124,14 +124,6 @@ const BlockRule& html_block() {
   return rule;
 }
 
-KeyRule yes_or_no(const std::string& name, bool absent, const std::string& meaning) {
-  return {name, {boolean()}, standard(absent), meaning, "true"};
-}
-
-KeyRule yes_or_settings(const std::string& name, const BlockRule& settings, const std::string& meaning) {
-  return {name, {boolean(), block(settings)}, standard(false), meaning, "true"};
-}
-
 }  // namespace
 
 const BlockRule& output_block() {
@@ -144,7 +136,8 @@ const BlockRule& output_block() {
                       yes_or_settings("pdp", pdp_block(), "The power delay profile, pdp.csv."),
                       yes_or_settings("cfr", cfr_block(), "The frequency response, cfr.npz."),
                       yes_or_settings("doppler", doppler_block(), "The Doppler spectrum, doppler.csv."),
-                      yes_or_no("npz", standards.npz, "All paths as arrays for NumPy, paths.npz."),
+                      yes_or_no("npz", standards.npz,
+                                "All paths as arrays for NumPy, paths.npz, several times smaller than as lines."),
                       yes_or_settings("plots", plots_block(), "Pictures of links over time, SVG, PNG and PDF."),
                       {"map",
                        {only(true), map_files(), block(map_block())},
@@ -152,9 +145,7 @@ const BlockRule& output_block() {
                        "Which files dcem map writes: the usual ones, or those of a list; or how.",
                        R"(["csv", "png"])"},
                       yes_or_settings("html", html_block(), "The viewer, viewer.html.")}};
-    for (const char* name : {"mat", "qd", "p2m", "deepmimo", "kml", "gltf"}) {
-      output.keys.push_back({name, {only(false), later()}, standard(false), "Another format of results.", "false"});
-    }
+    for (KeyRule& key : exchange_keys()) output.keys.push_back(std::move(key));
     return output;
   }();
   return rule;

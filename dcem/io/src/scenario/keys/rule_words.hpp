@@ -136,4 +136,12 @@ Absence standard(const Value& value) {
     return {Absence::Kind::value, number_text(value)};
 }
 
+/// Of files: whether they are written, and, where there are any, with which settings.
+inline KeyRule yes_or_no(const std::string& name, bool absent, const std::string& meaning) {
+  return {name, {boolean()}, standard(absent), meaning, "true"};
+}
+inline KeyRule yes_or_settings(const std::string& name, const BlockRule& settings, const std::string& meaning) {
+  return {name, {boolean(), block(settings)}, standard(false), meaning, "true"};
+}
+
 }  // namespace dcem::io::keys

@@ -213,7 +213,11 @@ std::vector<KeyRule> keys_of_the_radio() {
       {"output", {block(output_block())}, told("links"), "Which files are written.", ""},
       {"noise", {block(noise_block())}, told("no noise"), "Noise of the receivers.", ""},
       {"tree", {block(tree_block())}, told("the defaults of its keys"), "How the tree is built and kept.", ""},
-      {"geo", {later()}, told("a plane without a place on the Earth"), "Where on the Earth the scene lies.", "{}"},
+      {"geo",
+       {block(geo_block())},
+       told("a plane without a place on the Earth"),
+       "Where on the Earth the scene lies.",
+       ""},
   };
 }
 
