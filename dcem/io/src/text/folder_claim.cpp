@@ -149,7 +149,8 @@ void remove_files(const fs::path& folder, const std::vector<std::string>& names)
 
 bool is_name_inside(const std::string& name) {
   const fs::path path(name);
-  if (path.empty() || path.is_absolute() || !path.has_filename() || path.lexically_normal() != path) return false;
+  if (path.empty() || path.is_absolute() || !path.has_filename() || path.lexically_normal().string() != name)
+    return false;
   return std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == "." || part == ".."; });
 }
 
