@@ -35,7 +35,8 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/dcemConfigVersion.cmake"
 install(FILES "${PROJECT_BINARY_DIR}/dcemConfig.cmake" "${PROJECT_BINARY_DIR}/dcemConfigVersion.cmake"
         DESTINATION "${package_dir}")
 if(DCEM_BUILD_IO)
-  install(FILES cmake/FindLibZip.cmake cmake/FindCairo.cmake cmake/FindMatio.cmake cmake/FindGeographicLib.cmake cmake/FindLibHdf5.cmake DESTINATION "${package_dir}")
+  install(FILES cmake/FindLibZip.cmake cmake/FindCairo.cmake cmake/FindMatio.cmake cmake/FindGeographicLib.cmake
+                cmake/FindLibHdf5.cmake cmake/FindGeos.cmake DESTINATION "${package_dir}")
 endif()
 install(FILES LICENSE docs/scenario_reference.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES data/dcem-scenario-1.schema.json DESTINATION "${CMAKE_INSTALL_DATADIR}/dcem")

@@ -208,6 +208,60 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
       ->type_name("NAME");
 }
 
+namespace {
+
+void add_length_option(CLI::App& command, const std::string& name, const std::string& does, double& value,
+                       const std::string& unit = "M") {
+  command.add_option(name, value, does)->type_name(unit);
+}
+
+void add_import_sizes(CLI::App& command, io::ImportSettings& settings) {
+  add_length_option(command, "--default-height-m", "Height of buildings that do not say theirs (default: 9)",
+                    settings.default_height_m);
+  add_length_option(command, "--level-height-m", "Height of a storey (default: 3)", settings.level_height_m);
+  add_length_option(command, "--tree-height-m", "Height of forests that do not say theirs (default: 12)",
+                    settings.tree_height_m);
+  add_length_option(command, "--ground-margin-m", "Ground around everything (default: 50)", settings.ground_margin_m);
+  add_length_option(command, "--snap-tolerance-m", "Houses no further apart touch (default: 0.1)",
+                    settings.snap_tolerance_m);
+  add_length_option(command, "--smallest-house-m2", "Smaller footprints are left out (default: 1)",
+                    settings.smallest_house_m2, "M2");
+  command
+      .add_option("--frequency-hz", settings.frequency_hz,
+                  "Carrier frequency of the scenario (default: 5.9e9; gemv2: that of its links; sionna: 3.5e9)")
+      ->type_name("F");
+}
+
+}  // namespace
+
+void add_import_options(CLI::App& command, ImportOptions& options) {
+  command
+      .add_option(
+          "kind", options.kind,
+          "What it is: sumo (a .sumocfg or .net.xml), gemv2 (a folder), sionna (a scene of Mitsuba, .xml) or osm "
+          "(.osm, .osm.gz, .pbf)")
+      ->required()
+      ->check(CLI::IsMember({"sumo", "gemv2", "sionna", "osm"}))
+      ->type_name("KIND");
+  command.add_option("source", options.source, "The file or folder to import")->required()->type_name("FILE");
+  command.add_option("-o", options.folder, "Folder for the scene and the scenario")->required()->type_name("DIR");
+  command.add_option("--poly", options.polygons, "sumo: polygons of buildings (.poly.xml)")->type_name("FILE");
+  command.add_option("--fcd", options.trace, "sumo: the trace of vehicles; the scenario refers to it")
+      ->type_name("FILE");
+  command
+      .add_option("--additional", options.additional,
+                  "sumo: further files, with types of vehicles or polygons; may stand several times")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--touching", options.touching,
+          "Houses that touch share no wall: union makes one of those of the same height, snap leaves each its roof")
+      ->check(CLI::IsMember({"union", "snap"}))
+      ->type_name("MODE");
+  add_import_sizes(command, options.settings);
+  command.add_flag("--quiet", options.quiet, "No report on the screen; report.json has it");
+}
+
 void add_keys_options(CLI::App& command, KeysOptions& options) {
   command.add_option("word", options.word, "Only keys whose path or meaning holds this")->type_name("WORD");
   command.add_flag("--markdown", options.markdown, "All of them as a page in Markdown")->excludes("word");

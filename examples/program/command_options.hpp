@@ -11,6 +11,7 @@ void add_map_options(CLI::App& command, ScenarioOptions& options);
 void add_verify_options(CLI::App& command, ScenarioOptions& options);
 void add_inspect_options(CLI::App& command, InspectOptions& options);
 void add_compare_options(CLI::App& command, CompareOptions& options);
+void add_import_options(CLI::App& command, ImportOptions& options);
 void add_keys_options(CLI::App& command, KeysOptions& options);
 
 }  // namespace dcem::program

@@ -9,6 +9,7 @@
 #include "completion.hpp"
 #include "dcem/core/instruction_set.hpp"
 #include "dcem/io/atomic_file.hpp"
+#include "dcem/io/import.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/optional_libraries.hpp"
 #include "dcem/io/picture_format.hpp"
@@ -25,12 +26,13 @@ namespace {
 constexpr int exit_failed = 1;
 constexpr int exit_bad_input = 2;
 
-constexpr const char* command_names = "run, map, verify, inspect, compare, keys, schema or completion";
+constexpr const char* command_names = "run, map, verify, inspect, compare, import, keys, schema or completion";
 
 struct Options {
   ScenarioOptions scenario;
   InspectOptions inspect;
   CompareOptions compare;
+  ImportOptions imports;
   KeysOptions keys;
   std::string shell;
 };
@@ -38,20 +40,13 @@ struct Options {
 std::string version_text() {
   return "dcem " DCEM_VERSION "\nrays are traced with: " + std::string(name_of(instruction_set())) +
          "\npictures are drawn with: " + io::drawing_library() +
-         "\nfiles for other programs with: " + io::exchange_libraries();
-}
-
-// Commands of later versions are known by name, so that the answer is not "unknown".
-void add_absent_command(CLI::App& app, const std::string& name, const std::string& does) {
-  CLI::App* command = app.add_subcommand(name, does + " (not in this version)");
-  command->allow_extras();
-  command->group("");  // in no list
-  command->callback([name] { throw UsageError("'dcem " + name + "' is not in this version", command_names); });
+         "\nfiles for other programs with: " + io::exchange_libraries() +
+         "\nscenes are imported with: " + io::import_libraries();
 }
 
 void add_commands(CLI::App& app, Options& options) {
   app.set_version_flag("--version", version_text,
-                       "Print the version, which instructions trace rays, and which libraries draw and write");
+                       "Print the version, which instructions trace rays, and which libraries draw, write and import");
   app.require_subcommand(1);
   CLI::App* run = app.add_subcommand("run", "Every frame of a scenario: paths, received power, delay profiles");
   add_run_options(*run, options.scenario);
@@ -71,20 +66,23 @@ void add_commands(CLI::App& app, Options& options) {
   CLI::App* compare = app.add_subcommand("compare", "How far two maps of the same places are apart");
   add_compare_options(*compare, options.compare);
   compare->callback([&] { compare_maps(options.compare); });
-  CLI::App* keys = app.add_subcommand("keys", "The keys of a scenario: meaning, range, unit, default, example");
-  add_keys_options(*keys, options.keys);
-  keys->callback([&] { print_keys(options.keys); });
-  app.add_subcommand("schema", "The JSON Schema (2020-12) of a scenario")->callback(print_schema);
-  CLI::App* completion =
-      app.add_subcommand("completion", "Print the script that completes the command line in a shell");
-  completion->add_option("shell", options.shell, "Which shell")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}))
-      ->type_name("SHELL");
-  completion->callback([&] { std::cout << completion_script(app, options.shell) << std::flush; });
-  add_absent_command(app, "import", "Make scenarios from SUMO, OpenStreetMap or GEMV2 data");
-  app.set_help_all_flag("--help-all", "Print the help of all commands and exit");  // last: of the program alone
-}
+  CLI::App* import = app.add_subcommand(
+      "import", "Make a scenario from SUMO, GEMV2, Sionna or OpenStreetMap: scene, materials, scenario, report");
+  add_import_options(*import, options.imports);
+  import->callback([&] { import_scene(options.imports);
+});
+CLI::App* keys = app.add_subcommand("keys", "The keys of a scenario: meaning, range, unit, default, example");
+add_keys_options(*keys, options.keys);
+keys->callback([&] { print_keys(options.keys); });
+app.add_subcommand("schema", "The JSON Schema (2020-12) of a scenario")->callback(print_schema);
+CLI::App* completion = app.add_subcommand("completion", "Print the script that completes the command line in a shell");
+completion->add_option("shell", options.shell, "Which shell")
+    ->required()
+    ->check(CLI::IsMember({"bash", "zsh", "fish"}))
+    ->type_name("SHELL");
+completion->callback([&] { std::cout << completion_script(app, options.shell) << std::flush; });
+app.set_help_all_flag("--help-all", "Print the help of all commands and exit");  // last: of the program alone
+}  // namespace
 
 // Without this, a mistyped command reads "a subcommand is required".
 void check_command(const CLI::App& app, int argument_count, char** arguments) {
@@ -125,7 +123,7 @@ int run(int argument_count, char** arguments) {
   }
 }
 
-}  // namespace
+}  // namespace dcem::program
 }  // namespace dcem::program
 
 int main(int argument_count, char** arguments) {

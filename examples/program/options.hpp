@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/io/import.hpp"
 #include "dcem/io/inspection.hpp"
 #include "dcem/io/progress.hpp"
 #include "dcem/io/scenario.hpp"
@@ -64,6 +65,16 @@ struct CompareOptions {
   std::vector<std::string> formats{"svg"};  ///< of the chart: png, svg, pdf
 };
 
+struct ImportOptions {
+  std::string kind;  ///< sumo, gemv2, sionna, osm
+  std::string source, folder;
+  std::string polygons, trace;          ///< of sumo alone
+  std::vector<std::string> additional;  ///< of sumo alone
+  std::string touching = "union";       ///< or snap
+  io::ImportSettings settings;
+  bool quiet = false;
+};
+
 struct KeysOptions {
   std::string word;  ///< empty: all keys
   bool markdown = false;
@@ -76,6 +87,7 @@ void map_scenario(const ScenarioOptions& options);
 void verify_scenario(const ScenarioOptions& options);
 void inspect_scene(const InspectOptions& options);
 void compare_maps(const CompareOptions& options);
+void import_scene(const ImportOptions& options);
 void print_keys(const KeysOptions& options);
 void print_schema();
 

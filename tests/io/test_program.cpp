@@ -392,7 +392,9 @@ TEST_CASE("bad usage and bad input end with one line, exit code 2 and no output"
   check_refused(folder, "run street.json -o full/result", "full");
   check_refused(folder, "map street.json", "grid");
   check_refused(folder, "inspect absent.obj", "absent.obj");
-  check_refused(folder, "import sumo town.sumocfg -o town", "not in this version");
+  check_refused(folder, "import sumo town.sumocfg -o town", "town.sumocfg");
+  check_refused(folder, "import maps town.osm -o town", "maps");
+  check_refused(folder, "import osm town.osm -o town --fcd trace.xml", "--fcd");
 }
 
 TEST_CASE("version and help are no errors") {

@@ -1,5 +1,5 @@
 #include "dcem/io/scenario.hpp"
-#include "dcem/io/src/exchange/hdf5_export.hpp"
+#include "dcem/io/src/exchange/column_export.hpp"
 #include "dcem/io/src/scenario/keys/blocks.hpp"
 #include "dcem/io/src/scenario/keys/rule_words.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "dcem/core/units.hpp"
-#include "dcem/io/src/exchange/utm.hpp"
+#include "dcem/io/src/geo/utm.hpp"
 
 namespace dcem::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "dcem/io/src/exchange/hdf5_export.hpp"
+#include "dcem/io/src/exchange/column_export.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,222 @@
+#include "dcem/io/src/import/import_draft.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dcem/io/atomic_file.hpp"
+#include "dcem/io/input_error.hpp"
+#include "dcem/io/src/import/import_report.hpp"
+#include "dcem/io/src/import/town_mesh.hpp"
+#include "dcem/io/src/scenario/keys/blocks.hpp"
+#include "dcem/io/src/text/text_input.hpp"
+
+namespace dcem::io {
+
+namespace {
+
+constexpr double v2x_frequency_hz = 5.9e9;
+
+struct Look {
+  std::string_view beginning, colour;
+};
+
+/// Colours of materials, for programs that show the scene.
+constexpr std::array<Look, 4> looks{
+    {{"roof", "0.55 0.33 0.28"}, {"ground", "0.35 0.38 0.33"}, {"metal", "0.6 0.65 0.7"}, {"wall", "0.75 0.72 0.66"}}};
+
+/// The lines of a material by its name: what stands behind `_` is the ITU's ("wall_brick"), without it concrete, whose
+/// table reaches from 1 to 100 GHz.
+std::string usual_material(const std::string& name) {
+  std::string text;
+  for (const Look& look : looks) {
+    if (name.starts_with(look.beginning)) text = "Kd " + std::string(look.colour) + '\n';
+  }
+  if (name == "metal") return text + "em_model pec\n";
+  const std::size_t place = name.find('_');
+  const std::string itu = place == std::string::npos ? "concrete" : name.substr(place + 1);
+  return text + "em_model itu\nem_itu " + itu + '\n';
+}
+
+std::string mtl_text(const ImportDraft& draft) {
+  std::string text = "# Made by dcem import " + draft.importer + '\n';
+  std::set<std::string> names = draft.scene.materials();
+  if (draft.scenario.contains("mobility") || draft.scenario.contains("objects")) names.insert("metal");
+  for (const std::string& name : names) {
+    const auto own = draft.mtl.find(name);
+    text += "newmtl " + name + '\n' + (own == draft.mtl.end() ? usual_material(name) : own->second);
+  }
+  return text;
+}
+
+void widen(const std::vector<TownPart>& parts, Vec2& low_m, Vec2& high_m) {
+  for (const TownPart& part : parts) {
+    for (const Area& area : part.areas) {
+      for (const Vec2& corner : area.outer) {
+        low_m = glm::min(low_m, corner);
+        high_m = glm::max(high_m, corner);
+      }
+    }
+  }
+}
+
+/// Forests without the houses in them: a shell of leaves around a house would count twice.
+std::vector<TownPart> plan_forests(std::vector<FoundHouse>&& forests, const std::vector<TownPart>& houses,
+                                   const ImportSettings& settings, ImportReport& report) {
+  std::vector<TownPart> parts = plan_town(std::move(forests), settings, "forests", report);
+  std::vector<Areas> outlines, taken;
+  for (TownPart& part : parts) outlines.push_back(std::move(part.areas));
+  for (const TownPart& house : houses) taken.push_back(house.areas);
+  subtract_outlines(outlines, taken);
+  std::vector<FoundHouse> rest;
+  for (std::size_t index = 0; index < parts.size(); ++index) {
+    for (Area& area : outlines[index]) {
+      rest.push_back({parts[index].id,
+                      {std::move(area.outer)},
+                      std::move(area.holes),
+                      parts[index].height_m,
+                      parts[index].wall,
+                      parts[index].roof});
+    }
+  }
+  ImportReport again;  // all faults were counted the first time
+  return plan_town(std::move(rest), settings, "forests", again);
+}
+
+nlohmann::ordered_json scenario_json(ImportDraft& draft, const ImportSettings& settings) {
+  nlohmann::ordered_json scenario{{"format", "dcem-scenario/1"},
+                                  {"scene", {{"obj", "scene.obj"}}},
+                                  {"frequency_hz", settings.frequency_hz.value_or(v2x_frequency_hz)}};
+  if (!draft.geo.is_null() && reads_geo()) scenario["geo"] = draft.geo;
+  if (!draft.vegetation.empty()) {
+    draft.scenario["objects"].push_back({{"id", "vegetation"}, {"obj", "vegetation.obj"}, {"foliage", true}});
+  }
+  for (auto& [key, block] : draft.scenario.items()) scenario[key] = std::move(block);
+  return scenario;
+}
+
+nlohmann::ordered_json whole_report(const ImportDraft& draft, const ImportSettings& settings) {
+  nlohmann::ordered_json json{{"format", "dcem-import/1"}, {"importer", draft.importer}};
+  for (const auto& source : draft.sources) json["sources"].push_back(source.filename().string());
+  json["settings"] = settings_json(settings);
+  json["libraries"] = import_libraries();
+  json["geo"] = draft.geo;
+  json.update(report_json(draft.report));
+  return json;
+}
+
+const keys::BlockRule* block_of_key(const char* key) {
+  const keys::KeyRule* const rule = keys::find_key(keys::scenario_block(), key);
+  return rule == nullptr ? nullptr : keys::block_of(rule->forms);
+}
+
+bool reads(const keys::BlockRule* block, const char* key) {
+  const keys::KeyRule* const rule = block == nullptr ? nullptr : keys::find_key(*block, key);
+  return rule != nullptr && !keys::is_later(*rule);
+}
+
+}  // namespace
+
+std::vector<TownPart> build_town(FoundTown&& town, Vec2 low_m, Vec2 high_m, const ImportSettings& settings,
+                                 const std::filesystem::path& source, ImportDraft& draft) {
+  ImportReport& report = draft.report;
+  report.read["houses"] += town.houses.size();
+  if (!town.forests.empty()) report.read["forests"] += town.forests.size();
+  const std::vector<TownPart> parts = plan_town(std::move(town.houses), settings, "houses", report);
+  if (parts.empty()) throw InputError(source.string(), "holds no building with an area; expected at least one");
+  add_town(parts, Foot::open, draft.scene, report);
+  const std::vector<TownPart> forests = plan_forests(std::move(town.forests), parts, settings, report);
+  ImportReport of_forests;
+  add_town(forests, Foot::closed, draft.vegetation, of_forests);
+  if (!forests.empty()) report.made["forests"] = forests.size();
+  widen(parts, low_m, high_m);
+  widen(forests, low_m, high_m);
+  add_flat_ground(low_m - Vec2(settings.ground_margin_m), high_m + Vec2(settings.ground_margin_m), draft.scene);
+  return parts;
+}
+
+ImportReport write_import(ImportDraft&& draft, const std::filesystem::path& folder, const ImportSettings& settings) {
+  OutputFolder files(folder);
+  const std::string comment = "Made by dcem import " + draft.importer;
+  files.open("scene.obj").write(draft.scene.text(comment, "scene.mtl"));
+  files.open("scene.mtl").write(mtl_text(draft));
+  std::vector<std::string> former;
+  if (draft.vegetation.empty()) {
+    former.push_back("vegetation.obj");
+  } else {
+    files.open("vegetation.obj").write(draft.vegetation.text(comment, "scene.mtl"));
+  }
+  draft.report.made["triangles or polygons"] = draft.scene.faces() + draft.vegetation.faces();
+  files.open("scenario.json").write(scenario_json(draft, settings).dump(1) + '\n');
+  files.open("report.json").write(whole_report(draft, settings).dump(1) + '\n');
+  files.commit(former);
+  return std::move(draft.report);
+}
+
+void require_outlines(const std::filesystem::path& source) {
+  if (can_shape_outlines()) return;
+  throw InputError(source.string(),
+                   "this build cannot import outlines of buildings; expected GEOS (libgeos-dev) when DCEM was built");
+}
+
+void check_settings(const ImportSettings& settings, const std::filesystem::path& source) {
+  const auto check = [&](const char* name, double value, NumberRange range) {
+    if (range.holds(value)) return;
+    throw InputError(source.string(),
+                     std::string(name) + ": found " + number_text(value) + "; expected " + range.text());
+  };
+  check("default height", settings.default_height_m, {0.0, 1000.0, true});
+  check("height of a storey", settings.level_height_m, {0.0, 100.0, true});
+  check("height of trees", settings.tree_height_m, {0.0, 200.0, true});
+  check("margin of the ground", settings.ground_margin_m, {0.0, 1e5});
+  check("snap tolerance", settings.snap_tolerance_m, {0.001, 10.0});
+  check("smallest house", settings.smallest_house_m2, {0.01, 1e6});
+  check("frequency", settings.frequency_hz.value_or(v2x_frequency_hz), {0.0, 1e15, true});
+}
+
+nlohmann::ordered_json geo_json(const UtmZone& zone, const Vec2& utm_m) {
+  const GeoPoint origin = geo_point(utm_m, zone);
+  return {{"origin_lat_deg", origin.latitude_deg},
+          {"origin_lon_deg", origin.longitude_deg},
+          {"crs", zone.name()},
+          {"offset_m", {utm_m.x, utm_m.y}}};
+}
+
+double roof_height_m(const std::vector<TownPart>& parts, const Vec2& point_m) {
+  for (const TownPart& part : parts) {
+    for (const Area& area : part.areas) {
+      if (holds_point(area, point_m)) return part.height_m;
+    }
+  }
+  return 0.0;
+}
+
+nlohmann::ordered_json mast_json(const std::vector<TownPart>& parts, const Vec2& point_m) {
+  const double height_m = std::max(25.0, roof_height_m(parts, point_m) + 5.0);
+  return {{"id", "mast"}, {"position_m", {point_m.x, point_m.y, height_m}}, {"power_dbm", 30}};
+}
+
+nlohmann::ordered_json town_propagation_json() {
+  return {{"max_reflections", 2}, {"max_transmissions", 0}, {"max_diffractions", 1}, {"max_interactions", 2}};
+}
+
+bool reads_geo() {
+  return reads(&keys::scenario_block(), "geo");
+}
+
+bool reads_vehicle_devices() {
+  return reads(block_of_key("mobility"), "devices");
+}
+
+bool reads_link_key(const char* key) {
+  return reads(block_of_key("links"), key);
+}
+
+std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  return std::filesystem::absolute(file)
+      .lexically_normal()
+      .lexically_relative(std::filesystem::absolute(folder).lexically_normal())
+      .generic_string();
+}
+
+}  // namespace dcem::io

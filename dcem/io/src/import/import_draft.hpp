@@ -1,0 +1,66 @@
+#pragma once
+/// What every importer puts together and writes. Private to dcem::io.
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dcem/io/import.hpp"
+#include "dcem/io/src/import/city_plan.hpp"
+#include "dcem/io/src/import/obj_draft.hpp"
+#include "dcem/io/src/geo/utm.hpp"
+
+namespace dcem::io {
+
+struct ImportDraft {
+  std::string importer;                        ///< "sumo"
+  std::vector<std::filesystem::path> sources;  ///< files that were read
+  ObjDraft scene, vegetation;
+  std::map<std::string, std::string> mtl;  ///< lines of a material by its name; others are made by their names
+  nlohmann::ordered_json scenario;         ///< blocks of the importer's own
+  nlohmann::ordered_json geo;              ///< where the scene lies; null where that is not known
+  ImportReport report;
+};
+
+/// What stands and grows in a town.
+struct FoundTown {
+  std::vector<FoundHouse> houses;
+  std::vector<FoundHouse> forests;
+};
+
+/// Parts with walls and roofs, vegetation, and the ground around these and the box from `low_m` to `high_m`. Returns
+/// the parts. Throws InputError with the name of `source` where nothing stands there.
+std::vector<TownPart> build_town(FoundTown&& town, Vec2 low_m, Vec2 high_m, const ImportSettings& settings,
+                                 const std::filesystem::path& source, ImportDraft& draft);
+
+/// `scene`, `frequency_hz`, `objects` for vegetation and so on around the importer's blocks; all files appear at once.
+/// Throws OutputError.
+ImportReport write_import(ImportDraft&& draft, const std::filesystem::path& folder, const ImportSettings& settings);
+
+/// Throws InputError where this build has no GEOS.
+void require_outlines(const std::filesystem::path& source);
+/// Throws InputError where settings make no sense for any file.
+void check_settings(const ImportSettings& settings, const std::filesystem::path& source);
+
+/// Where the scene's (0, 0) lies; `utm_m` are its easting and northing.
+nlohmann::ordered_json geo_json(const UtmZone& zone, const Vec2& utm_m);
+
+/// The height of the part that holds a point; 0 in the open.
+double roof_height_m(const std::vector<TownPart>& parts, const Vec2& point_m);
+
+/// A transmitter above the roof at this point, at least 25 m high.
+nlohmann::ordered_json mast_json(const std::vector<TownPart>& parts, const Vec2& point_m);
+/// Orders of paths that a town can be run with at once.
+nlohmann::ordered_json town_propagation_json();
+
+/// Whether this version reads the key in scenarios.
+bool reads_geo();
+bool reads_vehicle_devices();
+bool reads_link_key(const char* key);
+
+/// A file's name as a scenario in `folder` refers to it.
+std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file);
+
+}  // namespace dcem::io

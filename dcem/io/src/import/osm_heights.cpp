@@ -1,0 +1,93 @@
+#include "dcem/io/src/import/osm_heights.hpp"
+
+#include <array>
+#include <optional>
+
+#include "dcem/io/src/text/text_input.hpp"
+
+namespace dcem::io {
+
+namespace {
+
+using Tags = std::map<std::string, std::string>;
+
+/// "12", "12 m", "12.5m", "40 ft", "40'": a length in metres above 0, at most 1000.
+std::optional<double> length_of(std::string_view text) {
+  text = trimmed(text);
+  double unit_m = 1.0;
+  for (const auto& [ending, its_m] : {std::pair<std::string_view, double>{"m", 1.0}, {"ft", 0.3048}, {"'", 0.3048}}) {
+    if (!text.ends_with(ending)) continue;
+    unit_m = its_m;
+    text = trimmed(text.substr(0, text.size() - ending.size()));
+    break;
+  }
+  const std::optional<double> number = parse_number(text);
+  if (!number || *number <= 0.0 || *number * unit_m > 1000.0) return std::nullopt;
+  return *number * unit_m;
+}
+
+std::optional<double> number_of(const Tags& tags, const char* key, double most) {
+  const auto found = tags.find(key);
+  if (found == tags.end()) return std::nullopt;
+  const std::optional<double> number = parse_number(trimmed(found->second));
+  if (!number || *number < 0.0 || *number > most) return std::nullopt;
+  return number;
+}
+
+/// Words of `building:material` and `roof:material` that the ITU has a table for.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> materials{{{"brick", "brick"},
+                                                                                   {"bricks", "brick"},
+                                                                                   {"concrete", "concrete"},
+                                                                                   {"reinforced_concrete", "concrete"},
+                                                                                   {"glass", "glass"},
+                                                                                   {"mirror", "glass"},
+                                                                                   {"wood", "wood"},
+                                                                                   {"timber_framing", "wood"},
+                                                                                   {"metal", "metal"},
+                                                                                   {"steel", "metal"},
+                                                                                   {"marble", "marble"},
+                                                                                   {"stone", "marble"}}};
+
+void apply_material(const Tags& tags, const char* key, std::string& material) {
+  const auto found = tags.find(key);
+  if (found == tags.end()) return;
+  for (const auto& [word, itu] : materials) {
+    if (found->second == word && itu != "concrete") material += '_' + std::string(itu);
+  }
+}
+
+/// To the millimetre: neighbours that say the same in other words have roofs in one plane.
+double rounded_m(double height_m) {
+  return std::round(height_m * 1000.0) / 1000.0;
+}
+
+}  // namespace
+
+void apply_tags(const Tags& tags, const ImportSettings& settings, FoundHouse& house, ImportReport& report) {
+  constexpr double most_levels = 200.0;
+  const auto height = tags.find("height");
+  const std::optional<double> height_m = height == tags.end() ? std::nullopt : length_of(height->second);
+  const std::optional<double> levels = number_of(tags, "building:levels", most_levels);
+  if (height_m) {
+    house.height_m = rounded_m(*height_m);
+    ++report.read["heights from 'height'"];
+  } else if (levels && *levels > 0.0) {
+    const double roof_levels = number_of(tags, "roof:levels", most_levels).value_or(0.0);
+    house.height_m = rounded_m((*levels + roof_levels) * settings.level_height_m);
+    ++report.read["heights from 'building:levels'"];
+  } else {
+    house.height_m = settings.default_height_m;
+    ++report.read["heights by default"];
+  }
+  if (height != tags.end() && !height_m) ++report.repaired["heights that are no length"];
+  apply_material(tags, "building:material", house.wall);
+  apply_material(tags, "roof:material", house.roof);
+}
+
+double tree_height_m(const Tags& tags, const ImportSettings& settings) {
+  const auto height = tags.find("height");
+  const std::optional<double> height_m = height == tags.end() ? std::nullopt : length_of(height->second);
+  return height_m ? rounded_m(*height_m) : settings.tree_height_m;
+}
+
+}  // namespace dcem::io

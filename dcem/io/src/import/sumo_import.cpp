@@ -1,0 +1,277 @@
+#include <algorithm>
+
+#include "dcem/io/import.hpp"
+#include "dcem/io/input_error.hpp"
+#include "dcem/io/src/import/import_draft.hpp"
+#include "dcem/io/src/import/osm_heights.hpp"
+#include "dcem/io/src/import/sumo_files.hpp"
+#include "dcem/io/src/traffic/trace_survey.hpp"
+
+namespace dcem::io {
+
+namespace {
+
+constexpr std::size_t most_riders = 10;
+
+bool is_forest(const std::string& type) {
+  return type == "forest" || type == "wood" || type == "natural.wood" || type == "landuse.forest";
+}
+
+class SumoImport {
+ public:
+  SumoImport(const SumoFiles& files, const std::filesystem::path& folder, const ImportSettings& settings)
+      : files_(files), folder_(folder), settings_(settings) {
+    draft_.importer = "sumo";
+  }
+
+  ImportReport run() {
+    read_configuration();
+    const SumoContents network = read_network();
+    location_ = network.location;
+    read_polygons();
+    place_on_earth();
+    if (polygons_.empty()) throw InputError(place_of_polygons(), "no polygons; expected buildings (--poly FILE)");
+    const Vec2 low_m = location_->low_m, high_m = location_->high_m;
+    const std::vector<TownPart> parts = build_town(sort_polygons(), low_m, high_m, settings_, files_.polygons, draft_);
+    draft_.scenario["propagation"] = town_propagation_json();
+    if (files_.trace.empty()) {
+      add_probes(network.lanes, parts);
+    } else {
+      add_traffic(parts);
+    }
+    return write_import(std::move(draft_), folder_, settings_);
+  }
+
+ private:
+  /// What the user names counts; the configuration says the rest.
+  void read_configuration() {
+    std::string name = files_.network.filename().string();
+    if (name.find(".sumocfg") == std::string::npos) return;
+    const SumoConfiguration configuration = read_sumo_configuration(files_.network);
+    draft_.sources.push_back(files_.network);
+    if (configuration.networks.size() != 1) {
+      throw InputError(files_.network.string(),
+                       "names " + std::to_string(configuration.networks.size()) + " networks; expected one net-file");
+    }
+    files_.network = configuration.networks.front();
+    std::error_code ignored;
+    if (files_.trace.empty() && !configuration.traces.empty() &&
+        std::filesystem::exists(configuration.traces.front(), ignored)) {
+      files_.trace = configuration.traces.front();
+    }
+    for (const auto* list : {&configuration.additional, &configuration.routes}) {
+      files_.additional.insert(files_.additional.end(), list->begin(), list->end());
+    }
+  }
+
+  SumoContents read_network() {
+    draft_.sources.push_back(files_.network);
+    SumoContents network = read_sumo_file(files_.network, "expected a SUMO network (.net.xml) or configuration");
+    if (!network.location) {
+      throw InputError(files_.network.string(), "holds no location; expected a SUMO network with netOffset");
+    }
+    draft_.report.read["lanes"] = network.lanes.size();
+    return network;
+  }
+
+  void read_polygons() {
+    if (!files_.polygons.empty()) add_contents(files_.polygons);
+    for (const std::filesystem::path& file : files_.additional) add_contents(file);
+    if (files_.polygons.empty()) files_.polygons = files_.network;  // what messages speak of
+  }
+
+  void add_contents(const std::filesystem::path& file) {
+    SumoContents contents = read_sumo_file(file, "expected a SUMO additional file");
+    draft_.sources.push_back(file);
+    const Vec2 shift_m = shift_of(contents);
+    for (SumoPolygon& polygon : contents.polygons) {
+      if (!polygon.is_geo) {
+        for (Vec2& corner : polygon.shape) corner += shift_m;
+      }
+      polygons_.push_back(std::move(polygon));
+    }
+    if (contents.points_of_interest > 0) draft_.report.skipped["points of interest"] += contents.points_of_interest;
+    add_types(file, contents.vehicle_types);
+  }
+
+  /// Polygons may have been made with another offset than the network.
+  Vec2 shift_of(const SumoContents& contents) {
+    if (!contents.location || contents.location->projection != location_->projection) return Vec2(0.0);
+    const Vec2 shift_m = location_->net_offset_m - contents.location->net_offset_m;
+    if (shift_m != Vec2(0.0)) draft_.report.repaired["files of polygons with another netOffset"] += 1;
+    return shift_m;
+  }
+
+  /// Routes repeat types that additional files define: a file that brings nothing new is left out.
+  void add_types(const std::filesystem::path& file, const std::set<std::string>& types) {
+    const bool brings_new =
+        std::any_of(types.begin(), types.end(), [&](const std::string& type) { return !known_types_.contains(type); });
+    if (!brings_new) return;
+    known_types_.insert(types.begin(), types.end());
+    type_files_.push_back(file);
+  }
+
+  void place_on_earth() {
+    zone_ = location_->zone();
+    if (!zone_ || !knows_utm()) {
+      draft_.report.notes.push_back(zone_ ? "The place on the Earth is not worked out: this build has no GeographicLib."
+                                          : "The place on the Earth is not known: the projection is not UTM.");
+      zone_.reset();
+      return;
+    }
+    draft_.geo = geo_json(*zone_, -location_->net_offset_m);
+  }
+
+  std::string place_of_polygons() const { return files_.polygons.string(); }
+
+  FoundTown sort_polygons() {
+    FoundTown town;
+    for (SumoPolygon& polygon : polygons_) {
+      const bool is_house = polygon.type.starts_with("building") || polygon.parameters.contains("building");
+      if (!is_house && !is_forest(polygon.type)) {
+        ++draft_.report.skipped["polygons of type '" + polygon.type + "'"];
+        continue;
+      }
+      if (polygon.is_geo && !to_plane(polygon)) continue;
+      FoundHouse found{polygon.id, {std::move(polygon.shape)}, {}};
+      if (is_house) {
+        apply_tags(polygon.parameters, settings_, found, draft_.report);
+        town.houses.push_back(std::move(found));
+      } else {
+        found.height_m = tree_height_m(polygon.parameters, settings_);
+        found.wall = found.roof = "foliage";
+        town.forests.push_back(std::move(found));
+      }
+    }
+    return town;
+  }
+
+  bool to_plane(SumoPolygon& polygon) {
+    if (!zone_) {
+      ++draft_.report.skipped["polygons in longitude and latitude"];
+      return false;
+    }
+    for (Vec2& corner : polygon.shape) {
+      if (std::abs(corner.x) > 180.0 || std::abs(corner.y) > 84.0) {
+        throw InputError(
+            place_of_polygons(),
+            "poly '" + polygon.id + "': a corner is no longitude and latitude; expected " + "degrees, with geo=\"1\"");
+      }
+      corner = utm_m({corner.y, corner.x}, *zone_) + location_->net_offset_m;
+    }
+    return true;
+  }
+
+  VehicleTypes vehicle_types() const {
+    VehicleTypes types;
+    for (const std::filesystem::path& file : type_files_) types.read(file);
+    return types;
+  }
+
+  void add_traffic(const std::vector<TownPart>& parts) {
+    draft_.sources.push_back(files_.trace);
+    nlohmann::ordered_json mobility{{"sumo_fcd", name_from(folder_, files_.trace)}, {"material", "metal"}};
+    for (const auto& file : type_files_) mobility["vehicle_types"].push_back(name_from(folder_, file));
+    FcdStep first;
+    FcdReader(files_.trace).next(first);
+    std::set<std::string> names;
+    for (const FcdVehicle& vehicle : first.vehicles) names.insert(vehicle.id);
+    const VehicleTypes types = vehicle_types();
+    const TraceSurvey survey = survey_trace(files_.trace, types, names);
+    draft_.report.read["steps of the trace"] = survey.step_times_s.size();
+    draft_.report.read["types of vehicles in the trace"] = survey.traffic.types.size();
+    if (first.vehicles.empty()) {
+      throw InputError(files_.trace.string(), first.line,
+                       "no vehicle in the first step; expected some to carry devices");
+    }
+    const nlohmann::ordered_json mast = mast_json(parts, middle_of(first));
+    if (reads_vehicle_devices() && reads_link_key("range_m")) {
+      mobility["devices"] = {{"vehicles", "all"}, {"height_above_roof_m", 0.1}, {"power_dbm", 23}};
+      draft_.scenario["links"] = {{"range_m", 150}};
+      draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast});
+      draft_.scenario["receivers"] = nlohmann::ordered_json::array();
+    } else {
+      draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast});
+      draft_.scenario["receivers"] = riders(first, survey, types);
+    }
+    draft_.scenario["mobility"] = std::move(mobility);
+  }
+
+  static Vec2 middle_of(const FcdStep& step) {
+    std::vector<double> x_m, y_m;
+    for (const FcdVehicle& vehicle : step.vehicles) {
+      x_m.push_back(vehicle.x_m);
+      y_m.push_back(vehicle.y_m);
+    }
+    const auto median = [](std::vector<double>& values) {
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      return *middle;
+    };
+    return {median(x_m), median(y_m)};
+  }
+
+  /// Devices on vehicles of the first step, those first that stay longest: a device whose vehicle is never there in the
+  /// frames asked for would be an error.
+  nlohmann::ordered_json riders(const FcdStep& first, const TraceSurvey& survey, const VehicleTypes& types) {
+    std::vector<const FcdVehicle*> vehicles;
+    for (const FcdVehicle& vehicle : first.vehicles) vehicles.push_back(&vehicle);
+    const auto stays_s = [&](const FcdVehicle& vehicle) {
+      return survey.traffic.presence.at(vehicle.id).front().last_s;
+    };
+    std::stable_sort(vehicles.begin(), vehicles.end(),
+                     [&](const FcdVehicle* a, const FcdVehicle* b) { return stays_s(*a) > stays_s(*b); });
+    vehicles.resize(std::min(vehicles.size(), most_riders));
+    nlohmann::ordered_json receivers = nlohmann::ordered_json::array();
+    for (const FcdVehicle* vehicle : vehicles) {
+      const double roof_m = types.find_size_m(vehicle->type)->z;
+      receivers.push_back(
+          {{"id", device_id(vehicle->id)}, {"attach_to", vehicle->id}, {"offset_m", {0, 0, roof_m + 0.1}}});
+    }
+    draft_.report.notes.push_back("One mast and devices on " + std::to_string(vehicles.size()) +
+                                  " vehicles were chosen for a start: edit transmitters and receivers.");
+    return receivers;
+  }
+
+  /// Ids of devices stand in names of files.
+  static std::string device_id(std::string vehicle) {
+    std::replace(vehicle.begin(), vehicle.end(), '/', '_');
+    return "on_" + vehicle.substr(0, 100);
+  }
+
+  /// Without traffic: receivers on streets.
+  void add_probes(const std::vector<Ring>& lanes, const std::vector<TownPart>& parts) {
+    if (lanes.empty()) throw InputError(files_.network.string(), "holds no lane; expected a network with streets");
+    nlohmann::ordered_json points = nlohmann::ordered_json::array();
+    const std::size_t stride = std::max<std::size_t>(1, lanes.size() / most_riders);
+    for (std::size_t lane = 0; lane < lanes.size() && points.size() < most_riders; lane += stride) {
+      const Vec2 middle = 0.5 * (lanes[lane][0] + lanes[lane][1]);
+      points.push_back({middle.x, middle.y, 1.5});
+    }
+    const Vec2 middle = 0.5 * (location_->low_m + location_->high_m);
+    draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast_json(parts, middle)});
+    draft_.scenario["receivers"] = nlohmann::ordered_json::array({{{"id", "street"}, {"positions_m", points}}});
+    draft_.report.notes.push_back(
+        "One mast and points on streets were chosen for a start: edit transmitters and receivers.");
+  }
+
+  SumoFiles files_;
+  std::filesystem::path folder_;
+  const ImportSettings& settings_;
+  ImportDraft draft_;
+  std::optional<SumoLocation> location_;
+  std::optional<UtmZone> zone_;
+  std::vector<SumoPolygon> polygons_;
+  std::set<std::string> known_types_;
+  std::vector<std::filesystem::path> type_files_;
+};
+
+}  // namespace
+
+ImportReport import_sumo(const SumoFiles& files, const std::filesystem::path& folder, const ImportSettings& settings) {
+  check_settings(settings, files.network);
+  require_outlines(files.network);
+  return SumoImport(files, folder, settings).run();
+}
+
+}  // namespace dcem::io

@@ -1,0 +1,96 @@
+/// Tables of a GEMV² run become a scenario.
+#include <doctest/doctest.h>
+
+#include "tests/import/import_case.hpp"
+#include "tests/support/shared_data.hpp"
+
+namespace test_import_gemv2 {
+
+using namespace dcem;
+using dcem::test::refusal;
+using dcem::test::TemporaryFolder;
+using dcem::test::write;
+
+namespace {
+
+const std::string link_header =
+    "veh_i,veh_j,link_type(1=LOS 2=NLOSb/f 3=NLOSv),x_i,y_i,h_ant_i,x_j,y_j,h_ant_j,dist2d_m,large_scale_rx_dBm\n";
+
+void write_tables(const TemporaryFolder& folder) {
+  std::filesystem::create_directories(folder / "run");
+  write(folder / "run/town_buildings_xy.csv",
+        "building_id,x_m,y_m\n-1,0,10\n-1,10,10\n-1,10,20\n-1,0,20\n-1,0,10\n-2,10,10\n-2,20,10\n-2,20,20\n-2,10,20\n"
+        "-3,50,50\n-3,60,60\n");
+  // A car along x, a lorry turned by 30 degrees.
+  write(folder / "run/town_vehicles_xy.csv",
+        "vehicle_index_1based,x_m,y_m\n7,0,0\n7,4,0\n7,4,2\n7,0,2\n7,0,0\n"
+        "9,30,0\n9,38.6603,5\n9,37.6603,6.7321\n9,29,1.7321\n9,30,0\n");
+  write(folder / "run/links_5.89GHz.csv", link_header + "7,9,1,2,1,1.6,33.83,3.366,3.1,31,-70\n");
+  write(folder / "run/links_30GHz.csv", link_header + "7,9,1,2,1,1.6,33.83,3.366,3.1,31,-80\n");
+  write(folder / "run/town_origin.json", "{\"origin_utm29n\": [529203.0, 4555870.0]}");
+}
+
+}  // namespace
+
+TEST_CASE("outlines, vehicles and links: the scenario runs without editing") {
+  DCEM_NEEDS_GEOS();
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_tables(folder);
+  const io::ImportReport report = io::import_gemv2(folder / "run", folder / "made");
+  dcem::test::check_clean_town(folder / "made", report);
+  CHECK(report.read.at("houses") == 3);
+  CHECK(report.skipped.at("houses with fewer than three corners") == 1);
+  CHECK(report.made.at("vehicles") == 2);
+  CHECK(report.read.at("links") == 1);
+  const auto json = dcem::test::read_json(folder / "made/scenario.json");
+  CHECK(json["frequency_hz"] == 5.89e9);
+  CHECK(json["objects"][0]["box_m"] == nlohmann::json({4.0, 2.0, 1.5}));
+  CHECK(json["objects"][1]["box_m"][0].get<double>() == doctest::Approx(10.0).epsilon(1e-4));
+  CHECK(json["objects"][1]["motion"]["yaw_deg"].get<double>() == doctest::Approx(30.0).epsilon(1e-4));
+  CHECK(json["objects"][1]["box_m"][2] == 3.0);
+  const auto run = dcem::test::dcem_program(folder, "run made/scenario.json -o out --quiet");
+  CAPTURE(run.error);
+  CHECK(run.exit_code == 0);
+  CHECK(dcem::test::file_bytes(folder / "out/links.csv").find(",on_7,on_9,1,") != std::string::npos);
+}
+
+TEST_CASE("damaged tables: one line, nothing written") {
+  DCEM_NEEDS_GEOS();
+  const TemporaryFolder folder;
+  const auto refused = [&](const char* said) {
+    const std::string message = refusal(folder, [&] { io::import_gemv2(folder / "run", folder / "made"); });
+    CHECK(message.find(said) != std::string::npos);
+  };
+  refused("is no folder that can be read");
+  write_tables(folder);
+  write(folder / "run/links_5.89GHz.csv", link_header + "7,9,1,2,1\n");
+  refused("links_5.89GHz.csv:2");
+  write(folder / "run/links_5.89GHz.csv", link_header + "7,7,1,2,1,1.6,33,3,3.1,31,-70\n");
+  refused("with itself");
+  write(folder / "run/links_5.89GHz.csv", link_header);
+  refused("holds no link");
+  write_tables(folder);
+  write(folder / "run/town_buildings_xy.csv", "building_id,x_m,y_m\n-1,0,1e300\n");
+  refused("town_buildings_xy.csv:2");
+  write(folder / "run/town_buildings_xy.csv", "building_id,x_m,y_m\n-1,0,1\n-1,3,3\n");
+  refused("holds no building with an area");
+  std::filesystem::remove(folder / "run/town_buildings_xy.csv");
+  refused("holds no *buildings_xy.csv");
+}
+
+TEST_CASE("Porto: 4411 outlines, 2410 vehicles, 889 links") {
+  DCEM_NEEDS_SHARED();
+  DCEM_NEEDS_GEOS();
+  const TemporaryFolder folder;
+  const io::ImportReport report = io::import_gemv2(dcem::test::shared_path("gemv2"), folder / "made");
+  dcem::test::check_clean_town(folder / "made", report);
+  CHECK(report.read.at("houses") == 4411);
+  CHECK(report.made.at("vehicles") == 2410);
+  CHECK(report.read.at("links") == 889);
+  CHECK(report.made.at("transmitters") == 742);
+  CHECK(report.made.at("receivers") == 700);
+  CHECK(report.skipped == io::ImportReport::Counts{{"houses with fewer than three corners", 1}});
+}
+
+}  // namespace test_import_gemv2

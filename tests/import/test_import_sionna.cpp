@@ -1,0 +1,178 @@
+/// Scenes of Mitsuba with radio materials become scenarios; PLY meshes, text and binary.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cstring>
+
+#include "dcem/io/src/import/ply_reader.hpp"
+#include "tests/import/import_case.hpp"
+
+namespace test_import_sionna {
+
+using namespace dcem;
+using dcem::test::refusal;
+using dcem::test::TemporaryFolder;
+using dcem::test::write;
+
+namespace {
+
+const std::string square_header =
+    "ply\nformat ascii 1.0\ncomment a wall\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float s\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+const std::string square = square_header + "0 0 0 0.5\n10 0 0 0.5\n10 0 5 0.5\n0 0 5 0.5\n4 0 1 2 3\n";
+
+template <typename Value>
+void append(std::string& bytes, Value value) {
+  std::array<char, sizeof(Value)> raw{};
+  std::memcpy(raw.data(), &value, sizeof(Value));
+  bytes.append(raw.data(), raw.size());
+}
+
+/// Two triangles in the plane z = 0; the second shares an edge with the first.
+std::string binary_ground() {
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double "
+      "z\n"
+      "element face 2\nproperty list uchar uint vertex_index\nend_header\n";
+  for (const Vec3& corner : {Vec3(-50, -50, 0), Vec3(50, -50, 0), Vec3(50, 50, 0), Vec3(-50, 50, 0)}) {
+    for (int axis = 0; axis < 3; ++axis) append(bytes, corner[axis]);
+  }
+  for (const std::array<std::uint32_t, 3>& face : {std::array<std::uint32_t, 3>{0, 1, 2}, {0, 2, 3}}) {
+    append(bytes, static_cast<std::uint8_t>(3));
+    for (const std::uint32_t corner : face) append(bytes, corner);
+  }
+  return bytes;
+}
+
+std::string scene(const std::string& shapes) {
+  return "<scene version=\"2.1.0\">\n<default name=\"spp\" value=\"64\"/>\n<integrator type=\"path\"/>\n"
+         "<bsdf type=\"twosided\" id=\"mat-itu_marble\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.7 "
+         "0.6 "
+         "0.5\"/></bsdf></bsdf>\n"
+         "<bsdf type=\"itu-radio-material\" id=\"glazing\"><string name=\"type\" value=\"glass\"/><float "
+         "name=\"thickness\" "
+         "value=\"0.01\"/></bsdf>\n"
+         "<bsdf type=\"radio-material\" id=\"own\"><float name=\"relative_permittivity\" value=\"4.5\"/><float "
+         "name=\"conductivity\" value=\"0.1\"/><float name=\"scattering_coefficient\" value=\"0.3\"/></bsdf>\n"
+         "<bsdf type=\"diffuse\" id=\"paint\"/>\n" +
+         shapes + "</scene>\n";
+}
+
+std::string shape(const std::string& file, const std::string& material, const std::string& more = "",
+                  const std::string& type = "ply") {
+  return "<shape type=\"" + type + "\" id=\"mesh-" + file + "\"><string name=\"filename\" value=\"" + file +
+         "\"/><boolean name=\"face_normals\" value=\"true\"/>" + more + "<ref id=\"" + material +
+         "\" name=\"bsdf\"/></shape>\n";
+}
+
+std::string ply_error(const TemporaryFolder& folder, const std::string& bytes) {
+  write(folder / "mesh.ply", bytes);
+  return refusal(folder, [&] { io::read_ply(folder / "mesh.ply"); });
+}
+
+bool holds(const std::string& message, const std::string& piece) {
+  return message.find(piece) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a scene becomes a scenario that runs without editing") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write(folder / "square.ply", square);
+  write(folder / "ground.ply", binary_ground());
+  const std::string moved =
+      "<transform name=\"to_world\"><scale value=\"2\"/><rotate z=\"1\" angle=\"90\"/><translate x=\"5\" "
+      "z=\"1\"/></transform>";
+  write(
+      folder / "scene.xml",
+      scene(shape("ground.ply", "mat-itu_marble") + shape("square.ply", "glazing") + shape("square.ply", "own", moved) +
+            shape("", "paint", "<transform name=\"to_world\"><translate value=\"20 0 1\"/></transform>", "cube") +
+            shape("", "paint", "", "sphere")));
+  const io::ImportReport report = io::import_sionna(folder / "scene.xml", folder / "made");
+  CHECK(report.read.at("shapes") == 5);
+  CHECK(report.made.at("objects") == 4);
+  CHECK(report.skipped.at("shapes of type 'sphere'") == 1);
+  CHECK(report.repaired.at("materials that say nothing of radio, taken for concrete") == 1);
+
+  const io::Inspection seen = io::inspect_obj(folder / "made/scene.obj");
+  CHECK(seen.materials.size() == 4);
+  for (const io::InspectedMaterial& material : seen.materials) {
+    CAPTURE(material.name);
+    CHECK(material.material.has_value());
+    if (material.name == "own") CHECK(material.area_m2 == doctest::Approx(4.0 * 50.0));
+    if (material.name == "itu_marble") CHECK(material.area_m2 == doctest::Approx(10000.0));
+    if (material.name == "paint") CHECK(material.area_m2 == doctest::Approx(24.0));
+  }
+  const TriangleMesh mesh = io::read_obj(folder / "made/scene.obj").mesh;
+  double highest_m = 0.0;
+  for (const Vec3& vertex : mesh.vertices_m) highest_m = std::max(highest_m, vertex.z);
+  CHECK(highest_m == doctest::Approx(11.0));  // 5 m, twice, lifted by 1 m
+  const std::string mtl = dcem::test::file_bytes(folder / "made/scene.mtl");
+  CHECK(holds(mtl, "newmtl glazing\nem_model itu\nem_itu glass\nem_thickness_m 0.01\n"));
+  CHECK(holds(mtl, "em_relative_permittivity 4.5\nem_conductivity_s_per_m 0.1\nem_scattering 0.3\n"));
+
+  const auto run = dcem::test::dcem_program(folder, "run made/scenario.json -o out --quiet");
+  CAPTURE(run.error);
+  CHECK(run.exit_code == 0);
+}
+
+TEST_CASE("PLY: text and binary give the same mesh") {
+  const TemporaryFolder folder;
+  write(folder / "ground.ply", binary_ground());
+  const io::PlyMesh ground = io::read_ply(folder / "ground.ply");
+  REQUIRE(ground.vertices_m.size() == 4);
+  CHECK(ground.vertices_m[2] == Vec3(50, 50, 0));
+  REQUIRE(ground.faces.size() == 2);
+  CHECK(ground.faces[1] == std::vector<std::size_t>{0, 2, 3});
+  write(folder / "square.ply", square);
+  const io::PlyMesh wall = io::read_ply(folder / "square.ply");
+  CHECK(wall.vertices_m[2] == Vec3(10, 0, 5));
+  CHECK(wall.faces[0].size() == 4);
+}
+
+TEST_CASE("damaged PLY: one line with what was expected") {
+  const TemporaryFolder folder;
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = square;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  CHECK(holds(ply_error(folder, ""), "no 'ply'"));
+  CHECK(holds(ply_error(folder, "ply\nformat ascii 1.0\n"), "the header breaks off"));
+  CHECK(holds(ply_error(folder, with("ascii", "binary_big_endian")), "mesh.ply:2: format 'binary_big_endian'"));
+  CHECK(holds(ply_error(folder, with("vertex 4", "vertex 5")), "mesh.ply:16: "));  // takes the face for a vertex
+  CHECK(holds(ply_error(folder, with("vertex 4", "vertex 3")), "more follows"));
+  CHECK(holds(ply_error(folder, with("vertex 4", "vertex 4000000000")), "more than the file holds"));
+  CHECK(holds(ply_error(folder, with("vertex 4", "vertex -4")), "mesh.ply:4"));
+  CHECK(holds(ply_error(folder, with("face 1", "face 2")), "breaks off in face 2 of 2"));
+  CHECK(holds(ply_error(folder, with("4 0 1 2 3", "4 0 1 2 7")), "has corner 7"));
+  CHECK(holds(ply_error(folder, with("4 0 1 2 3", "400000 0 1 2 3")), "a list of 4e+05"));
+  CHECK(holds(ply_error(folder, with("10 0 5", "10 nan 5")), "expected a number"));
+  CHECK(holds(ply_error(folder, with("10 0 5", "10 1e12 5")), "not within 1e9"));
+  CHECK(holds(ply_error(folder, with("property float z\n", "")), "with x, y and z"));
+  const std::string binary = binary_ground();
+  CHECK(holds(ply_error(folder, binary.substr(0, binary.size() - 5)), "breaks off in face 2 of 2"));
+}
+
+TEST_CASE("damaged scenes: one line, nothing written") {
+  const TemporaryFolder folder;
+  write(folder / "square.ply", square);
+  const auto refused = [&](const std::string& xml, const char* said) {
+    write(folder / "scene.xml", xml);
+    const std::string message = refusal(folder, [&] { io::import_sionna(folder / "scene.xml", folder / "made"); });
+    CHECK(holds(message, said));
+  };
+  const std::string good = scene(shape("square.ply", "own"));
+  refused(good.substr(0, good.size() - 12), "damaged XML");
+  refused("<!DOCTYPE scene [<!ENTITY a \"b\">]>" + good, "document type declaration");
+  refused("<osm/>", "expected <scene>");
+  refused(scene(""), "holds no surface");
+  refused(scene(shape("absent.ply", "own")), "absent.ply");
+  refused(scene(shape("square.ply", "unheard")), "nowhere defined");
+  refused(scene(shape("square.ply", "own", "<transform name=\"to_world\"><matrix value=\"1 2 3\"/></transform>")),
+          "found 3 numbers");
+  refused(scene(shape("square.ply", "own", "<transform name=\"to_world\"><rotate angle=\"90\"/></transform>")),
+          "without axis");
+}
+
+}  // namespace test_import_sionna
