@@ -28,6 +28,7 @@ struct ImportSettings {
   double smallest_house_m2 = 1.0;  ///< footprints below are left out
   TouchingHouses touching = TouchingHouses::unite;
   std::optional<double> frequency_hz;  ///< of the scenario; absent: as the source says, else 5.9 GHz (Sionna: 3.5 GHz)
+  std::filesystem::path terrain;       ///< an ASCII grid of ESRI; empty: the ground is flat, at 0. Not for Sionna
 };
 
 /// What became of the input, each count by its reason.

@@ -224,7 +224,7 @@ void add_import_sizes(CLI::App& command, io::ImportSettings& settings) {
   add_length_option(command, "--ground-margin-m", "Ground around everything (default: 50)", settings.ground_margin_m);
   add_length_option(command, "--snap-tolerance-m", "Houses no further apart touch (default: 0.1)",
                     settings.snap_tolerance_m);
-  add_length_option(command, "--smallest-house-m2", "Smaller footprints are left out (default: 1)",
+  add_length_option(command, "--smallest-house-sqm", "Smaller footprints are left out (default: 1)",
                     settings.smallest_house_m2, "M2");
   command
       .add_option("--frequency-hz", settings.frequency_hz,
@@ -259,6 +259,11 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
       ->check(CLI::IsMember({"union", "snap"}))
       ->type_name("MODE");
   add_import_sizes(command, options.settings);
+  command
+      .add_option_function<std::string>(
+          "--terrain", [&](const std::string& file) { options.settings.terrain = file; },
+          "Heights of the ground, an ASCII grid of ESRI in UTM (default: flat); not for sionna")
+      ->type_name("FILE");
   command.add_flag("--quiet", options.quiet, "No report on the screen; report.json has it");
 }
 

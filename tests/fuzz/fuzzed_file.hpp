@@ -32,6 +32,7 @@ class WorkFolder {
   WorkFolder& operator=(const WorkFolder&) = delete;
 
   std::filesystem::path write(const std::string& name, std::string_view bytes) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
     const std::filesystem::path file = path_ / name;
     std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     return file;

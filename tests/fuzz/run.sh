@@ -9,7 +9,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds="${1:-60}"
 shift || true
-targets=("${@:-obj scenario traffic pattern}")
+targets=("${@:-obj scenario traffic pattern import}")
 read -ra targets <<<"${targets[*]}"
 
 examples/install_dependencies.sh clang

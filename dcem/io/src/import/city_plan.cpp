@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
@@ -47,7 +48,13 @@ class TownPlanner {
     std::vector<FoundHouse> kept;
     for (FoundHouse& house : houses_) {
       if (!clean_rings(house)) continue;
-      ShapedOutline shaped = shape_outline(house.outers, house.inners);
+      ShapedOutline shaped;
+      try {
+        shaped = shape_outline(house.outers, house.inners);
+      } catch (const std::runtime_error&) {
+        count(report_.skipped, " whose outline cannot be mended");
+        continue;
+      }
       if (area_m2(shaped.areas) < settings_.smallest_house_m2) {
         count(report_.skipped, " without area");
         continue;
@@ -195,7 +202,7 @@ class TownPlanner {
     for (const auto& [kind, pieces] : kinds) {
       const FoundHouse& house = houses_[house_of.at(kind)];
       for (Area& area : unite_pieces(pieces)) {
-        parts.push_back({{std::move(area)}, house.height_m, house.wall, house.roof, house.id});
+        parts.push_back({{std::move(area)}, house.height_m, 0.0, house.wall, house.roof, house.id});
       }
     }
     return parts;

@@ -19,7 +19,7 @@ struct FoundHouse {
 /// A part of the town with one flat roof. Parts that touch have the same corners along their common border.
 struct TownPart {
   Areas areas;
-  double height_m = 0.0;
+  double top_m = 0.0, foot_m = 0.0;  ///< of parts that touch, the feet are at one height
   std::string wall, roof;
   std::string id;  ///< of a house that it is made of
 };

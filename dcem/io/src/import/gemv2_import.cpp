@@ -72,11 +72,11 @@ class Gemv2Import {
       low_m = glm::min(low_m, end.place_m);
       high_m = glm::max(high_m, end.place_m);
     }
+    read_origin();
     build_town(std::move(town), low_m, high_m, settings_, buildings_, draft_);
     draft_.scenario["propagation"] = town_propagation_json();
     add_vehicles(vehicles);
     add_devices();
-    read_origin();
     draft_.scenario["frequency_hz"] = settings_.frequency_hz.value_or(links_.front().frequency_hz);
     return write_import(std::move(draft_), folder_, settings_);
   }
@@ -169,7 +169,9 @@ class Gemv2Import {
            {"box_m", {rounded(box.length_m), rounded(box.width_m), height_m}},
            {"material", "metal"},
            {"motion",
-            {{"position_m", {rounded(box.centre_m.x), rounded(box.centre_m.y), 0.0}}, {"yaw_deg", yaw_deg(box)}}}});
+            {{"position_m",
+              {rounded(box.centre_m.x), rounded(box.centre_m.y), rounded(ground_m(draft_, box.centre_m))}},
+             {"yaw_deg", yaw_deg(box)}}}});
     }
     draft_.report.made["vehicles"] = boxes_.size();
   }
@@ -183,7 +185,7 @@ class Gemv2Import {
     nlohmann::ordered_json device{{"id", "on_" + name}};
     const auto box = boxes_.find(name);
     if (box == boxes_.end()) {
-      device["position_m"] = {end.place_m.x, end.place_m.y, end.antenna_height_m};
+      device["position_m"] = {end.place_m.x, end.place_m.y, ground_m(draft_, end.place_m) + end.antenna_height_m};
     } else {
       const double yaw_rad = box->second.yaw_rad;
       const Vec2 offset_m = end.place_m - box->second.centre_m;

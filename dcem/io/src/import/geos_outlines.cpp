@@ -212,7 +212,8 @@ void snap_to_neighbours(std::vector<Shape>& shapes, const BoxTree& tree, std::si
   }
   if (neighbours.empty()) return;
   const Shape around = collection(std::move(neighbours), GEOS_GEOMETRYCOLLECTION);
-  shapes[index] = mended(made(GEOSSnap_r(geos(), shapes[index].get(), around.get(), tolerance_m)));
+  GEOSGeometry* const snapped = GEOSSnap_r(geos(), shapes[index].get(), around.get(), tolerance_m);
+  if (snapped != nullptr) shapes[index] = mended(Shape(snapped));  // what cannot be snapped stays where it is
 }
 
 std::vector<std::size_t> outlines_around(const GEOSGeometry* point, const BoxTree& tree,

@@ -74,7 +74,7 @@ std::vector<TownPart> plan_forests(std::vector<FoundHouse>&& forests, const std:
       rest.push_back({parts[index].id,
                       {std::move(area.outer)},
                       std::move(area.holes),
-                      parts[index].height_m,
+                      parts[index].top_m,
                       parts[index].wall,
                       parts[index].roof});
     }
@@ -105,6 +105,27 @@ nlohmann::ordered_json whole_report(const ImportDraft& draft, const ImportSettin
   return json;
 }
 
+/// Where the place on the Earth is known, the grid is in UTM, as such grids are; otherwise in the scene's coordinates.
+void read_ground(const std::filesystem::path& file, const Vec2& low_m, const Vec2& high_m, ImportDraft& draft) {
+  Terrain terrain = read_terrain(file);
+  draft.sources.push_back(file);
+  if (!draft.geo.is_null()) {
+    terrain.low_m -= Vec2(draft.geo["offset_m"][0].get<double>(), draft.geo["offset_m"][1].get<double>());
+  }
+  const Vec2 end_m = terrain.high_m();
+  if (end_m.x < low_m.x || end_m.y < low_m.y || terrain.low_m.x > high_m.x || terrain.low_m.y > high_m.y) {
+    throw InputError(file.string(),
+                     "lies elsewhere than the town; expected coordinates in UTM or, where the place on the "
+                     "Earth is not known, those of the scene");
+  }
+  if (terrain.low_m.x > low_m.x || terrain.low_m.y > low_m.y || end_m.x < high_m.x || end_m.y < high_m.y) {
+    draft.report.notes.push_back("The terrain does not reach as far as the town: beyond its rim there is no ground.");
+  }
+  if (terrain.without_value > 0) draft.report.repaired["cells of the terrain without a height"] = terrain.without_value;
+  draft.report.notes.push_back("Height 0 of the scene is " + number_text(terrain.lowest_m) + " m of the terrain.");
+  draft.terrain = std::move(terrain);
+}
+
 const keys::BlockRule* block_of_key(const char* key) {
   const keys::KeyRule* const rule = keys::find_key(keys::scenario_block(), key);
   return rule == nullptr ? nullptr : keys::block_of(rule->forms);
@@ -117,22 +138,47 @@ bool reads(const keys::BlockRule* block, const char* key) {
 
 }  // namespace
 
-std::vector<TownPart> build_town(FoundTown&& town, Vec2 low_m, Vec2 high_m, const ImportSettings& settings,
-                                 const std::filesystem::path& source, ImportDraft& draft) {
+namespace {
+
+std::vector<TownPart> build_outlines(FoundTown&& town, Vec2 low_m, Vec2 high_m, const ImportSettings& settings,
+                                     const std::filesystem::path& source, ImportDraft& draft) {
   ImportReport& report = draft.report;
   report.read["houses"] += town.houses.size();
   if (!town.forests.empty()) report.read["forests"] += town.forests.size();
-  const std::vector<TownPart> parts = plan_town(std::move(town.houses), settings, "houses", report);
+  std::vector<TownPart> parts = plan_town(std::move(town.houses), settings, "houses", report);
   if (parts.empty()) throw InputError(source.string(), "holds no building with an area; expected at least one");
+  std::vector<TownPart> forests = plan_forests(std::move(town.forests), parts, settings, report);
+  widen(parts, low_m, high_m);
+  widen(forests, low_m, high_m);
+  low_m -= Vec2(settings.ground_margin_m);
+  high_m += Vec2(settings.ground_margin_m);
+  if (settings.terrain.empty()) {
+    add_flat_ground(low_m, high_m, draft.scene);
+  } else {
+    read_ground(settings.terrain, low_m, high_m, draft);
+    settle(parts, *draft.terrain);
+    settle(forests, *draft.terrain);
+    add_terrain(*draft.terrain, low_m, high_m, draft.scene);
+  }
   add_town(parts, Foot::open, draft.scene, report);
-  const std::vector<TownPart> forests = plan_forests(std::move(town.forests), parts, settings, report);
   ImportReport of_forests;
   add_town(forests, Foot::closed, draft.vegetation, of_forests);
   if (!forests.empty()) report.made["forests"] = forests.size();
-  widen(parts, low_m, high_m);
-  widen(forests, low_m, high_m);
-  add_flat_ground(low_m - Vec2(settings.ground_margin_m), high_m + Vec2(settings.ground_margin_m), draft.scene);
   return parts;
+}
+
+}  // namespace
+
+std::vector<TownPart> build_town(FoundTown&& town, Vec2 low_m, Vec2 high_m, const ImportSettings& settings,
+                                 const std::filesystem::path& source, ImportDraft& draft) {
+  try {
+    return build_outlines(std::move(town), low_m, high_m, settings, source, draft);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw InputError(source.string(),
+                     "outlines that cannot be joined (" + printable(error.what()) + "); expected a map of a town");
+  }
 }
 
 ImportReport write_import(ImportDraft&& draft, const std::filesystem::path& folder, const ImportSettings& settings) {
@@ -185,14 +231,18 @@ nlohmann::ordered_json geo_json(const UtmZone& zone, const Vec2& utm_m) {
 double roof_height_m(const std::vector<TownPart>& parts, const Vec2& point_m) {
   for (const TownPart& part : parts) {
     for (const Area& area : part.areas) {
-      if (holds_point(area, point_m)) return part.height_m;
+      if (holds_point(area, point_m)) return part.top_m;
     }
   }
   return 0.0;
 }
 
-nlohmann::ordered_json mast_json(const std::vector<TownPart>& parts, const Vec2& point_m) {
-  const double height_m = std::max(25.0, roof_height_m(parts, point_m) + 5.0);
+double ground_m(const ImportDraft& draft, const Vec2& point_m) {
+  return draft.terrain ? draft.terrain->height_m(point_m) : 0.0;
+}
+
+nlohmann::ordered_json mast_json(const ImportDraft& draft, const std::vector<TownPart>& parts, const Vec2& point_m) {
+  const double height_m = std::max(ground_m(draft, point_m) + 25.0, roof_height_m(parts, point_m) + 5.0);
   return {{"id", "mast"}, {"position_m", {point_m.x, point_m.y, height_m}}, {"power_dbm", 30}};
 }
 

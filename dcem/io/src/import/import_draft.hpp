@@ -11,6 +11,7 @@
 #include "dcem/io/src/import/city_plan.hpp"
 #include "dcem/io/src/import/obj_draft.hpp"
 #include "dcem/io/src/geo/utm.hpp"
+#include "dcem/io/src/import/terrain.hpp"
 
 namespace dcem::io {
 
@@ -22,6 +23,7 @@ struct ImportDraft {
   nlohmann::ordered_json scenario;         ///< blocks of the importer's own
   nlohmann::ordered_json geo;              ///< where the scene lies; null where that is not known
   ImportReport report;
+  std::optional<Terrain> terrain;  ///< in the scene's coordinates; absent: flat
 };
 
 /// What stands and grows in a town.
@@ -31,7 +33,7 @@ struct FoundTown {
 };
 
 /// Parts with walls and roofs, vegetation, and the ground around these and the box from `low_m` to `high_m`. Returns
-/// the parts. Throws InputError with the name of `source` where nothing stands there.
+/// the parts. `draft.geo` must be known before. Throws InputError with the name of `source` where nothing stands there.
 std::vector<TownPart> build_town(FoundTown&& town, Vec2 low_m, Vec2 high_m, const ImportSettings& settings,
                                  const std::filesystem::path& source, ImportDraft& draft);
 
@@ -50,8 +52,11 @@ nlohmann::ordered_json geo_json(const UtmZone& zone, const Vec2& utm_m);
 /// The height of the part that holds a point; 0 in the open.
 double roof_height_m(const std::vector<TownPart>& parts, const Vec2& point_m);
 
-/// A transmitter above the roof at this point, at least 25 m high.
-nlohmann::ordered_json mast_json(const std::vector<TownPart>& parts, const Vec2& point_m);
+/// The height of the ground; 0 where it is flat.
+double ground_m(const ImportDraft& draft, const Vec2& point_m);
+
+/// A transmitter above the roof at this point, at least 25 m above the ground.
+nlohmann::ordered_json mast_json(const ImportDraft& draft, const std::vector<TownPart>& parts, const Vec2& point_m);
 /// Orders of paths that a town can be run with at once.
 nlohmann::ordered_json town_propagation_json();
 

@@ -57,15 +57,15 @@ class OsmImport {
     draft_.report.read["ways"] = data_.ways.size();
     draft_.report.read["relations"] = data_.relations.size();
     find_origin();
+    draft_.geo = geo_json(zone_, origin_m_);
     for (const OsmRelation& relation : data_.relations) add_relation(relation);
     for (const OsmWay& way : data_.ways) add_way(way);
     const std::vector<TownPart> parts = build_town(std::move(town_), low_m_, high_m_, settings_, source_, draft_);
-    draft_.geo = geo_json(zone_, origin_m_);
     draft_.scenario["propagation"] = town_propagation_json();
     const Vec2 middle_m = glm::round(0.5 * (low_m_ + high_m_));
-    draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast_json(parts, middle_m)});
-    draft_.scenario["receivers"] =
-        nlohmann::ordered_json::array({{{"id", "point"}, {"positions_m", open_points_json(parts, middle_m, 8)}}});
+    draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast_json(draft_, parts, middle_m)});
+    draft_.scenario["receivers"] = nlohmann::ordered_json::array(
+        {{{"id", "point"}, {"positions_m", open_points_json(draft_, parts, middle_m, 8)}}});
     draft_.report.notes.push_back(
         "One mast and points in the open were chosen for a start: edit transmitters and receivers.");
     return write_import(std::move(draft_), folder_, settings_);

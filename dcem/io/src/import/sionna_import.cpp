@@ -179,6 +179,9 @@ class SionnaImport {
 ImportReport import_sionna(const std::filesystem::path& scene, const std::filesystem::path& folder,
                            const ImportSettings& settings) {
   check_settings(settings, scene);
+  if (!settings.terrain.empty()) {
+    throw InputError(settings.terrain.string(), "has no effect on a scene of Sionna; expected no terrain");
+  }
   return SionnaImport(scene, folder, settings).run();
 }
 

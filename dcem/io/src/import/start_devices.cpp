@@ -7,7 +7,8 @@
 
 namespace dcem::io {
 
-nlohmann::ordered_json open_points_json(const std::vector<TownPart>& parts, const Vec2& around_m, std::size_t count) {
+nlohmann::ordered_json open_points_json(const ImportDraft& draft, const std::vector<TownPart>& parts,
+                                        const Vec2& around_m, std::size_t count) {
   constexpr double first_radius_m = 15.0, step_m = 11.0, height_m = 1.5;
   constexpr std::size_t most_tries = 400;
   const double golden_rad = std::numbers::pi * (3.0 - std::sqrt(5.0));  // no direction comes twice
@@ -17,7 +18,9 @@ nlohmann::ordered_json open_points_json(const std::vector<TownPart>& parts, cons
     const double radius_m = first_radius_m + step_m * std::sqrt(static_cast<double>(attempt));
     const Vec2 point_m = around_m + radius_m * Vec2(std::cos(turn_rad), std::sin(turn_rad));
     const Vec2 rounded_m = 0.1 * glm::round(10.0 * point_m);
-    if (roof_height_m(parts, rounded_m) == 0.0) points.push_back({rounded_m.x, rounded_m.y, height_m});
+    if (roof_height_m(parts, rounded_m) == 0.0) {
+      points.push_back({rounded_m.x, rounded_m.y, ground_m(draft, rounded_m) + height_m});
+    }
   }
   return points;
 }

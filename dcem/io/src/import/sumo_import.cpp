@@ -184,7 +184,7 @@ class SumoImport {
       throw InputError(files_.trace.string(), first.line,
                        "no vehicle in the first step; expected some to carry devices");
     }
-    const nlohmann::ordered_json mast = mast_json(parts, middle_of(first));
+    const nlohmann::ordered_json mast = mast_json(draft_, parts, middle_of(first));
     if (reads_vehicle_devices() && reads_link_key("range_m")) {
       mobility["devices"] = {{"vehicles", "all"}, {"height_above_roof_m", 0.1}, {"power_dbm", 23}};
       draft_.scenario["links"] = {{"range_m", 150}};
@@ -246,10 +246,10 @@ class SumoImport {
     const std::size_t stride = std::max<std::size_t>(1, lanes.size() / most_riders);
     for (std::size_t lane = 0; lane < lanes.size() && points.size() < most_riders; lane += stride) {
       const Vec2 middle = 0.5 * (lanes[lane][0] + lanes[lane][1]);
-      points.push_back({middle.x, middle.y, 1.5});
+      points.push_back({middle.x, middle.y, ground_m(draft_, middle) + 1.5});
     }
     const Vec2 middle = 0.5 * (location_->low_m + location_->high_m);
-    draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast_json(parts, middle)});
+    draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast_json(draft_, parts, middle)});
     draft_.scenario["receivers"] = nlohmann::ordered_json::array({{{"id", "street"}, {"positions_m", points}}});
     draft_.report.notes.push_back(
         "One mast and points on streets were chosen for a start: edit transmitters and receivers.");

@@ -26,15 +26,16 @@ class TownEdges {
     }
     for (const auto& [edge, part] : left_of_) {
       for (const GridCorner& corner : {edge.first, edge.second}) {
-        levels_m_[corner].insert({part->height_m, beyond_m(edge)});
+        levels_m_[corner].insert({part->top_m, beyond_m(edge)});
       }
     }
   }
 
-  /// How high it is on the other side.
+  /// How high it is on the other side: the neighbour's roof, or in the open the own foot. Precondition: an edge of a
+  /// part.
   double beyond_m(const GridEdge& edge) const {
     const auto found = left_of_.find({edge.second, edge.first});
-    return found == left_of_.end() ? 0.0 : found->second->height_m;
+    return found == left_of_.end() ? left_of_.at(edge)->foot_m : found->second->top_m;
   }
 
   /// The heights from `low_m` to `high_m` at which an upright edge at this corner is divided, both included.
@@ -69,10 +70,10 @@ void add_walls(const TownPart& part, const Area& area, const TownEdges& edges, O
   for_each_edge(area, [&](const Vec2& from, const Vec2& to) {
     const GridEdge edge{grid_corner(from), grid_corner(to)};
     const double low_m = edges.beyond_m(edge);
-    if (low_m >= part.height_m) return;
-    ++report.made[low_m > 0.0 ? "steps between roofs" : "outer walls"];
-    add_wall(from, to, edges.levels_m(edge.first, low_m, part.height_m),
-             edges.levels_m(edge.second, low_m, part.height_m), part.wall, obj);
+    if (low_m >= part.top_m) return;
+    ++report.made[low_m > part.foot_m ? "steps between roofs" : "outer walls"];
+    add_wall(from, to, edges.levels_m(edge.first, low_m, part.top_m), edges.levels_m(edge.second, low_m, part.top_m),
+             part.wall, obj);
   });
 }
 
@@ -86,8 +87,9 @@ void add_roof(const TownPart& part, const Area& area, Foot foot, ObjDraft& obj) 
   }
   for (const std::array<Vec2, 3>& flat : triangles) {
     const auto at = [&](const Vec2& corner, double height_m) { return Vec3(corner.x, corner.y, height_m); };
-    obj.face(part.roof, {at(flat[0], part.height_m), at(flat[1], part.height_m), at(flat[2], part.height_m)});
-    if (foot == Foot::closed) obj.face(part.wall, {at(flat[2], 0.0), at(flat[1], 0.0), at(flat[0], 0.0)});
+    obj.face(part.roof, {at(flat[0], part.top_m), at(flat[1], part.top_m), at(flat[2], part.top_m)});
+    if (foot == Foot::closed)
+      obj.face(part.wall, {at(flat[2], part.foot_m), at(flat[1], part.foot_m), at(flat[0], part.foot_m)});
   }
 }
 
@@ -102,7 +104,7 @@ void add_town(const std::vector<TownPart>& parts, Foot foot, ObjDraft& obj, Impo
       add_walls(part, area, edges, obj, report);
       ++report.made["roofs"];
       report.sizes["footprint_area_m2"] += area_m2(area);
-      report.sizes["volume_m3"] += area_m2(area) * part.height_m;
+      report.sizes["volume_m3"] += area_m2(area) * (part.top_m - part.foot_m);
     }
   }
 }
