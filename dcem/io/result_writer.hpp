@@ -44,7 +44,7 @@ struct ResultFacts {
   int exact_interactions = 0;   ///< up to which all paths are found, where discovery is sampled beyond them
   double memory_limit_bytes = std::numeric_limits<double>::infinity();  ///< of the arrays of a file, beside their 16 GB
   bool all_links = true;  ///< every transmitter with every receiver; otherwise a frame says which links there are
-  std::optional<GeoAnchor> geo{};                                       ///< where on the Earth the scene lies
+  std::optional<GeoAnchor> geo{};  ///< where on the Earth the scene lies
 };
 
 /// Whether more is asked for than `links.csv`, whose lines say all that there is to write of a frame.

@@ -13,8 +13,8 @@
 #include "dcem/io/inspection.hpp"
 #include "dcem/io/obj_reader.hpp"
 #include "dcem/io/scenario.hpp"
-#include "dcem/io/src/import/outlines.hpp"
 #include "dcem/io/src/geo/utm.hpp"
+#include "dcem/io/src/import/outlines.hpp"
 #include "tests/io/program_case.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -70,12 +70,9 @@ class FacetBuilder {
 
   /// The triangles, set by set: sets in the order of their first triangles, which stand first in them.
   std::vector<std::uint32_t> triangles_by_set() {
-    std::vector<std::uint32_t> begins(mesh_.triangles.size() + 1, 0);
-    for (std::uint32_t triangle = 0; triangle < mesh_.triangles.size(); ++triangle) {
-      ++begins[coplanar_.smallest(triangle) + 1];
-    }
-    std::partial_sum(begins.begin(), begins.end(), begins.begin());
-    std::vector<std::uint32_t> by_set(mesh_.triangles.size());
+    std::vector<std::uint32_t> begins(mesh_.triangles.size(), 0), by_set(mesh_.triangles.size());
+    for (std::uint32_t triangle = 0; triangle < by_set.size(); ++triangle) ++begins[coplanar_.smallest(triangle)];
+    std::exclusive_scan(begins.begin(), begins.end(), begins.begin(), 0U);
     for (std::uint32_t triangle = 0; triangle < by_set.size(); ++triangle) {
       by_set[begins[coplanar_.smallest(triangle)]++] = triangle;
     }

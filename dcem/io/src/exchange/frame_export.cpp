@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
+#include "dcem/io/src/exchange/column_export.hpp"
 #include "dcem/io/src/exchange/deepmimo_export.hpp"
 #include "dcem/io/src/exchange/gltf_export.hpp"
-#include "dcem/io/src/exchange/column_export.hpp"
 #include "dcem/io/src/exchange/kml_export.hpp"
 #include "dcem/io/src/exchange/p2m_export.hpp"
 #include "dcem/io/src/exchange/qd_export.hpp"

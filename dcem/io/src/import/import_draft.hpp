@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "dcem/io/import.hpp"
+#include "dcem/io/src/geo/utm.hpp"
 #include "dcem/io/src/import/city_plan.hpp"
 #include "dcem/io/src/import/obj_draft.hpp"
-#include "dcem/io/src/geo/utm.hpp"
 #include "dcem/io/src/import/terrain.hpp"
 
 namespace dcem::io {

@@ -1,8 +1,8 @@
 #include "dcem/io/src/import/import_report.hpp"
 
+#include "dcem/io/src/geo/utm.hpp"
 #include "dcem/io/src/import/osm_pbf.hpp"
 #include "dcem/io/src/import/outlines.hpp"
-#include "dcem/io/src/geo/utm.hpp"
 #include "dcem/io/text_table.hpp"
 
 namespace dcem::io {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "dcem/io/src/import/outlines.hpp"
 #include "dcem/io/src/geo/utm.hpp"
+#include "dcem/io/src/import/outlines.hpp"
 
 namespace dcem::io {
 

@@ -77,9 +77,8 @@ struct XmlReader::Parser {
     });
   }
   static void on_doctype(void* user_data, const char*, const char*, const char*, int) {
-    guarded(user_data, [](XmlReader& reader) {
-      reader.fail("a document type declaration (<!DOCTYPE ...>); expected none");
-    });
+    guarded(user_data,
+            [](XmlReader& reader) { reader.fail("a document type declaration (<!DOCTYPE ...>); expected none"); });
   }
 
   gzFile stream;
