@@ -1,5 +1,6 @@
 #include "dcem/io/src/import/mitsuba_scene.hpp"
 
+#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "dcem/geometry/vector.hpp"

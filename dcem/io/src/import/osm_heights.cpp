@@ -1,6 +1,7 @@
 #include "dcem/io/src/import/osm_heights.hpp"
 
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "dcem/io/src/text/text_input.hpp"

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "dcem/io/src/import/osm_data.hpp"
 #include "dcem/io/src/text/text_input.hpp"

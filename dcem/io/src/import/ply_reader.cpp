@@ -1,5 +1,6 @@
 #include "dcem/io/src/import/ply_reader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>

@@ -1,5 +1,7 @@
 #include "dcem/io/src/import/sumo_files.hpp"
 
+#include <cmath>
+
 #include "dcem/io/src/text/text_input.hpp"
 #include "dcem/io/src/traffic/xml_reader.hpp"
 
