@@ -99,9 +99,10 @@ class City {
     const Stopwatch half;
     dcem::look_from(scene_, search_, *outlines_, *lanes_, receiver, room_);
     times.ms[0] = half.elapsed_ms();
+    const dcem::HalfRefs masts{halves_};
     const Stopwatch join;
     const auto proposed =
-        dcem::join_halves(scene_, search_, {*outlines_, *lanes_, halves_, room_.half, room_.lists}, transmitters);
+        dcem::join_halves(scene_, search_, {*outlines_, *lanes_, masts, room_.half, room_.lists}, transmitters);
     times.ms[1] = join.elapsed_ms();
     const Stopwatch solver;
     dcem::SearchCounters counters;

@@ -325,6 +325,7 @@ void BasicSimulator<Surface, Index>::check_surface_model() const {
 
 }  // namespace dcem
 
+#include "dcem/sim/detail/simulator_ends.hpp"
 #include "dcem/sim/detail/simulator_frames.hpp"
 #include "dcem/sim/detail/simulator_lifetime.hpp"
 #include "dcem/sim/detail/simulator_links.hpp"

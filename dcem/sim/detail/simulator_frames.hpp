@@ -1,5 +1,5 @@
 #pragma once
-/// How a `BasicSimulator` moves to a frame, and what transmitters reach in it; included by basic_simulator.hpp.
+/// How a `BasicSimulator` moves to a frame; included by basic_simulator.hpp.
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -66,23 +66,6 @@ void BasicSimulator<Surface, Index>::choose_links() {
   for (const std::vector<std::uint32_t>& of_one : chosen_) {
     for (const std::uint32_t transmitter : of_one) ++links_of_[transmitter];
   }
-}
-
-template <SurfaceModel Surface, SpatialIndex Index>
-typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::TransmitterEnds::only(
-    std::vector<std::uint32_t> chosen) const {
-  TransmitterEnds some;
-  some.devices = devices;
-  for (const std::uint32_t index : chosen) {
-    some.link.push_back(link[index]);
-    some.radio.push_back(radio[index]);
-    some.reached.push_back(reached[index]);
-    if (!halves.empty()) some.halves.add(halves[index]);
-    if (!in_view.empty()) some.in_view.push_back(in_view[index]);
-  }
-  some.embedded = embedded;
-  some.numbers = std::move(chosen);
-  return some;
 }
 
 /// How many receivers are not where they were in the frame before.
@@ -187,96 +170,6 @@ void BasicSimulator<Surface, Index>::forget_replaced(const ChangeSet& changes, C
     counters.expired += forgotten;
     counters.died += forgotten;
   }
-}
-
-template <SurfaceModel Surface, SpatialIndex Index>
-typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::transmitter_ends(
-    std::span<const Device> devices, std::size_t receivers, std::span<EdgeReach> reach, std::span<KeptHalf> halves,
-    std::vector<char> embedded, bool fine) const {
-  TransmitterEnds ends;
-  ends.devices = devices;
-  ends.embedded = std::move(embedded);
-  for (const Device& device : devices) {
-    const DeviceState state = state_of(device);
-    TraversalCounters counters;
-    ends.link.push_back(state.present ? std::optional(link_end(state, counters)) : std::nullopt);
-    ends.radio.push_back(detail::radio_end(device, state));
-  }
-  ends.reached.resize(ends.link.size());
-  const PathSearchSettings search = search_settings(ends.embedded);
-  if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
-  if (plan_.joined > 0 && search.max_interactions > 0) find_transmitter_halves(ends, receivers, halves, fine);
-  if (settings_.propagation.diffuse.enabled) find_facets_in_view(ends);
-  return ends;
-}
-
-/// As `diffuse_powers` does for receivers, so that a link has the same bits in a run and on a map.
-template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::find_facets_in_view(TransmitterEnds& ends) const {
-  ends.in_view.resize(ends.link.size());
-  std::vector<ReceiverRoom> rooms = receiver_rooms();
-  pool_->for_each(ends.link.size(), [&](std::size_t index, unsigned worker) {
-    if (!ends.link[index]) return;
-    ends.in_view[index] = facets_in_view(rooms[worker].sight, scene_, *outlines_, *ends.link[index],
-                                         settings_.propagation.max_transmissions);
-  });
-}
-
-template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& ends, std::size_t receivers,
-                                                             std::span<KeptHalf> halves, bool fine) const {
-  const PathSearchSettings search = search_settings(ends.embedded);
-  const bool triples = joins_triples(search);
-  const auto serves = [&](const KeptHalf& half) { return !triples || half.lists() != nullptr; };
-  const bool are_kept = ends.devices.data() == scene_.transmitters().data();
-  if (halves.empty() && !fine && are_kept && halves_are_current_ && std::ranges::all_of(halves_, serves)) {
-    ends.halves = HalfRefs(halves_);
-    return;
-  }
-  if (halves.empty()) {
-    const std::size_t count = ends.link.size();
-    ends.own_halves.assign(count,
-                           KeptHalf(fine ? detail::fine_view_pixels_for(count) : detail::view_pixels_for(count)));
-    halves = ends.own_halves;
-  }
-  const bool over_mirrors = search.max_reflections >= 1 && search.max_interactions >= 2;
-  const HalfLists of_all{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors,
-                         fine || (triples && (receivers > 0 || change_)), receivers, pool_.get()};
-  const bool has_choice = !choice_.takes_all() && halves.data() == halves_.data();
-  const auto update = [&](std::size_t index, unsigned) {
-    HalfLists lists = of_all;
-    if (has_choice) lists.receivers = std::min(receivers, links_of_[index]);
-    if (!ends.link[index] || (has_choice && links_of_[index] == 0)) return halves[index].forget_bodies();
-    halves[index].update(scene_, *outlines_, *ends.link[index], half_settings(search), lists,
-                         change_ && &halves[index] == &halves_[index] ? change_->moved() : std::span<const char>{});
-  };
-  // A few transmitters one after another, with all threads for each: lists are most of the work.
-  if (ends.link.size() >= pool_->size()) {
-    pool_->for_each(ends.link.size(), update);
-  } else {
-    for (std::size_t index = 0; index < ends.link.size(); ++index) update(index, 0);
-  }
-  ends.halves = HalfRefs(halves);
-}
-
-template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const {
-  const Tracer tracer(scene_, index_);
-  const PathSearchSettings search = search_settings(ends.embedded);
-  if (reach.empty()) {
-    ends.own_reach.resize(ends.link.size());
-    reach = ends.own_reach;
-  }
-  std::vector<SearchCounters> spent(ends.link.size());
-  pool_->for_each(ends.link.size(), [&](std::size_t index, unsigned) {
-    if (!ends.link[index]) return reach[index].clear();
-    const bool known = reach[index].size() > 0;
-    reach[index].next_frame(detail::proposal_lifetime_frames(search));
-    find_reach(tracer, search, *ends.link[index], {ends.device(index).id, frame_.index},
-               known ? search.rays_steady : search.rays, reach[index], spent[index]);
-    ends.reached[index] = reach[index].edges();
-  });
-  for (const SearchCounters& one : spent) detail::add_search_work(one, ends.work);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>

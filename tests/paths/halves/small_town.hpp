@@ -88,7 +88,7 @@ inline std::vector<Path> joined(TracedScene<>& traced, const LinkEnd& from, cons
   const std::vector<std::optional<LinkEnd>> ends{from};
   look_from(traced.scene, settings, outlines, lanes, to, room);
   const std::vector<SequenceList> proposed =
-      join_halves(traced.scene, settings, {outlines, lanes, transmitters, room.half, room.lists}, ends);
+      join_halves(traced.scene, settings, {outlines, lanes, HalfRefs(transmitters), room.half, room.lists}, ends);
   const std::vector<ReachedEdges> reached(1);
   return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached, proposed).front().paths;
 }

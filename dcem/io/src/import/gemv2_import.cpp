@@ -212,12 +212,7 @@ class Gemv2Import {
       draft_.scenario["transmitters"].push_back(std::move(device));
     }
     for (const std::string& name : second) draft_.scenario["receivers"].push_back(device_json(name));
-    if (reads_link_key("pairs")) {
-      draft_.scenario["links"] = {{"pairs", std::move(pairs)}};
-    } else {
-      draft_.report.notes.push_back("This version computes all pairs of devices, not the " +
-                                    std::to_string(pairs_.size()) + " links alone.");
-    }
+    draft_.scenario["links"] = {{"pairs", std::move(pairs)}};
     draft_.report.made["transmitters"] = first.size();
     draft_.report.made["receivers"] = second.size();
   }

@@ -87,7 +87,7 @@ nlohmann::ordered_json scenario_json(ImportDraft& draft, const ImportSettings& s
   nlohmann::ordered_json scenario{{"format", "dcem-scenario/1"},
                                   {"scene", {{"obj", "scene.obj"}}},
                                   {"frequency_hz", settings.frequency_hz.value_or(v2x_frequency_hz)}};
-  if (!draft.geo.is_null() && reads_geo()) scenario["geo"] = draft.geo;
+  if (!draft.geo.is_null()) scenario["geo"] = draft.geo;
   if (!draft.vegetation.empty()) {
     draft.scenario["objects"].push_back({{"id", "vegetation"}, {"obj", "vegetation.obj"}, {"foliage", true}});
   }
@@ -125,20 +125,6 @@ void read_ground(const std::filesystem::path& file, const Vec2& low_m, const Vec
   draft.report.notes.push_back("Height 0 of the scene is " + number_text(terrain.lowest_m) + " m of the terrain.");
   draft.terrain = std::move(terrain);
 }
-
-const keys::BlockRule* block_of_key(const char* key) {
-  const keys::KeyRule* const rule = keys::find_key(keys::scenario_block(), key);
-  return rule == nullptr ? nullptr : keys::block_of(rule->forms);
-}
-
-bool reads(const keys::BlockRule* block, const char* key) {
-  const keys::KeyRule* const rule = block == nullptr ? nullptr : keys::find_key(*block, key);
-  return rule != nullptr && !keys::is_later(*rule);
-}
-
-}  // namespace
-
-namespace {
 
 std::vector<TownPart> build_outlines(FoundTown&& town, Vec2 low_m, Vec2 high_m, const ImportSettings& settings,
                                      const std::filesystem::path& source, ImportDraft& draft) {
@@ -248,18 +234,6 @@ nlohmann::ordered_json mast_json(const ImportDraft& draft, const std::vector<Tow
 
 nlohmann::ordered_json town_propagation_json() {
   return {{"max_reflections", 2}, {"max_transmissions", 0}, {"max_diffractions", 1}, {"max_interactions", 2}};
-}
-
-bool reads_geo() {
-  return reads(&keys::scenario_block(), "geo");
-}
-
-bool reads_vehicle_devices() {
-  return reads(block_of_key("mobility"), "devices");
-}
-
-bool reads_link_key(const char* key) {
-  return reads(block_of_key("links"), key);
 }
 
 std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file) {

@@ -60,11 +60,6 @@ nlohmann::ordered_json mast_json(const ImportDraft& draft, const std::vector<Tow
 /// Orders of paths that a town can be run with at once.
 nlohmann::ordered_json town_propagation_json();
 
-/// Whether this version reads the key in scenarios.
-bool reads_geo();
-bool reads_vehicle_devices();
-bool reads_link_key(const char* key);
-
 /// A file's name as a scenario in `folder` refers to it.
 std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file);
 

@@ -11,7 +11,7 @@ namespace dcem::io {
 
 namespace {
 
-constexpr std::size_t most_riders = 10;
+constexpr std::size_t most_points = 10;
 
 bool is_forest(const std::string& type) {
   return type == "forest" || type == "wood" || type == "natural.wood" || type == "landuse.forest";
@@ -174,27 +174,31 @@ class SumoImport {
     for (const auto& file : type_files_) mobility["vehicle_types"].push_back(name_from(folder_, file));
     FcdStep first;
     FcdReader(files_.trace).next(first);
-    std::set<std::string> names;
-    for (const FcdVehicle& vehicle : first.vehicles) names.insert(vehicle.id);
-    const VehicleTypes types = vehicle_types();
-    const TraceSurvey survey = survey_trace(files_.trace, types, names);
-    draft_.report.read["steps of the trace"] = survey.step_times_s.size();
-    draft_.report.read["types of vehicles in the trace"] = survey.traffic.types.size();
     if (first.vehicles.empty()) {
       throw InputError(files_.trace.string(), first.line,
                        "no vehicle in the first step; expected some to carry devices");
     }
-    const nlohmann::ordered_json mast = mast_json(draft_, parts, middle_of(first));
-    if (reads_vehicle_devices() && reads_link_key("range_m")) {
-      mobility["devices"] = {{"vehicles", "all"}, {"height_above_roof_m", 0.1}, {"power_dbm", 23}};
-      draft_.scenario["links"] = {{"range_m", 150}};
-      draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast});
-      draft_.scenario["receivers"] = nlohmann::ordered_json::array();
-    } else {
-      draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast});
-      draft_.scenario["receivers"] = riders(first, survey, types);
-    }
+    const TraceSurvey survey = survey_trace(files_.trace, vehicle_types(), {{}, true});
+    draft_.report.read["steps of the trace"] = survey.step_times_s.size();
+    draft_.report.read["types of vehicles in the trace"] = survey.traffic.types.size();
+    mobility["devices"] = {{"vehicles", equipped(survey.traffic.types_of_vehicles.size())},
+                           {"height_above_roof_m", 0.1},
+                           {"power_dbm", 23}};
+    draft_.scenario["links"] = {{"range_m", 150}};
+    draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast_json(draft_, parts, middle_of(first))});
     draft_.scenario["mobility"] = std::move(mobility);
+  }
+
+  /// All of a few vehicles, some 40 of many.
+  nlohmann::ordered_json equipped(std::size_t vehicles) {
+    constexpr std::size_t most = 40;
+    const bool all = vehicles <= most;
+    draft_.report.notes.push_back("A mast and devices on " + std::string(all ? "all" : "a share of the") + " " +
+                                  std::to_string(vehicles) +
+                                  " vehicles, with links within 150 m, were chosen for a start: edit transmitters, "
+                                  "mobility.devices and links.");
+    if (all) return "all";
+    return {{"share", static_cast<double>(most) / static_cast<double>(vehicles)}, {"seed", 1}};
   }
 
   static Vec2 middle_of(const FcdStep& step) {
@@ -211,40 +215,12 @@ class SumoImport {
     return {median(x_m), median(y_m)};
   }
 
-  /// Devices on vehicles of the first step, those first that stay longest: a device whose vehicle is never there in the
-  /// frames asked for would be an error.
-  nlohmann::ordered_json riders(const FcdStep& first, const TraceSurvey& survey, const VehicleTypes& types) {
-    std::vector<const FcdVehicle*> vehicles;
-    for (const FcdVehicle& vehicle : first.vehicles) vehicles.push_back(&vehicle);
-    const auto stays_s = [&](const FcdVehicle& vehicle) {
-      return survey.traffic.presence.at(vehicle.id).front().last_s;
-    };
-    std::stable_sort(vehicles.begin(), vehicles.end(),
-                     [&](const FcdVehicle* a, const FcdVehicle* b) { return stays_s(*a) > stays_s(*b); });
-    vehicles.resize(std::min(vehicles.size(), most_riders));
-    nlohmann::ordered_json receivers = nlohmann::ordered_json::array();
-    for (const FcdVehicle* vehicle : vehicles) {
-      const double roof_m = types.find_size_m(vehicle->type)->z;
-      receivers.push_back(
-          {{"id", device_id(vehicle->id)}, {"attach_to", vehicle->id}, {"offset_m", {0, 0, roof_m + 0.1}}});
-    }
-    draft_.report.notes.push_back("One mast and devices on " + std::to_string(vehicles.size()) +
-                                  " vehicles were chosen for a start: edit transmitters and receivers.");
-    return receivers;
-  }
-
-  /// Ids of devices stand in names of files.
-  static std::string device_id(std::string vehicle) {
-    std::replace(vehicle.begin(), vehicle.end(), '/', '_');
-    return "on_" + vehicle.substr(0, 100);
-  }
-
   /// Without traffic: receivers on streets.
   void add_probes(const std::vector<Ring>& lanes, const std::vector<TownPart>& parts) {
     if (lanes.empty()) throw InputError(files_.network.string(), "holds no lane; expected a network with streets");
     nlohmann::ordered_json points = nlohmann::ordered_json::array();
-    const std::size_t stride = std::max<std::size_t>(1, lanes.size() / most_riders);
-    for (std::size_t lane = 0; lane < lanes.size() && points.size() < most_riders; lane += stride) {
+    const std::size_t stride = std::max<std::size_t>(1, lanes.size() / most_points);
+    for (std::size_t lane = 0; lane < lanes.size() && points.size() < most_points; lane += stride) {
       const Vec2 middle = 0.5 * (lanes[lane][0] + lanes[lane][1]);
       points.push_back({middle.x, middle.y, ground_m(draft_, middle) + 1.5});
     }
