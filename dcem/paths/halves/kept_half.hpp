@@ -107,8 +107,8 @@ class KeptHalf {
   bool pay(std::size_t joins) const { return 16 * joins >= half_.layers()[0].mirrors.size(); }
 
   /// Of a device that has stood for a while, looks through some mirrors more in each frame: as many as take the time
-  /// that the links from scratch do. Fewer of them let all frames wait for what the lists spare. One that rides on a body
-  /// may drive off at any moment: it begins where they would have paid by then.
+  /// that the links from scratch do. Fewer of them let all frames wait for what the lists spare. One that rides on a
+  /// body may drive off at any moment: it begins where they would have paid by then.
   void go_on_with_lists(const BeamSource& source, std::size_t receivers) {
     constexpr std::size_t mirrors_for_a_link = 30;
     if (end_->ignored_body && !pay(joins_)) return;
