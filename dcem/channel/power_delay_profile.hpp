@@ -7,17 +7,11 @@
 #include <vector>
 
 #include "dcem/channel/band_limited_profile.hpp"
+#include "dcem/channel/pdp_mode.hpp"
 #include "dcem/field/path_contribution.hpp"
 #include "dcem/field/power_sample.hpp"
 
 namespace dcem {
-
-/// How the paths of one bin are added. Diffuse power is added to theirs in each of them.
-enum class PdpMode {
-  incoherent,   ///< Σ|h|²
-  coherent,     ///< |Σh|²; dual-polarized links, which have no single h, add powers
-  band_limited  ///< what a receiver of bandwidth 1/bin sees (channel/band_limited_profile.hpp)
-};
 
 /// One bin that holds power.
 struct PdpTap {

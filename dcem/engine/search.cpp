@@ -2,6 +2,7 @@
 #include "dcem/paths/halves/beam_finder_bodies.hpp"
 #include "dcem/paths/halves/crowd_beams_bodies.hpp"
 #include "dcem/paths/halves/facet_outlines_bodies.hpp"
+#include "dcem/paths/halves/link_halves_bodies.hpp"
 #include "dcem/paths/halves/sight_bodies.hpp"
 #include "dcem/paths/halves/view_map_bodies.hpp"
 #include "dcem/sim/discovery_bodies.hpp"

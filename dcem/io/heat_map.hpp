@@ -14,14 +14,9 @@
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/image.hpp"
 #include "dcem/io/picture_format.hpp"
+#include "dcem/io/value_range.hpp"
 
 namespace dcem::io {
-
-/// The lowest and the highest value of a colour bar.
-struct ValueRange {
-  double low = 0.0;
-  double high = 1.0;
-};
 
 /// What the two axes of a picture are.
 struct HeatMapAxes {

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "dcem/channel/power_delay_profile.hpp"
+#include "dcem/channel/pdp_mode.hpp"
 #include "dcem/channel/thermal_noise.hpp"
 #include "dcem/io/exchange_settings.hpp"
 #include "dcem/io/geo_anchor.hpp"
-#include "dcem/io/heat_map.hpp"
 #include "dcem/io/picture_format.hpp"
 #include "dcem/io/traffic.hpp"
+#include "dcem/io/value_range.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/settings.hpp"
 

@@ -44,10 +44,12 @@ struct DeviceState {
 
 class Scene {
  public:
-  explicit Scene(SurfaceSettings settings = {}) : settings_(settings) {
-    validate(settings);
-    append({"", LinearMotion{}, {}});
-  }
+  explicit Scene(SurfaceSettings settings = {});
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
 
   // Building. Each function throws std::invalid_argument, naming what is wrong, and then has changed nothing.
 

@@ -13,6 +13,16 @@
 
 namespace dcem {
 
+DCEM_INLINE Scene::Scene(SurfaceSettings settings) : settings_(settings) {
+  validate(settings);
+  append({"", LinearMotion{}, {}});
+}
+DCEM_INLINE Scene::Scene(const Scene&) = default;
+DCEM_INLINE Scene::Scene(Scene&&) noexcept = default;
+DCEM_INLINE Scene& Scene::operator=(const Scene&) = default;
+DCEM_INLINE Scene& Scene::operator=(Scene&&) noexcept = default;
+DCEM_INLINE Scene::~Scene() = default;
+
 DCEM_INLINE MaterialId Scene::add_material(Material material) {
   validate(material);
   if (find_material(material.name)) {

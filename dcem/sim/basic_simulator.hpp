@@ -8,6 +8,9 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -114,12 +117,17 @@ class BasicSimulator {
     std::vector<std::vector<FacetId>> in_view;  ///< the facets that each may see, where diffuse power is asked for
     WorkCounters work;                          ///< what finding them took
     std::vector<std::uint32_t> numbers;         ///< of those that were chosen; empty: as they stand in the scene
+    const TransmitterEnds* all = nullptr;       ///< those that they were chosen from
+    std::unordered_map<std::string_view, std::uint32_t> by_id{};  ///< their numbers, where they have halves
 
     /// The number among all devices.
     std::size_t number(std::size_t index) const { return numbers.empty() ? index : numbers[index]; }
     const Device& device(std::size_t index) const { return devices[number(index)]; }
     /// Some of them, for a receiver that has no links with the others.
     TransmitterEnds only(std::vector<std::uint32_t> chosen) const;
+    /// What a receiver sees that is a transmitter, too, with lists where they are asked for; none where that has not
+    /// been worked out.
+    const KeptHalf* half_of(const std::string& receiver, const LinkEnd& end, bool with_lists) const;
   };
 
   /// One end of a link, as paths and as fields see it.
@@ -213,10 +221,9 @@ class BasicSimulator {
   Solved solve_again(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                      ReceiverRoom* room);
   void look_from_receiver(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;
-  void look_for_triples(const Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room,
-                        bool stands) const;
+  void look_for_triples(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;
   std::vector<PathContribution> paths_of_moving(Following& following, detail::ReceiverMemory& memory,
-                                                ReceiverRoom& room, std::size_t transmitter, bool rests) const;
+                                                std::size_t transmitter, bool rests) const;
   bool may_pool(const Following& following, const detail::ReceiverMemory& memory, std::size_t transmitter,
                 bool rests) const;
   void prepare_pool(const Following& following, detail::ReceiverMemory& memory, std::size_t transmitter) const;

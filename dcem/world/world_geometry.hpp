@@ -55,12 +55,19 @@ struct SurfaceMaterial {
 
 class WorldGeometry {
  public:
+  WorldGeometry();
+  WorldGeometry(const WorldGeometry&);
+  WorldGeometry(WorldGeometry&&) noexcept;
+  WorldGeometry& operator=(const WorldGeometry&);
+  WorldGeometry& operator=(WorldGeometry&&) noexcept;
+  ~WorldGeometry();
+
   /// Appends a body in a state; bodies are numbered in the order in which they come.
   void append(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials, const BodyState& state);
   /// Moves a body to a state, from its local coordinates: a pose that comes back brings back the same bits.
   void place(BodyId id, const SurfaceMesh& mesh, const BodyState& state);
   /// Takes all bodies out.
-  void clear() { *this = {}; }
+  void clear();
 
   std::span<const WorldFacet> facets() const { return facets_; }
   std::span<const WorldWedge> wedges() const { return wedges_; }

@@ -8,6 +8,17 @@
 
 namespace dcem {
 
+DCEM_INLINE WorldGeometry::WorldGeometry() = default;
+DCEM_INLINE WorldGeometry::WorldGeometry(const WorldGeometry&) = default;
+DCEM_INLINE WorldGeometry::WorldGeometry(WorldGeometry&&) noexcept = default;
+DCEM_INLINE WorldGeometry& WorldGeometry::operator=(const WorldGeometry&) = default;
+DCEM_INLINE WorldGeometry& WorldGeometry::operator=(WorldGeometry&&) noexcept = default;
+DCEM_INLINE WorldGeometry::~WorldGeometry() = default;
+
+DCEM_INLINE void WorldGeometry::clear() {
+  *this = {};
+}
+
 DCEM_INLINE void WorldGeometry::append(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials,
                                        const BodyState& state) {
   const BodyId id(first_.size());

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dcem/channel/power_delay_profile.hpp"
 #include "dcem/dcem.hpp"
 #include "dcem/io/line_chart.hpp"
 #include "dcem/io/map_writer.hpp"

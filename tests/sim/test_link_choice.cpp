@@ -70,13 +70,16 @@ Scene busy_street() {
   return scene;
 }
 
-/// The same devices, each of them a transmitter and a receiver for itself: links in both directions.
-Scene street_of_all_links() {
+/// The same devices, each of them a transmitter and a receiver for itself: links in both directions. With an ending,
+/// receivers have names of their own.
+Scene street_of_all_links(const std::string& ending = "") {
   Scene scene = street();
   scene.add_transmitter(device_at("mast", Vec3(-30, 9, 12), 30.0));
   for (std::size_t index = 0; index < vehicles; ++index) {
     scene.add_transmitter(on_car(index));
-    scene.add_receiver(on_car(index));
+    Device receiver = on_car(index);
+    receiver.id += ending;
+    scene.add_receiver(std::move(receiver));
   }
   scene.add_receiver(moving_device("walker", straight_way(frames, Vec3(-20, 6, 1.5), Vec3(-10, 6, 1.5))));
   return scene;
@@ -242,6 +245,27 @@ TEST_CASE("links between devices of the caller's are those that the scene would 
   CHECK(other.solve(from, to, {}).empty());
   const std::vector<LinkRequest> nobody{{0, to.size()}};
   CHECK_THROWS_AS(other.solve(from, to, nobody), std::invalid_argument);
+}
+
+TEST_CASE("what a device sees as a transmitter it sees as a receiver") {
+  for (const MemoryOrders orders : {MemoryOrders{1, 0, 1, 2}, MemoryOrders{2, 0, 1, 3}}) {
+    for (const CacheMode cache : {CacheMode::off, CacheMode::exact}) {
+      const SimulationSettings settings = with_cache(memory_settings(orders), cache);
+      Simulator one(street_of_all_links(), settings), two(street_of_all_links("_receives"), settings);
+      std::size_t links = 0;
+      for (std::size_t index = 0; index < frames; ++index) {
+        const Frame frame = one.scene().frame_at(static_cast<double>(index), index);
+        const std::vector<LinkResult> of_one = one.advance(frame).links;
+        std::vector<LinkResult> of_two = two.advance(frame).links;
+        std::erase_if(of_two, [&](const LinkResult& link) {  // named apart, a device has a link to itself
+          return one.scene().transmitters()[link.transmitter].id == one.scene().receivers()[link.receiver].id;
+        });
+        CHECK(bits(one.scene(), of_one) == bits(two.scene(), of_two));
+        links += of_one.size();
+      }
+      CHECK(links == frames * ((vehicles + 1) * (vehicles + 1) - vehicles));
+    }
+  }
 }
 
 }  // namespace test_link_choice

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "dcem/em/surface/itu_settings.hpp"
+#include "dcem/em/surface/range_check.hpp"
 
 namespace dcem {
 
@@ -96,14 +96,13 @@ inline const ItuRow* nearest_itu_row(std::string_view name, double frequency_ghz
 }
 
 inline std::string itu_intervals_text(std::string_view name, int revision) {
-  std::ostringstream text;
-  const char* separator = "";
+  std::string text, separator;
   for (const ItuRow& row : itu_rows) {
     if (row.revision != revision || row.name != name) continue;
-    text << separator << row.min_frequency_ghz << " to " << row.max_frequency_ghz;
+    text += separator + short_number(row.min_frequency_ghz) + " to " + short_number(row.max_frequency_ghz);
     separator = " and ";
   }
-  return text.str() + " GHz";
+  return text + " GHz";
 }
 
 [[noreturn]] inline void throw_unknown_itu_material(std::string_view name, int revision) {
@@ -160,10 +159,9 @@ inline ItuProperties itu_properties(std::string_view name, double frequency_hz, 
   if (!row) detail::throw_unknown_itu_material(name, revision);
   const bool outside = detail::octaves_outside(*row, frequency_ghz) > 0.0;
   if (outside && !allow_extrapolation) {
-    std::ostringstream message;
-    message << "material '" << name << "' at " << frequency_ghz << " GHz is outside the range of ITU-R P.2040 revision "
-            << revision << ": " << detail::itu_intervals_text(name, revision);
-    throw std::invalid_argument(message.str());
+    throw std::invalid_argument("material '" + std::string(name) + "' at " + detail::short_number(frequency_ghz) +
+                                " GHz is outside the range of ITU-R P.2040 revision " + std::to_string(revision) +
+                                ": " + detail::itu_intervals_text(name, revision));
   }
   return {row->a * std::pow(frequency_ghz, row->b), row->c * std::pow(frequency_ghz, row->d), outside};
 }

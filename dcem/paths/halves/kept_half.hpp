@@ -81,6 +81,8 @@ class KeptHalf {
   void forget_bodies() { has_bodies_ = false; }
 
   const PathHalf& half() const { return half_; }
+  /// Whether it has been brought to where device and bodies are, since somebody has said that they moved.
+  bool is_of_frame() const { return has_scenery_ && has_bodies_; }
   /// What the device reaches; none where that is not known.
   const BeamLists* lists() const { return has_lists_ ? &lists_ : nullptr; }
   /// Whether the device takes what it sees from places, or will soon.

@@ -5,15 +5,11 @@
 #include <utility>
 
 #include "dcem/paths/halves/join_gates.hpp"
+#include "dcem/paths/halves/join_orders.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 #include "dcem/paths/sequence.hpp"
 
 namespace dcem {
-
-/// The most mirrors and edges of a sequence, and the most of both together.
-struct JoinOrders {
-  int reflections = 2, diffractions = 1, interactions = 2;
-};
 
 /// Calls `visit(sequence)`, the sequence from the receiver outwards, for what passes.
 class PairGates {

@@ -41,7 +41,6 @@ struct ReceiverMemory {
   std::optional<DeviceState> state;  ///< none: it was not there
   std::optional<LinkEnd> end;
   KeptHalf half;
-  bool has_lists = false;  ///< those of `half` are of this frame: the receiver stands, and three elements are joined
   std::vector<LinkMemory> links;  ///< by transmitter
   /// The transmitters of `links`, ascending; empty: all of them, as they stand in the scene.
   std::vector<std::uint32_t> numbers;

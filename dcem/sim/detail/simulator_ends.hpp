@@ -22,7 +22,18 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
   }
   some.embedded = embedded;
   some.numbers = std::move(chosen);
+  some.all = this;
   return some;
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+const KeptHalf* BasicSimulator<Surface, Index>::TransmitterEnds::half_of(const std::string& receiver,
+                                                                         const LinkEnd& end, bool with_lists) const {
+  if (all != nullptr) return all->half_of(receiver, end, with_lists);
+  const auto found = by_id.find(receiver);
+  if (found == by_id.end() || !link[found->second] || !detail::same_bits(link[found->second], end)) return nullptr;
+  const KeptHalf& half = halves[found->second];
+  return half.is_of_frame() && (!with_lists || half.lists() != nullptr) ? &half : nullptr;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -43,6 +54,8 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
   if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
   if (plan_.joined > 0 && search.max_interactions > 0) find_transmitter_halves(ends, receivers, halves, fine);
   if (settings_.propagation.diffuse.enabled) find_facets_in_view(ends);
+  if (ends.halves.empty()) return ends;
+  for (std::uint32_t index = 0; index < devices.size(); ++index) ends.by_id.emplace(devices[index].id, index);
   return ends;
 }
 

@@ -114,8 +114,12 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   std::vector<SequenceList> own;
   if (plan_.joined > 0 && joined.empty()) {
     ReceiverRoom& room = *proposals.room;
-    look_from(scene_, search, *outlines_, *lanes_, end, room);
-    own = join_halves(scene_, search, {*outlines_, *lanes_, transmitters.halves, room.half, room.lists}, ends);
+    const KeptHalf* const known = transmitters.half_of(receiver.id, end, joins_triples(search));
+    if (known == nullptr) look_from(scene_, search, *outlines_, *lanes_, end, room);
+    own = join_halves(scene_, search,
+                      {*outlines_, *lanes_, transmitters.halves, known ? known->half() : room.half,
+                       known && known->lists() ? *known->lists() : room.lists},
+                      ends);
     joined = own;
   }
   std::vector<LinkPaths> found =

@@ -14,16 +14,17 @@ namespace dcem {
 /// One receiver in one frame: what its links are solved with.
 template <SurfaceModel Surface, SpatialIndex Index>
 struct BasicSimulator<Surface, Index>::Following {
-  Following(const BasicSimulator& simulator, const TransmitterEnds& ends, const Tracer& of, const LinkEnd& receiver,
-            const RadioEnd& at_receiver)
+  Following(const BasicSimulator& simulator, const TransmitterEnds& ends, const Tracer& of, const Device& receiver,
+            const LinkEnd& at, const RadioEnd& at_receiver)
       : transmitters(ends),
         search(simulator.search_settings(ends.embedded)),
         tracer(of),
         solver(tracer, search.max_transmissions, search.edges),
         ways(tracer, search.max_transmissions),
         field(simulator.evaluator()),
-        end(receiver),
-        radio(at_receiver) {}
+        end(at),
+        radio(at_receiver),
+        as_transmitter(ends.half_of(receiver.id, at, joins_triples(search))) {}
 
   /// What a sequence brings between a transmitter and the receiver.
   std::optional<PathContribution> solve(std::size_t transmitter, const Sequence& sequence) {
@@ -40,6 +41,10 @@ struct BasicSimulator<Surface, Index>::Following {
   Evaluator field;
   const LinkEnd& end;
   const RadioEnd& radio;
+  const KeptHalf* as_transmitter;  ///< what the receiver sees, where it is a transmitter, too, and that is known
+  // What it sees, and what it reaches where sequences of three elements are joined.
+  const PathHalf* half = nullptr;
+  const BeamLists* lists = nullptr;
   SearchCounters counters;
   CacheCounters cache;
 };
@@ -108,13 +113,13 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
       continue;
     }
     if (!following) {
-      following.emplace(*this, transmitters, tracer, end, radio);
+      following.emplace(*this, transmitters, tracer, receiver, end, radio);
       look_from_receiver(*following, memory, *room, stands);
     }
     const bool fields_stay = rests && is_same && transmitter_is_same_[number] != 0;
     std::vector<PathContribution> paths = rests && link.standing.is_known()
                                               ? paths_of_standing(*following, memory, transmitter, fields_stay)
-                                              : paths_of_moving(*following, memory, *room, transmitter, rests);
+                                              : paths_of_moving(*following, memory, transmitter, rests);
     std::vector<DiffusePower> diffuse(ends.size());
     if (settings_.propagation.diffuse.enabled) {
       std::vector<std::optional<LinkEnd>> alone(ends.size());

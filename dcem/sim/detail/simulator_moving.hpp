@@ -3,6 +3,7 @@
 /// places; included by basic_simulator.hpp.
 #include <utility>
 
+#include "dcem/paths/halves/half_joiner.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/simulator_memory.hpp"
 
@@ -13,26 +14,38 @@ template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::look_from_receiver(Following& following, detail::ReceiverMemory& memory,
                                                         ReceiverRoom& room, bool stands) const {
   const PathSearchSettings& search = following.search;
+  following.half = &room.half;
+  following.lists = &room.lists;
   if (search.max_interactions == 0) return;
   if (joins_triples(search)) return look_for_triples(following, memory, room, stands);
   const auto is_listed = [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; };
   const bool pools = std::ranges::any_of(following.transmitters.halves, is_listed);
+  if (!pools && following.as_transmitter != nullptr) {
+    memory.half.forget_bodies();  // nobody tells it how they move
+    following.half = &following.as_transmitter->half();
+    return;
+  }
   memory.half.keep_places(pools ? detail::longest_pooled_step_m : detail::longest_step_in_place_m, false);
   memory.half.update(scene_, *outlines_, following.end, half_settings(search), {}, change_->moved());
+  following.half = &memory.half.half();
 }
 
 /// The same where sequences of three elements are joined: what a receiver that stands reaches over its mirrors is kept.
 template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::look_for_triples(const Following& following, detail::ReceiverMemory& memory,
+void BasicSimulator<Surface, Index>::look_for_triples(Following& following, detail::ReceiverMemory& memory,
                                                       ReceiverRoom& room, bool stands) const {
   const PathSearchSettings& search = following.search;
-  memory.has_lists = stands;
-  if (!stands) {
-    memory.half.forget_bodies();  // nobody tells it how they move
-    return look_from(scene_, search, *outlines_, *lanes_, following.end, room);
+  const KeptHalf* known = following.as_transmitter;
+  if (known == nullptr && stands) {
+    const HalfLists lists{lanes_.get(), true, true, 0, nullptr, BeamFinder::few_pieces};
+    memory.half.update(scene_, *outlines_, following.end, half_settings(search), lists, change_->moved());
+    known = &memory.half;
+  } else {
+    memory.half.forget_bodies();
   }
-  const HalfLists lists{lanes_.get(), true, true, 0, nullptr, BeamFinder::few_pieces};
-  memory.half.update(scene_, *outlines_, following.end, half_settings(search), lists, change_->moved());
+  if (known == nullptr) return look_from(scene_, search, *outlines_, *lanes_, following.end, room);
+  following.half = &known->half();
+  following.lists = known->lists();
 }
 
 /// All paths of a link, from sequences found from both ends. Where the ends stand, all that may carry a path later is
@@ -40,7 +53,6 @@ void BasicSimulator<Surface, Index>::look_for_triples(const Following& following
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_moving(Following& following,
                                                                               detail::ReceiverMemory& memory,
-                                                                              ReceiverRoom& room,
                                                                               std::size_t transmitter,
                                                                               bool rests) const {
   memory.links[transmitter].standing.forget();
@@ -50,11 +62,8 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_moving(Fo
   }
   std::vector<std::optional<LinkEnd>> alone(following.transmitters.link.size());
   alone[transmitter] = following.transmitters.link[transmitter];
-  const bool from_room = joins_triples(following.search) && !memory.has_lists;
-  if (!from_room) memory.half.lay_out_images(scene_, *outlines_);
-  const LinkHalves halves{*outlines_, *lanes_, following.transmitters.halves,
-                          from_room ? room.half : memory.half.half(),
-                          memory.has_lists ? *memory.half.lists() : room.lists};
+  if (following.half == &memory.half.half()) memory.half.lay_out_images(scene_, *outlines_);
+  const LinkHalves halves{*outlines_, *lanes_, following.transmitters.halves, *following.half, *following.lists};
   const SequenceList proposed = join_halves(scene_, following.search, halves, alone)[transmitter];
   StandingLink<PathContribution>& standing = memory.links[transmitter].standing;
   const bool notes = rests && scene_.bodies().size() > 1;
@@ -117,7 +126,7 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Fol
                                         mast.half(), following.ways, following.counters.solver},
                        solve);
   HalfJoiner(scene_, *outlines_, joined_orders(following.search))
-      .for_each_body_sequence(memory.half.half(), mast.half(), solve);
+      .for_each_body_sequence(*following.half, mast.half(), solve);
   prepare_pool(following, memory, transmitter);
   return paths;
 }

@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "dcem/paths/halves/half_joiner.hpp"
+#include "dcem/paths/halves/triple_joiner.hpp"
 #include "dcem/paths/memory/standing_link.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/simulator_memory.hpp"
@@ -59,10 +61,9 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_standing(
     };
     const JoinOrders orders = joined_orders(following.search);
     const KeptHalf& mast = following.transmitters.halves[transmitter];
-    HalfJoiner(scene_, *outlines_, orders).for_each_moved_sequence(memory.half.half(), mast.half(), add);
+    HalfJoiner(scene_, *outlines_, orders).for_each_moved_sequence(*following.half, mast.half(), add);
     if (joins_triples(following.search)) {
-      TripleJoiner(scene_, *outlines_, *lanes_, orders)
-          .for_each_moved_sequence(*memory.half.lists(), *mast.lists(), add);
+      TripleJoiner(scene_, *outlines_, *lanes_, orders).for_each_moved_sequence(*following.lists, *mast.lists(), add);
     }
   }
   std::vector<PathContribution> paths;
