@@ -35,16 +35,7 @@ void JsonValue::fail_expected(const std::string& expectation) const {
 
 void JsonValue::fail_expected() const {
   DCEM_ASSERT(forms_ != nullptr);
-  if (is_later()) fail("not in this version; expected " + keys::text_of(*forms_));
   fail_expected(keys::text_of(*forms_));
-}
-
-/// Whether the value is one that a later version offers; asked where no form of this version holds it.
-bool JsonValue::is_later() const {
-  const keys::ValueRule* later = keys::find_form(*forms_, keys::ValueKind::later);
-  if (later == nullptr || later->words.empty()) return later != nullptr;
-  return value_->is_string() &&
-         std::find(later->words.begin(), later->words.end(), value_->get<std::string>()) != later->words.end();
 }
 
 bool JsonValue::may_be(keys::ValueKind kind) const {
@@ -157,9 +148,7 @@ JsonObject JsonValue::object(const keys::BlockRule& block) const {
   for (const auto& [key, value] : value_->items()) {
     const keys::KeyRule* known = keys::find_key(block, key);
     if (known == nullptr) fail_unknown(block, key);
-    const JsonValue member(*document_, value, child_path(key), &known->forms);
-    if (known->forms.front().kind == keys::ValueKind::later) member.fail_expected();
-    members.emplace(key, member);
+    members.emplace(key, JsonValue(*document_, value, child_path(key), &known->forms));
   }
   return {*this, block, std::move(members)};
 }

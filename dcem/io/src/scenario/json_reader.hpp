@@ -66,7 +66,6 @@ class JsonValue {
  private:
   std::string child_path(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   const keys::ValueRule& rule(keys::ValueKind kind) const;
-  bool is_later() const;
   [[noreturn]] void fail_unknown(const keys::BlockRule& block, const std::string& key) const;
 
   const JsonDocument* document_;

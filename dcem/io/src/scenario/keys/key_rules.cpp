@@ -61,8 +61,6 @@ std::string form_text(const ValueRule& rule, bool with_unit, bool alone) {
       return block_text(*rule.block);
     case ValueKind::entries:
       return "an object {...}";
-    case ValueKind::later:
-      return "no such key";
   }
   return {};
 }
@@ -87,22 +85,13 @@ const Choice* choice_of(const BlockRule& block, std::string_view key) {
   return choice == block.choices.end() ? nullptr : &*choice;
 }
 
-bool is_later(const KeyRule& key) {
-  return std::all_of(key.forms.begin(), key.forms.end(), [](const ValueRule& form) {
-    const bool only_false = form.kind == ValueKind::boolean && form.words == std::vector<std::string>{"false"};
-    return form.kind == ValueKind::later || only_false;
-  });
-}
-
 bool fits_mtl(const BlockRule& block, const KeyRule& key) {
   return !block.mtl_prefix.empty() && find_form(key.forms, ValueKind::list) == nullptr;
 }
 
 std::vector<std::string> key_names(const BlockRule& block) {
   std::vector<std::string> names;
-  for (const KeyRule& key : block.keys) {
-    if (!is_later(key)) names.push_back(key.name);
-  }
+  for (const KeyRule& key : block.keys) names.push_back(key.name);
   return names;
 }
 
@@ -144,20 +133,8 @@ std::string enumeration(const std::vector<std::string>& words, const std::string
 
 std::string text_of(const std::vector<ValueRule>& forms, bool with_unit) {
   std::vector<std::string> texts;
-  for (const ValueRule& form : forms) {
-    if (form.kind != ValueKind::later || forms.size() == 1)
-      texts.push_back(form_text(form, with_unit, forms.size() == 1));
-  }
+  for (const ValueRule& form : forms) texts.push_back(form_text(form, with_unit, forms.size() == 1));
   return enumeration(texts);
-}
-
-std::string value_text(const KeyRule& key, bool with_unit) {
-  constexpr const char* absent = "not in this version";
-  const ValueRule* later = find_form(key.forms, ValueKind::later);
-  if (later == nullptr) return text_of(key.forms, with_unit);
-  if (key.forms.size() == 1) return absent;
-  const std::string others = later->words.empty() ? "anything else" : enumeration(later->words);
-  return text_of(key.forms, with_unit) + " (" + others + ": " + absent + ")";
 }
 
 std::string unit_of(const std::vector<ValueRule>& forms) {

@@ -23,9 +23,8 @@ enum class ValueKind {
   identifier,  ///< text that may stand in a file name and in one line
   file,        ///< its name, relative to the scenario
   list,
-  block,    ///< an object with the keys of a block
-  entries,  ///< an object whose keys the user chooses; each value is a block
-  later     ///< the contract knows it, this version does not offer it
+  block,   ///< an object with the keys of a block
+  entries  ///< an object whose keys the user chooses; each value is a block
 };
 
 /// One form that a value may have.
@@ -33,7 +32,7 @@ struct ValueRule {
   ValueKind kind = ValueKind::null;
   NumberRange range{0.0, 0.0};       ///< of a number
   std::string unit{};                ///< of a number; empty: none
-  std::vector<std::string> words{};  ///< which words; of a boolean "true" or "false" alone; of `later` those meant
+  std::vector<std::string> words{};  ///< which words; of a boolean "true" or "false" alone
   const BlockRule* block = nullptr;  ///< of a block or of entries
   std::vector<ValueRule> element{};  ///< of a list: the forms of each element
   std::size_t least = 0, most = 0;   ///< elements of a list; most 0: any number
@@ -80,8 +79,6 @@ const KeyRule* find_key(const BlockRule& block, std::string_view name);
 const ValueRule* find_form(const std::vector<ValueRule>& forms, ValueKind kind);
 const Choice* choice_of(const BlockRule& block, std::string_view key);
 
-/// Whether this version offers no value of it at all.
-bool is_later(const KeyRule& key);
 /// Whether the key may stand in an MTL file, where there are no lists.
 bool fits_mtl(const BlockRule& block, const KeyRule& key);
 /// The names of the keys that may stand in a block.
@@ -97,8 +94,6 @@ std::vector<const BlockRule*> blocks_from(const BlockRule& root);
 
 /// "a number from 0 to 1 m or null"; without its unit, "a number from 0 to 1 or null".
 std::string text_of(const std::vector<ValueRule>& forms, bool with_unit = true);
-/// The same, with what is not in this version.
-std::string value_text(const KeyRule& key, bool with_unit = true);
 /// The unit of the numbers in any form; empty where there is none.
 std::string unit_of(const std::vector<ValueRule>& forms);
 /// "2000", "required", "one of position_m, waypoints, poses_csv", or a sentence.

@@ -36,21 +36,18 @@ std::string in_code(const std::string& text) {
 
 std::string value_cell(const KeyRule& key) {
   const BlockRule* block = keys::block_of(key.forms);
-  return keys::value_text(key, false) + (block == nullptr ? "" : " ([its keys](#" + anchor_of(*block) + "))");
+  return keys::text_of(key.forms, false) + (block == nullptr ? "" : " ([its keys](#" + anchor_of(*block) + "))");
 }
 
 std::string absence_cell(const BlockRule& block, const KeyRule& key) {
-  if (keys::is_later(key)) return {};
   const std::string text = keys::absence_text(block, key);
   return key.absence.kind == keys::Absence::Kind::value ? in_code(text) : text;
 }
 
 std::string row_of(const BlockRule& block, const KeyRule& key) {
   std::string row = "|";
-  const bool is_later = keys::is_later(key);
-  for (const std::string& cell :
-       {in_code(key.name), key.meaning, value_cell(key), is_later ? std::string() : keys::unit_of(key.forms),
-        absence_cell(block, key), is_later ? std::string() : in_code(key.example)}) {
+  for (const std::string& cell : {in_code(key.name), key.meaning, value_cell(key), keys::unit_of(key.forms),
+                                  absence_cell(block, key), in_code(key.example)}) {
     row += " " + cell + (cell.empty() ? "|" : " |");
   }
   return row + "\n";

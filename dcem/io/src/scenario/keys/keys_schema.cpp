@@ -87,17 +87,13 @@ Schema schema_of(const ValueRule& rule) {
       return reference_to(*rule.block);
     case ValueKind::entries:
       return entries_schema(*rule.block);
-    case ValueKind::later:
-      break;
   }
   return false;
 }
 
 Schema schema_of(const std::vector<ValueRule>& forms) {
   Schema any = Schema::array();
-  for (const ValueRule& form : forms) {
-    if (form.kind != ValueKind::later) any.push_back(schema_of(form));
-  }
+  for (const ValueRule& form : forms) any.push_back(schema_of(form));
   return any.size() == 1 ? any.front() : Schema{{"anyOf", any}};
 }
 
@@ -127,7 +123,6 @@ Schema block_schema(const BlockRule& block) {
   Schema schema{{"description", block.meaning}, {"type", "object"}, {"properties", Schema::object()}};
   Schema required = Schema::array();
   for (const KeyRule& key : block.keys) {
-    if (key.forms.front().kind == ValueKind::later) continue;
     schema["properties"][key.name] = key_schema(key);
     if (key.absence.kind == keys::Absence::Kind::error) required.push_back(key.name);
   }

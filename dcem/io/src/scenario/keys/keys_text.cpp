@@ -39,8 +39,7 @@ bool is_about(const BlockRule& block, const KeyRule& key, const std::string& wan
 std::string key_text(const BlockRule& block, const KeyRule& key) {
   std::string text = "  " + path_of(block, key);
   if (keys::fits_mtl(block, key)) text += "  (MTL: " + block.mtl_prefix + key.name + ")";
-  text += "\n      " + key.meaning + "\n      " + keys::value_text(key);
-  if (keys::is_later(key)) return text + "\n";
+  text += "\n      " + key.meaning + "\n      " + keys::text_of(key.forms);
   text += "; " + absence_words(key.absence.kind) + keys::absence_text(block, key);
   return text + (key.example.empty() ? "" : "; e.g. " + key.example) + "\n";
 }

@@ -70,10 +70,6 @@ template <typename Enum>
 ValueRule word() {
   return word(words_of<Enum>());
 }
-/// Whatever no other form holds; with words those alone.
-inline ValueRule later(std::vector<std::string> words = {}) {
-  return with_words(ValueKind::later, std::move(words));
-}
 
 inline ValueRule block(const BlockRule& keys) {
   ValueRule rule = of_kind(ValueKind::block);
