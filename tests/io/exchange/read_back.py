@@ -9,6 +9,7 @@ import cmath
 import csv
 import datetime
 import importlib
+import importlib.util
 import json
 import math
 import os
@@ -512,6 +513,29 @@ def check_kml_order(element):
         check_kml_order(child)
 
 
+def kml_schema(etree, name):
+    """A schema file that the Python package pykml brings, or nothing where it is not installed."""
+    package = importlib.util.find_spec("pykml")
+    if package is None or not package.submodule_search_locations:
+        return None
+    file = Path(package.submodule_search_locations[0]) / "schemas" / name
+    return etree.XMLSchema(etree.parse(str(file))) if file.exists() else None
+
+
+def check_kml_schema(etree, root):
+    """By Google's schema, which extends that of OGC KML 2.2; by the latter alone but for the elements of the former."""
+    google, ogc = (kml_schema(etree, name) for name in ("kml22gx.xsd", "ogckml22.xsd"))
+    if google is None or ogc is None:
+        return False
+    check(google.validate(root), google.error_log)
+    plain = copy.deepcopy(root)
+    for mark in list(plain.iter(KML + "Placemark", KML + "GroundOverlay")):
+        if any(child.tag.startswith(GX) for child in mark):
+            mark.getparent().remove(mark)
+    check(ogc.validate(plain), ogc.error_log)
+    return True
+
+
 def second(instant):
     start = datetime.datetime(2026, 5, 4, 12, 0, 0, tzinfo=datetime.timezone.utc)
     return (datetime.datetime.fromisoformat(instant.replace("Z", "+00:00")) - start).total_seconds()
@@ -558,6 +582,7 @@ def test_kml(program, source):
     run = Run(program, source, {}, near).done()
     root = etree.parse(run.out / "links.kml", etree.XMLParser(resolve_entities=False)).getroot()
     check_kml_order(root)
+    print("valid by the schemas of KML 2.2" if check_kml_schema(etree, root) else "no schema (pip install pykml)")
     compare_lines(run, root, lambda x, y: place_near(origin, x, y))
     compare_tracks(run, root, lambda x, y: place_near(origin, x, y))
     print(f"{len(run.links)} links, {(run.out / 'links.kml').stat().st_size / len(run.links):.0f} bytes each")
@@ -579,7 +604,9 @@ def check_overlay(etree, program, run, origin):
     files = sorted(file.name for file in (run.folder / "map").glob("*.kml"))
     equal(files, ["map_area_Mast Süd %3C&%3E.kml", "map_area_best_server.kml", "map_area_pole.kml", "map_area_sinr.kml"], "overlays")
     for name in files:
-        overlay = etree.parse(run.folder / "map" / name).getroot().find(KML + "GroundOverlay")
+        root = etree.parse(run.folder / "map" / name).getroot()
+        check_kml_schema(etree, root)
+        overlay = root.find(KML + "GroundOverlay")
         equal([child.tag for child in overlay], [KML + "name", KML + "description", KML + "color", KML + "Icon", GX + "LatLonQuad"],
               "elements of an overlay")
         picture = urllib.parse.unquote(overlay.findtext(f"{KML}Icon/{KML}href"))
