@@ -137,6 +137,17 @@ TEST_CASE("corners that touch in a point are parted") {
   CHECK(io::inspect_obj(folder / "made/scene.obj").report.standing_shells == 2);
 }
 
+TEST_CASE("a tower whose corner stands in the wall of the house below it") {
+  DCEM_NEEDS_GEOS();
+  const TemporaryFolder folder;
+  const std::string tower = dcem::test::shape_text({{10, 10}, {14, 15}, {10, 20}, {6, 15}});
+  const io::ImportReport report =
+      import_polygons(folder, poly("house", box(0, 10, 20, 30), height("6")) + poly("tower", tower, height("12")));
+  check_clean_town(folder / "made", report);  // below the lower roof two walls meet in that corner, above it two
+  CHECK(report.made.at("roofs") == 2);
+  CHECK(report.sizes.at("volume_m3") == doctest::Approx(400.0 * 6.0 + 40.0 * 6.0));
+}
+
 TEST_CASE("dirty outlines are repaired or skipped, and counted") {
   DCEM_NEEDS_GEOS();
   const TemporaryFolder folder;

@@ -15,7 +15,8 @@ namespace dcem::io {
 /// Corners in turn; the first is not repeated at the end.
 using Ring = std::vector<Vec2>;
 
-/// A polygon with holes: the outer ring counterclockwise, the holes clockwise, none touching itself.
+/// A polygon with holes: the outer ring counterclockwise, the holes clockwise, none touching itself. A hole may touch
+/// another ring in a corner.
 struct Area {
   Ring outer;
   std::vector<Ring> holes;

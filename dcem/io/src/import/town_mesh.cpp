@@ -77,13 +77,22 @@ void add_walls(const TownPart& part, const Area& area, const TownEdges& edges, O
   });
 }
 
+/// How many triangles use every corner of an area, by Euler's formula; a hole may touch the rim in a corner.
+std::size_t triangle_count(const Area& area) {
+  std::set<GridCorner> corners;
+  std::size_t edges = 0;
+  for_each_edge(area, [&](const Vec2& from, const Vec2&) {
+    corners.insert(grid_corner(from));
+    ++edges;
+  });
+  return 2 * corners.size() + 2 * area.holes.size() - edges - 2;
+}
+
 void add_roof(const TownPart& part, const Area& area, Foot foot, ObjDraft& obj) {
-  std::size_t corners = area.outer.size();
-  for (const Ring& hole : area.holes) corners += hole.size() + 2;
   const auto triangles = triangulate(area);
-  if (triangles.size() + 2 != corners) {
-    throw std::runtime_error("roof of '" + part.id + "': " + std::to_string(triangles.size()) + " triangles for " +
-                             std::to_string(corners) + " corners");
+  if (triangles.size() != triangle_count(area)) {
+    throw std::runtime_error("roof of '" + part.id + "': " + std::to_string(triangles.size()) + " triangles, not " +
+                             std::to_string(triangle_count(area)));
   }
   for (const std::array<Vec2, 3>& flat : triangles) {
     const auto at = [&](const Vec2& corner, double height_m) { return Vec3(corner.x, corner.y, height_m); };
