@@ -117,6 +117,37 @@ TEST_CASE("a scene becomes a scenario that runs without editing") {
   CHECK(run.exit_code == 0);
 }
 
+TEST_CASE("in a closed room the mast is inside") {
+  const TemporaryFolder folder;
+  const auto mast_z_m = [&](const std::string& shapes) {
+    write(folder / "scene.xml", scene(shapes));
+    io::import_sionna(folder / "scene.xml", folder / "made");
+    return dcem::test::read_json(folder / "made/scenario.json")["transmitters"][0]["position_m"][2].get<double>();
+  };
+  const std::string size = "<transform name=\"to_world\"><scale value=\"5\"/></transform>";
+  CHECK(mast_z_m(shape("", "paint", size, "cube")) == doctest::Approx(3.0));  // from -5 to 5
+  CHECK(mast_z_m(shape("", "paint", size, "rectangle")) == doctest::Approx(5.0));
+}
+
+TEST_CASE("long names of files and materials are not cut") {
+  const TemporaryFolder folder;
+  const std::string long_name(120, 'm');
+  write(folder / (long_name + ".ply"), square);
+  std::string materials;
+  for (const char* const end : {"_a", "_b"}) {
+    materials += "<bsdf type=\"itu-radio-material\" id=\"" + long_name + end +
+                 "\"><string name=\"type\" value=\"metal\"/></bsdf>\n";
+  }
+  write(folder / "scene.xml",
+        scene(materials + shape(long_name + ".ply", long_name + "_a") + shape(long_name + ".ply", long_name + "_b")));
+  CHECK(io::import_sionna(folder / "scene.xml", folder / "made").made.at("objects") == 2);
+  CHECK(holds(dcem::test::file_bytes(folder / "made/scene.mtl"), "newmtl " + long_name + "_b\n"));
+  write(folder / "scene.xml", scene(shape(long_name + long_name + ".ply", "own")));
+  const std::string message = refusal(folder, [&] { io::import_sionna(folder / "scene.xml", folder / "other"); });
+  CHECK(holds(message, "is not there"));
+  CHECK(message.size() < 400);
+}
+
 TEST_CASE("PLY: text and binary give the same mesh") {
   const TemporaryFolder folder;
   write(folder / "ground.ply", binary_ground());

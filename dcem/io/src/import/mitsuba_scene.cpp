@@ -41,8 +41,16 @@ class MitsubaReader : private XmlHandler {
   bool is_in(std::string_view name) const { return std::find(open_.begin(), open_.end(), name) != open_.end(); }
   bool is_directly_in(std::string_view name) const { return open_.size() > 1 && open_[open_.size() - 2] == name; }
 
+  /// The whole text, however long: names of files and ids must not be cut.
   static std::string text(const XmlAttributes& attributes, const char* name) {
-    return printable(attributes.find(name).value_or(""));
+    std::string whole(attributes.find(name).value_or(""));
+    std::replace_if(
+        whole.begin(), whole.end(),
+        [](char letter) {
+          return !is_printable({&letter, 1});
+        },
+        '?');
+    return whole;
   }
 
   /// What wraps another material (`twosided`) has its id; what is inside says no more of radio.
@@ -53,7 +61,7 @@ class MitsubaReader : private XmlHandler {
     if (id.empty()) id = "material_" + std::to_string(scene_.materials.size() + 1);
     material_ids_.push_back(id);
     if (is_wrapped) return;
-    if (scene_.materials.contains(id)) reader_.fail("bsdf '" + id + "' is there already; expected a new id");
+    if (scene_.materials.contains(id)) reader_.fail("bsdf " + in_quotes(id) + " is there already; expected a new id");
     scene_.materials[id].type = text(attributes, "type");
     if (is_in("shape")) scene_.shapes.back().material = id;
   }

@@ -6,6 +6,7 @@
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/import/import_draft.hpp"
 #include "dcem/io/src/import/mitsuba_scene.hpp"
+#include "dcem/io/src/import/outlines.hpp"
 #include "dcem/io/src/import/ply_reader.hpp"
 #include "dcem/io/src/text/number_text.hpp"
 #include "dcem/io/src/text/text_input.hpp"
@@ -49,12 +50,12 @@ class SionnaImport {
  private:
   void add_shape(const MitsubaShape& shape, const MitsubaScene& scene) {
     if (shape.type != "ply" && shape.type != "rectangle" && shape.type != "cube") {
-      ++draft_.report.skipped["shapes of type '" + shape.type + "'"];
+      ++draft_.report.skipped["shapes of type " + in_quotes(shape.type)];
       return;
     }
     if (!scene.materials.contains(shape.material)) {
       throw InputError(source_.string(), shape.line,
-                       "shape '" + shape.id + "': material " + in_quotes(shape.material) +
+                       "shape " + in_quotes(shape.id) + ": material " + in_quotes(shape.material) +
                            " is nowhere defined; expected the id of a bsdf");
     }
     const PlyMesh mesh = shape.type == "ply" ? read_mesh(shape) : own_mesh(shape.type);
@@ -68,6 +69,7 @@ class SionnaImport {
       std::vector<Vec3> corners_m;
       for (const std::size_t corner : face) corners_m.push_back(placed(mesh.vertices_m[corner], shape));
       draft_.scene.face(material, corners_m);
+      faces_m_.push_back(std::move(corners_m));
     }
     ++draft_.report.made["objects"];
   }
@@ -86,7 +88,7 @@ class SionnaImport {
     if (shape.file.empty() || !std::filesystem::is_regular_file(file, ignored)) {
       throw InputError(
           source_.string(), shape.line,
-          "shape '" + shape.id + "': file " + in_quotes(shape.file) + " is not there; expected a PLY mesh");
+          "shape " + in_quotes(shape.id) + ": file " + in_quotes(shape.file) + " is not there; expected a PLY mesh");
     }
     return read_ply(file);
   }
@@ -143,22 +145,39 @@ class SionnaImport {
     text += '\n';
   }
 
-  /// A mast above everything, and points around it near the ground.
+  /// Whether a face is above a point.
+  bool is_covered(const Vec3& point_m) const {
+    return std::any_of(faces_m_.begin(), faces_m_.end(), [&](const std::vector<Vec3>& face_m) {
+      Area area;
+      double lowest_m = high_m_.z;
+      for (const Vec3& corner_m : face_m) {
+        area.outer.emplace_back(corner_m.x, corner_m.y);
+        lowest_m = std::min(lowest_m, corner_m.z);
+      }
+      return lowest_m > point_m.z && holds_point(area, Vec2(point_m));
+    });
+  }
+
+  /// A mast above everything, in a room below its ceiling, and points around it near the ground.
   void add_devices() {
     const Vec3 middle_m = 0.5 * (low_m_ + high_m_);
     const double radius_m = 0.2 * std::min(high_m_.x - low_m_.x, high_m_.y - low_m_.y);
     nlohmann::ordered_json points = nlohmann::ordered_json::array();
+    bool is_room = true;
     for (int point = 0; point < 8; ++point) {
       const double angle_rad = (point + 0.5) * std::numbers::pi / 4.0;
-      points.push_back({rounded(middle_m.x + radius_m * std::cos(angle_rad)),
-                        rounded(middle_m.y + radius_m * std::sin(angle_rad)), rounded(low_m_.z + 1.5)});
+      const Vec3 point_m(middle_m.x + radius_m * std::cos(angle_rad), middle_m.y + radius_m * std::sin(angle_rad),
+                         low_m_.z + 1.5);
+      points.push_back({rounded(point_m.x), rounded(point_m.y), rounded(point_m.z)});
+      is_room = is_room && is_covered(point_m);
     }
+    const double mast_m = is_room ? low_m_.z + 0.8 * (high_m_.z - low_m_.z) : high_m_.z + 5.0;
     draft_.scenario["propagation"] = town_propagation_json();
     if (has_slabs_) draft_.scenario["propagation"]["max_transmissions"] = 1;
-    draft_.scenario["transmitters"] = nlohmann::ordered_json::array(
-        {{{"id", "mast"},
-          {"position_m", {rounded(middle_m.x), rounded(middle_m.y), rounded(high_m_.z + 5.0)}},
-          {"power_dbm", 30}}});
+    draft_.scenario["transmitters"] =
+        nlohmann::ordered_json::array({{{"id", "mast"},
+                                        {"position_m", {rounded(middle_m.x), rounded(middle_m.y), rounded(mast_m)}},
+                                        {"power_dbm", 30}}});
     draft_.scenario["receivers"] = nlohmann::ordered_json::array({{{"id", "point"}, {"positions_m", points}}});
     draft_.report.notes.push_back(
         "One mast and eight points were chosen for a start: edit transmitters and receivers.");
@@ -170,6 +189,7 @@ class SionnaImport {
   const ImportSettings& settings_;
   ImportDraft draft_;
   std::map<std::string, std::string> material_ids_;  ///< by name in the OBJ file
+  std::vector<std::vector<Vec3>> faces_m_;
   Vec3 low_m_{1e9}, high_m_{-1e9};
   bool has_slabs_ = false;
 };
