@@ -16,8 +16,9 @@ const std::map<std::string, io::ProgressMode> progress_modes{{"auto", io::Progre
 const std::map<std::string, io::UpAxis> up_axes{{"y", io::UpAxis::y}, {"z", io::UpAxis::z}};
 const std::map<std::string, InstructionSet> instruction_sets{
     {"baseline", InstructionSet::baseline}, {"avx2", InstructionSet::avx2}, {"avx512", InstructionSet::avx512}};
-const std::vector<std::string> run_outputs{"paths", "links", "pdp", "cfr", "doppler", "npz", "plots", "html"};
-const std::vector<std::string> map_outputs{"csv", "png", "npz", "asc", "svg", "pdf", "html"};
+const std::vector<std::string> run_outputs{"paths", "links", "pdp",      "cfr", "doppler", "npz",   "mat", "hdf5",
+                                           "qd",    "p2m",   "deepmimo", "kml", "gltf",    "plots", "html"};
+const std::vector<std::string> map_outputs{"csv", "png", "npz", "asc", "svg", "pdf", "kml", "html"};
 
 // An option that takes one of a few words.
 template <typename Value>

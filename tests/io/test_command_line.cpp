@@ -86,8 +86,9 @@ TEST_CASE("the help of each command lists exactly what it takes") {
     CHECK(options_in_help(dcem_program(folder, one.first + " --help").output) == one.second);
   }
   const std::string run = dcem_program(folder, "run --help").output, map = dcem_program(folder, "map --help").output;
-  CHECK(run.find("{paths,links,pdp,cfr,doppler,npz,plots,html}") != std::string::npos);
-  CHECK(map.find("{csv,png,npz,asc,svg,pdf,html}") != std::string::npos);
+  CHECK(run.find("{paths,links,pdp,cfr,doppler,npz,mat,hdf5,qd,p2m,deepmimo,kml,gltf,plots,html}") !=
+        std::string::npos);
+  CHECK(map.find("{csv,png,npz,asc,svg,pdf,kml,html}") != std::string::npos);
   CHECK(dcem_program(folder, "inspect --help").output.find("not in this version") == std::string::npos);
 }
 
