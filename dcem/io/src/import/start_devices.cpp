@@ -17,7 +17,7 @@ nlohmann::ordered_json open_points_json(const ImportDraft& draft, const std::vec
     const double turn_rad = golden_rad * static_cast<double>(attempt);
     const double radius_m = first_radius_m + step_m * std::sqrt(static_cast<double>(attempt));
     const Vec2 point_m = around_m + radius_m * Vec2(std::cos(turn_rad), std::sin(turn_rad));
-    const Vec2 rounded_m = 0.1 * glm::round(10.0 * point_m);
+    const Vec2 rounded_m = glm::round(10.0 * point_m) / 10.0;  // 24.2, not 24.200000000000003
     if (roof_height_m(parts, rounded_m) == 0.0) {
       points.push_back({rounded_m.x, rounded_m.y, ground_m(draft, rounded_m) + height_m});
     }
