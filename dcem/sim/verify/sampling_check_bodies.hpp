@@ -1,6 +1,7 @@
 #pragma once
 /// Bodies of sampling_check.hpp.
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -72,6 +73,19 @@ inline std::vector<std::size_t> evenly_spread(const std::vector<std::size_t>& li
   return chosen;
 }
 
+/// By transmitter and receiver.
+using LinksByEnds = std::map<std::pair<std::size_t, std::size_t>, const LinkResult*>;
+
+/// The links of some receivers, whose numbers ascend.
+inline LinksByEnds links_of(std::span<const LinkResult> links, const std::vector<std::size_t>& receivers) {
+  LinksByEnds found;
+  for (const LinkResult& link : links) {
+    if (!std::binary_search(receivers.begin(), receivers.end(), link.receiver)) continue;
+    found.emplace(std::pair(link.transmitter, link.receiver), &link);
+  }
+  return found;
+}
+
 inline CheckedLink checked(const LinkResult& found, const LinkResult& again) {
   CheckedLink link{found.paths.size(), found.paths.size(), 0.0};
   double power_ratio = 0.0, lacking = 0.0;
@@ -137,11 +151,10 @@ DCEM_INLINE SamplingReport check_sampling(const Simulator& simulator, const Fram
   settings.propagation = plan.propagation;
   Simulator reference(simulator.scene(), settings);
   reference.move_to(frame);
+  const detail::LinksByEnds found = detail::links_of(solved.links, chosen);
   for (const LinkResult& again : reference.solve(devices)) {
-    const auto same = std::find_if(solved.links.begin(), solved.links.end(), [&](const LinkResult& link) {
-      return link.transmitter == again.transmitter && link.receiver == chosen[again.receiver];
-    });
-    if (same != solved.links.end()) report.links.push_back(detail::checked(*same, again));
+    const auto same = found.find({again.transmitter, chosen[again.receiver]});
+    if (same != found.end()) report.links.push_back(detail::checked(*same->second, again));
   }
   return report;
 }
