@@ -24,7 +24,7 @@ namespace dcem {
 struct Body {
   std::string id;    ///< empty for the scenery and for slots
   Motion motion;     ///< of an object
-  SurfaceMesh mesh;  ///< in local coordinates
+  SurfaceMesh mesh;  ///< in local coordinates; of the scenery without hulls and edges, which are those of the world
   bool is_slot = false;
 };
 

@@ -54,6 +54,9 @@ DCEM_INLINE void Scene::set_scenery(const TriangleMesh& mesh) {
   states_.clear();
   world_.clear();
   append(std::move(scenery));
+  // It stands where it is: its hulls and edges are those of the world.
+  std::vector<Vec3>().swap(bodies_.front().mesh.hull_points_m);
+  std::vector<Wedge>().swap(bodies_.front().mesh.wedges);
 }
 
 DCEM_INLINE BodyId Scene::add_object(std::string id, const TriangleMesh& mesh, Motion motion) {

@@ -285,8 +285,12 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   medium_ = MediumLoss(settings_.propagation.atmosphere, scene_.materials(), settings_.frequency_hz);
   plan_ = plan_search(settings_.propagation, scene_);
   cache_ = resolve_cache(settings_.propagation, plan_.discovery);
-  // What is remembered is what halves find: the same paths as by trying all sequences.
-  if (cache_ == CacheMode::exact && halves_cover(most_joined_interactions, settings_.propagation)) {
+  const bool is_direct_alone = plan_.discovery == Discovery::exact && interaction_order(settings_.propagation) == 0;
+  // The direct path takes no views, unless it is asked for how long it lasts.
+  if (is_direct_alone && !settings_.propagation.valid_until_limit_m) {
+    plan_ = {Discovery::exact, true};
+    // What is remembered is what halves find: the same paths as by trying all sequences.
+  } else if (cache_ == CacheMode::exact && halves_cover(most_joined_interactions, settings_.propagation)) {
     plan_ = {Discovery::exact, false, most_joined_interactions};
   }
   if (cache_ == CacheMode::seed) {

@@ -101,9 +101,11 @@ class WorldGeometry {
   std::size_t body_count() const { return first_.size(); }
 
  private:
+  void make_room(const SurfaceMesh& mesh);
   void append_facets(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials, const First& first);
   void append_triangles(const SurfaceMesh& mesh, const First& first);
   void append_wedges(const SurfaceMesh& mesh, const First& first);
+  void list_wedges_by_facet(const First& first);
   void append_foliage(const SurfaceMesh& mesh, const First& first);
   void place_boxes(const SurfaceMesh& mesh, const First& first, bool present);
   void place_foliage(BodyId id, bool present);

@@ -1,5 +1,6 @@
 #pragma once
 /// Bodies of world_geometry.hpp.
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -7,6 +8,18 @@
 #include "dcem/world/world_geometry.hpp"
 
 namespace dcem {
+
+namespace detail {
+
+/// Room for more at the end of a list: exactly so much for the first, the scenery, and with some to spare for what
+/// follows one by one.
+template <typename List>
+void make_room(List& list, std::size_t more) {
+  const std::size_t needed = list.size() + more;
+  if (needed > list.capacity()) list.reserve(std::max(needed, list.capacity() + list.capacity() / 2));
+}
+
+}  // namespace detail
 
 DCEM_INLINE WorldGeometry::WorldGeometry() = default;
 DCEM_INLINE WorldGeometry::WorldGeometry(const WorldGeometry&) = default;
@@ -25,6 +38,7 @@ DCEM_INLINE void WorldGeometry::append(const SurfaceMesh& mesh, std::span<const 
   first_.push_back({static_cast<std::uint32_t>(vertices_m_.size()), static_cast<std::uint32_t>(triangles_.size()),
                     static_cast<std::uint32_t>(facets_.size()), static_cast<std::uint32_t>(hull_points_m_.size()),
                     static_cast<std::uint32_t>(wedges_.size())});
+  make_room(mesh);
   append_facets(mesh, materials, first_.back());
   append_triangles(mesh, first_.back());
   append_wedges(mesh, first_.back());
@@ -32,6 +46,15 @@ DCEM_INLINE void WorldGeometry::append(const SurfaceMesh& mesh, std::span<const 
   vertices_m_.insert(vertices_m_.end(), mesh.vertices_m.begin(), mesh.vertices_m.end());
   hull_points_m_.insert(hull_points_m_.end(), mesh.hull_points_m.begin(), mesh.hull_points_m.end());
   place(id, mesh, state);
+}
+
+DCEM_INLINE void WorldGeometry::make_room(const SurfaceMesh& mesh) {
+  const auto for_each_of = [](std::size_t count, auto&... lists) { (detail::make_room(lists, count), ...); };
+  for_each_of(mesh.facets.size(), facets_, first_wedge_of_facet_);
+  for_each_of(mesh.wedges.size(), wedges_);
+  for_each_of(mesh.triangles.size(), triangles_, facet_of_triangle_, shell_of_triangle_, boxes_);
+  for_each_of(mesh.vertices_m.size(), vertices_m_);
+  for_each_of(mesh.hull_points_m.size(), hull_points_m_);
 }
 
 DCEM_INLINE void WorldGeometry::append_facets(const SurfaceMesh& mesh, std::span<const SurfaceMaterial> materials,
@@ -58,18 +81,32 @@ DCEM_INLINE void WorldGeometry::append_triangles(const SurfaceMesh& mesh, const 
 
 DCEM_INLINE void WorldGeometry::append_wedges(const SurfaceMesh& mesh, const First& first) {
   const BodyId body(first_.size() - 1);
-  std::vector<std::vector<WedgeId>> of_facet(mesh.facets.size());
   for (const Wedge& local : mesh.wedges) {
-    const WedgeId id(wedges_.size());
     const std::uint32_t one = local.facets[0], other = is_free(local) ? one : local.facets[1];
     wedges_.push_back({local, {FacetId(first.facet + one), FacetId(first.facet + other)}, body, true});
-    of_facet[one].push_back(id);
-    if (other != one) of_facet[other].push_back(id);
   }
-  for (const std::vector<WedgeId>& ids : of_facet) {
-    wedges_by_facet_.insert(wedges_by_facet_.end(), ids.begin(), ids.end());
-    first_wedge_of_facet_.push_back(static_cast<std::uint32_t>(wedges_by_facet_.size()));
+  list_wedges_by_facet(first);
+}
+
+/// Counted facet by facet first, so that each list has its place.
+DCEM_INLINE void WorldGeometry::list_wedges_by_facet(const First& first) {
+  const auto for_each_rim = [&](auto&& visit) {
+    for (std::size_t index = first.wedge; index < wedges_.size(); ++index) {
+      const auto [one, other] = wedges_[index].facets;
+      visit(one.value - first.facet, WedgeId(index));
+      if (other != one) visit(other.value - first.facet, WedgeId(index));
+    }
+  };
+  std::vector<std::uint32_t> next(facets_.size() - first.facet, 0);
+  for_each_rim([&](std::uint32_t facet, WedgeId) { ++next[facet]; });
+  std::uint32_t end = first_wedge_of_facet_.back();
+  for (std::uint32_t& of_facet : next) {
+    first_wedge_of_facet_.push_back(end += of_facet);
+    of_facet = end - of_facet;
   }
+  detail::make_room(wedges_by_facet_, end - wedges_by_facet_.size());
+  wedges_by_facet_.resize(end);
+  for_each_rim([&](std::uint32_t facet, WedgeId wedge) { wedges_by_facet_[next[facet]++] = wedge; });
 }
 
 DCEM_INLINE void WorldGeometry::append_foliage(const SurfaceMesh& mesh, const First& first) {

@@ -76,6 +76,8 @@ struct WideArrays {
   Aabb<float> box_at(NodeLane place) const { return nodes[place.node()].box(place.lane()); }
   WideChild child_at(NodeLane place) const { return nodes[place.node()].child[place.lane()]; }
 
+  /// Room for so many nodes and leaves in all.
+  void reserve(std::size_t node_count, std::size_t leaf_count);
   std::uint32_t take_node();
   std::uint32_t add_leaf(std::uint32_t object);
 
@@ -162,6 +164,13 @@ inline void WideArrays::clear_for(bool huge_pages) {
     ((lists = std::remove_reference_t<decltype(lists)>(HugePageAllocator<int>(huge_pages))), ...);
   };
   exchange(nodes, leaves, quads, planes, vertices_m);
+}
+
+inline void WideArrays::reserve(std::size_t node_count, std::size_t leaf_count) {
+  const auto make_room = [](std::size_t count, auto&... lists) { (lists.reserve(count), ...); };
+  make_room(node_count, nodes, lane_of_node, object_rooted_at_node);
+  make_room(leaf_count, leaves, lane_of_leaf, object_rooted_at_leaf, run_of_leaf);
+  make_room(leaf_count * simd_lanes, quads, planes);
 }
 
 inline std::uint32_t WideArrays::take_node() {

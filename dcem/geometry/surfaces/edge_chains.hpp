@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dcem/core/error.hpp"
+#include "dcem/geometry/surfaces/side_order.hpp"
 #include "dcem/geometry/surfaces/surface_mesh.hpp"
 #include "dcem/geometry/triangle.hpp"
 #include "dcem/geometry/wedge.hpp"
@@ -64,15 +65,15 @@ struct TriangleSide {
 };
 
 inline std::vector<TriangleSide> triangle_sides(const SurfaceMesh& mesh) {
-  std::vector<TriangleSide> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::size_t index = 0; index < mesh.triangles.size(); ++index) {
-    const auto& [a, b, c] = mesh.triangles[index];
-    const std::uint32_t facet = mesh.facet_of_triangle[index];
-    sides.insert(sides.end(), {TriangleSide{a, b, facet, c}, TriangleSide{a, c, facet, b}, {b, c, facet, a}});
-  }
-  std::sort(sides.begin(), sides.end());
-  return sides;
+  return sorted_sides<TriangleSide>(mesh.vertices_m.size(), [&](auto&& visit) {
+    for (std::size_t index = 0; index < mesh.triangles.size(); ++index) {
+      const auto& [a, b, c] = mesh.triangles[index];
+      const std::uint32_t facet = mesh.facet_of_triangle[index];
+      visit(TriangleSide{a, b, facet, c});
+      visit(TriangleSide{a, c, facet, b});
+      visit(TriangleSide{b, c, facet, a});
+    }
+  });
 }
 
 /// A vertex of a piece, and the piece's place in its list.
@@ -162,6 +163,7 @@ inline std::optional<std::size_t> bend_between(const EdgeChain& chain, const std
 inline EdgePieces edge_pieces(const SurfaceMesh& mesh) {
   const std::vector<detail::TriangleSide> sides = detail::triangle_sides(mesh);
   EdgePieces pieces;
+  pieces.reserve(sides.size());
   for (auto first = sides.begin(), last = first; first != sides.end(); first = last) {
     while (last != sides.end() && last->same_place(*first)) ++last;
     const detail::TriangleSide& second = *(last - 1);

@@ -66,6 +66,9 @@ class FacetBuilder {
     surface_.triangles.reserve(mesh_.triangles.size());
     surface_.facet_of_triangle.reserve(mesh_.triangles.size());
     surface_.shell_of_triangle.reserve(mesh_.triangles.size());
+    // As many as there can be: what is not used of a large list takes no memory.
+    surface_.facets.reserve(mesh_.triangles.size());
+    surface_.hull_points_m.reserve(3 * mesh_.triangles.size());
   }
 
   /// The triangles, set by set: sets in the order of their first triangles, which stand first in them.

@@ -84,6 +84,7 @@ inline UsedVertices used_vertices(const TriangleMesh& mesh) {
   constexpr std::uint32_t unused = ~std::uint32_t{0};
   UsedVertices used;
   used.place.resize(mesh.vertices_m.size(), unused);
+  used.vertices_m.reserve(mesh.vertices_m.size());
   for (const TriangleMesh::Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle.vertices) {
       if (used.place[vertex] != unused) continue;

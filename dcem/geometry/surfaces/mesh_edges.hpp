@@ -10,6 +10,7 @@
 
 #include "dcem/geometry/surfaces/disjoint_sets.hpp"
 #include "dcem/geometry/surfaces/mesh_cleaning.hpp"
+#include "dcem/geometry/surfaces/side_order.hpp"
 
 namespace dcem {
 
@@ -23,12 +24,14 @@ struct MeshEdge {
 class MeshEdges {
  public:
   explicit MeshEdges(const CleanMesh& mesh) {
-    edges_.reserve(3 * mesh.triangles.size());
-    for (std::uint32_t index = 0; index < mesh.triangles.size(); ++index) {
-      const auto& [a, b, c] = mesh.triangles[index].vertices;
-      edges_.insert(edges_.end(), {MeshEdge{a, b, index}, MeshEdge{a, c, index}, MeshEdge{b, c, index}});
-    }
-    std::sort(edges_.begin(), edges_.end());
+    edges_ = detail::sorted_sides<MeshEdge>(mesh.vertices_m.size(), [&](auto&& visit) {
+      for (std::uint32_t index = 0; index < mesh.triangles.size(); ++index) {
+        const auto& [a, b, c] = mesh.triangles[index].vertices;
+        visit(MeshEdge{a, b, index});
+        visit(MeshEdge{a, c, index});
+        visit(MeshEdge{b, c, index});
+      }
+    });
   }
 
   /// Calls `visit(first, last)` for the triangles' sides at each place: one for an open edge, two where two triangles

@@ -66,6 +66,7 @@ class WedgeBuilder {
 
   std::vector<Wedge> build() {
     const EdgePieces pieces = edge_pieces(mesh_);
+    wedges_.reserve(pieces.size());  // every wedge has a piece of its own
     for (auto first = pieces.begin(), last = first; first != pieces.end(); first = last) {
       while (last != pieces.end() && last->group() == first->group()) ++last;
       const std::size_t before = wedges_.size();

@@ -45,6 +45,7 @@ inline DistinctVertices distinct_vertices(const std::vector<Vec3>& vertices_m) {
             [](const Entry& a, const Entry& b) { return lexicographic_less(a.vertex_m, b.vertex_m); });
   DistinctVertices distinct;
   distinct.index.resize(vertices_m.size());
+  distinct.vertices_m.reserve(vertices_m.size());
   for (const Entry& entry : order) {
     if (distinct.vertices_m.empty() || lexicographic_less(distinct.vertices_m.back(), entry.vertex_m)) {
       distinct.vertices_m.push_back(entry.vertex_m);
@@ -119,6 +120,7 @@ inline WeldedVertices weld(const std::vector<Vec3>& vertices_m, double tolerance
   }
   WeldedVertices welded;
   std::vector<std::uint32_t> new_of_distinct(distinct.vertices_m.size());
+  welded.vertices_m.reserve(distinct.vertices_m.size());
   for (std::uint32_t index = 0; index < distinct.vertices_m.size(); ++index) {
     if (sets.smallest(index) == index) {  // distinct vertices are sorted: the smallest index is the smallest vertex
       new_of_distinct[index] = static_cast<std::uint32_t>(welded.vertices_m.size());

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dcem/core/simd.hpp"
@@ -148,6 +149,7 @@ class FacetOutlines {
   void cluster_bodies();
   /// Halves items along the longest side of the box of their centres; a node stands before its children.
   void grow(std::uint32_t first, std::uint32_t count);
+  void divide(std::uint32_t first, std::uint32_t count, int axis);
 
   std::vector<FacetOutline> outlines_;
   std::vector<HullSide> sides_;
@@ -158,6 +160,7 @@ class FacetOutlines {
   std::vector<BodyId> bodies_there_;  ///< those that are not absent …
   ConeClusters body_clusters_;        ///< … and their boxes
   Vec3 middle_m_{0.0};
+  std::vector<std::pair<double, std::uint32_t>> places_;  ///< of items along an axis, while the tree grows
 };
 
 }  // namespace dcem

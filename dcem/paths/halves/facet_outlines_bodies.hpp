@@ -31,6 +31,7 @@ DCEM_INLINE FacetOutlines::FacetOutlines(const Scene& scene) : outlines_(scene.f
   }
   if (!items_.empty()) {
     grow(0, static_cast<std::uint32_t>(items_.size()));
+    places_ = std::vector<std::pair<double, std::uint32_t>>();
     middle_m_ = glm::round(nodes_.front().box.center());
     lay_out_planes(scene);
   }
@@ -143,15 +144,21 @@ DCEM_INLINE void FacetOutlines::grow(std::uint32_t first, std::uint32_t count) {
   if (count <= leaf_size) return;
   const Vec3 size = centres.extent();
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const auto begin = items_.begin() + first;
-  std::nth_element(begin, begin + count / 2, begin + count, [&](std::uint32_t one, std::uint32_t other) {
-    const double a = outlines_[one].box.center()[axis], b = outlines_[other].box.center()[axis];
-    return a != b ? a < b : one < other;
-  });
+  divide(first, count, axis);
   nodes_[number].count = 0;
   grow(first, count / 2);
   nodes_[number].right = static_cast<std::uint32_t>(nodes_.size());
   grow(first + count / 2, count - count / 2);
+}
+
+/// The lesser half of the items along an axis first. Their places are gathered before: those of facets lie apart.
+DCEM_INLINE void FacetOutlines::divide(std::uint32_t first, std::uint32_t count, int axis) {
+  places_.clear();
+  for (std::uint32_t index = first; index < first + count; ++index) {
+    places_.emplace_back(outlines_[items_[index]].box.center()[axis], items_[index]);
+  }
+  std::nth_element(places_.begin(), places_.begin() + count / 2, places_.end());
+  for (std::uint32_t index = 0; index < count; ++index) items_[first + index] = places_[index].second;
 }
 
 }  // namespace dcem

@@ -33,11 +33,12 @@ class LaneScene {
  public:
   LaneScene(const Scene& scene, const FacetOutlines& outlines) : origin_m_(outlines.middle_m()) {
     planes_.resize(scene.facets().size());
+    first_.assign(1, 0);
+    first_.reserve(scene.facets().size() + 1);
     for (std::uint32_t index = 0; index < scene.facets().size(); ++index) {
-      first_.push_back(static_cast<std::uint32_t>(sides_.size()));
-      sides_.resize(sides_.size() + outlines.sides(FacetId(index)).size());
+      first_.push_back(first_.back() + static_cast<std::uint32_t>(outlines.sides(FacetId(index)).size()));
     }
-    first_.push_back(static_cast<std::uint32_t>(sides_.size()));
+    sides_.resize(first_.back());
     edges_.resize(scene.wedges().size());
     for (std::uint32_t index = 0; index < scene.facets().size(); ++index) place(scene, outlines, FacetId(index));
     for (std::uint32_t index = 0; index < edges_.size(); ++index) place(scene, WedgeId(index));

@@ -23,6 +23,8 @@ class WideBinner {
   void build(std::span<WideItem> items, std::uint32_t leaf_limit, unsigned threads, std::vector<WideSplit>& nodes) {
     nodes.clear();
     if (items.empty()) return;
+    constexpr std::size_t many = 1U << 16;  // what is not used of a large list takes no memory
+    if (items.size() >= many) nodes.reserve(2 * items.size());
     if (spare_.size() < items.size()) spare_.resize(items.size());
     branches_.clear();
     open_.assign(1, {0, detail::wide_build_depth_limit, {}});

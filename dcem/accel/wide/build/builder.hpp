@@ -113,11 +113,29 @@ class WideBuilder {
   void build_root(std::span<WideItem> items) {
     const std::vector<WideSplit> binary = divided(items);
     const WideCollapse collapse(binary, items, settings_.costs);
+    make_room(binary, collapse, items);
     if (collapse.is_leaf(0)) {
       attach(build_child(binary, collapse, items, 0), NodeLane::at(0, 0));
     } else {
       fill_node(0, binary, collapse, items, 0);
     }
+  }
+
+  /// Room for what the tree below the root will have, and no more.
+  void make_room(std::span<const WideSplit> binary, const WideCollapse& collapse, std::span<const WideItem> items) {
+    std::size_t nodes = arrays_->nodes.size(), leaves = arrays_->leaves.size();
+    std::vector<std::uint32_t> open{0};
+    while (!open.empty()) {
+      const std::uint32_t slot = open.back();
+      open.pop_back();
+      if (!collapse.is_leaf(slot)) {
+        ++nodes;
+        collapse.for_each_entry(slot, [&](std::uint32_t entry) { open.push_back(entry); });
+      } else if (items[binary[slot].first].kind != WideItem::no_kind) {
+        ++leaves;
+      }
+    }
+    arrays_->reserve(nodes, leaves);
   }
 
   /// A leaf, or a node that is filled later.

@@ -110,6 +110,7 @@ class WideDraft {
     }
     std::vector<detail::BinaryNode> nodes;
     std::vector<WideItem> held;
+    held.reserve(items.size());
     std::vector<std::uint32_t> made(entries_.size());  // the binary node of an entry
     for (std::size_t at = order.size(); at-- > 0;) {
       const Entry& entry = entries_[order[at]];

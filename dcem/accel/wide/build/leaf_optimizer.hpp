@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dcem/accel/wide/build/collapse.hpp"
@@ -24,14 +26,16 @@ class LeafOptimizer {
   /// get deeper than detail::wide_build_depth_limit stays as it is.
   static void optimize(std::vector<WideSplit>& splits, std::span<WideItem> items, const WideCosts& costs,
                        int most_passes) {
-    const WideCollapse plan(splits, items, costs);
-    if (splits.empty() || plan.is_leaf(0) || !std::isfinite(splits.front().half_area_m2)) return;
-    LeafOptimizer work(splits, items, plan, costs);
+    std::optional<WideCollapse> plan(std::in_place, splits, items, costs);
+    if (splits.empty() || plan->is_leaf(0) || !std::isfinite(splits.front().half_area_m2)) return;
+    LeafOptimizer work(splits, items, *plan, costs);
+    const double cost_m2 = plan->cost_m2();
+    plan.reset();  // as large as all else here
     bool is_better = false;
     for (int pass = 0; pass < most_passes; ++pass) {
       const double gain_m2 = work.pass();
       is_better = is_better || gain_m2 > 0.0;
-      if (!(gain_m2 > least_gain * plan.cost_m2())) break;
+      if (!(gain_m2 > least_gain * cost_m2)) break;
     }
     if (is_better) work.tree_.store(splits, items);
   }

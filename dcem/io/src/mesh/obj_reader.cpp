@@ -26,6 +26,8 @@ namespace {
 constexpr const char* obj_expectation = "expected a Wavefront OBJ file";
 constexpr double farthest_vertex_m = 1e9;
 constexpr std::size_t most_polygon_corners = 10'000;
+/// Of a text, for each vertex: room that turns out too large takes no memory, and too little of it only time.
+constexpr std::size_t usual_vertex_bytes = 32;
 
 /// Material of faces that stand before the first `usemtl`.
 constexpr const char* default_material_name = "default";
@@ -47,6 +49,7 @@ struct CheckedObj {
   std::vector<Vec3> vertices_m;  ///< turned z up and in metres
   std::vector<Library> libraries;
   std::map<std::string, std::size_t> used_at;  ///< line of the first `usemtl` of each material
+  std::size_t faces = 0;
   bool has_curved_surfaces = false;
 };
 
@@ -59,10 +62,12 @@ class ObjCheck {
 
   CheckedObj check(std::string_view text) {
     LineReader lines(text);
+    result_.vertices_m.reserve(text.size() / usual_vertex_bytes);
     while (lines.next()) {
       line_ = lines.number();
       check_line(lines.line());
     }
+    result_.faces = faces_;
     if (faces_ == 0) throw InputError(file_, std::string("holds no face; ") + obj_expectation + " with 'f' lines");
     if (largest_index_ > static_cast<long long>(result_.vertices_m.size())) {
       line_ = largest_index_line_;
@@ -177,7 +182,10 @@ class TextBuffer : public std::streambuf {
 /// Receives what tinyobjloader reads from a checked text and makes triangles of it.
 class MeshBuilder {
  public:
-  explicit MeshBuilder(std::vector<Vec3> vertices_m) { mesh_.vertices_m = std::move(vertices_m); }
+  MeshBuilder(std::vector<Vec3> vertices_m, std::size_t faces) {
+    mesh_.vertices_m = std::move(vertices_m);
+    mesh_.triangles.reserve(faces);
+  }
 
   TriangleMesh build(const std::string& text) {
     tinyobj::callback_t callback;
@@ -323,7 +331,7 @@ ObjFile read_obj(const std::filesystem::path& file, const ObjSettings& settings)
   ObjFile result;
   read_libraries(file, checked, result);
   result.used_at = std::move(checked.used_at);
-  MeshBuilder builder(std::move(checked.vertices_m));
+  MeshBuilder builder(std::move(checked.vertices_m), checked.faces);
   result.mesh = builder.build(text);
   if (checked.has_curved_surfaces) {
     result.warnings.push_back(file.string() + ": free-form curves and surfaces are left out; only faces are read");

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <istream>
 #include <iterator>
 #include <numeric>
 #include <system_error>
@@ -19,12 +20,38 @@ namespace dcem::io {
 
 namespace {
 
-constexpr std::string_view blanks = " \t";
 constexpr std::size_t longest_quotation = 80;
+
+// Character by character: words are short, and the searches of std::string_view call a function for each of theirs.
+bool is_blank(char character) {
+  return character == ' ' || character == '\t';
+}
+
+bool ends_line(char character) {
+  return character == '\n' || character == '\r';
+}
+
+/// How many characters come before the first that is one of them.
+template <typename IsOne>
+std::size_t length_until(std::string_view text, IsOne is_one) {
+  return static_cast<std::size_t>(std::find_if(text.begin(), text.end(), is_one) - text.begin());
+}
 
 bool is_control(char character) {
   const auto code = static_cast<unsigned char>(character);
   return code < 0x20 || code == 0x7F;
+}
+
+/// What a stream that was just opened holds. A file is read at once; what has no size, as a pipe, piece by piece.
+std::string all_of(std::istream& stream, const std::filesystem::path& file) {
+  std::error_code ignored;
+  const bool has_size = std::filesystem::is_regular_file(file, ignored);
+  std::string text(has_size ? std::filesystem::file_size(file, ignored) : 0, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (!stream.bad()) stream.clear();  // a file may have shrunk meanwhile
+  text.append(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  return text;
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -50,7 +77,7 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   ReadLog::note(file);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  std::string text = stream ? all_of(stream, file) : std::string();
   if (!stream) {
     const std::string reason = errno != 0 ? std::generic_category().message(errno) : "input error";
     throw InputError(file.string(), "cannot be read (" + reason + "); " + expectation);
@@ -122,14 +149,14 @@ std::optional<long long> parse_integer(std::string_view text) {
 }
 
 std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 std::string_view take_word(std::string_view& rest) {
-  rest.remove_prefix(std::min(rest.find_first_not_of(blanks), rest.size()));
-  const std::size_t length = std::min(rest.find_first_of(blanks), rest.size());
+  while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+  const std::size_t length = length_until(rest, is_blank);
   const std::string_view word = rest.substr(0, length);
   rest.remove_prefix(length);
   return word;
@@ -137,7 +164,7 @@ std::string_view take_word(std::string_view& rest) {
 
 bool LineReader::next() {
   if (rest_.empty()) return false;
-  const std::size_t length = std::min(rest_.find_first_of("\r\n"), rest_.size());
+  const std::size_t length = length_until(rest_, ends_line);
   line_ = rest_.substr(0, length);
   rest_.remove_prefix(length);
   if (rest_.starts_with("\r\n")) {

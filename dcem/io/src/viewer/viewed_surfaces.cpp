@@ -15,7 +15,7 @@ std::uint32_t ViewedSurfaces::number_of(const Scene& scene, const Interaction& t
   const SurfaceMesh& mesh = scene.body(body).mesh;
   ViewedSurface surface{object, scene.facet(touch.facet).material, {}, Vec3(0.0), 0.0};
   if (is_edge) {
-    const Wedge& wedge = mesh.wedges[own];
+    const Wedge& wedge = body.value == 0 ? scene.wedge(touch.wedge).edge : mesh.wedges[own];
     surface.normal = wedge.normal;
     surface.edge = edge_direction(wedge);
     surface.exterior_angle_rad = wedge.exterior_angle_rad;
