@@ -88,6 +88,7 @@ class BasicSimulator {
   TreeUpdateReport move_to(const Frame& frame);
   /// One path on its own, in the current frame: over `sequence`, counted from the receiver, between a transmitter and a
   /// receiver of the scene. Nothing where there is no such path or an end is absent.
+  std::vector<double> estimated_chains(const Device& receiver) const;
   std::optional<PathContribution> solve_path(std::size_t transmitter, std::size_t receiver,
                                              const Sequence& sequence) const;
 

@@ -55,6 +55,11 @@ class Simulator {
   std::vector<LinkResult> solve(std::span<const Device> transmitters, std::span<const Device> receivers,
                                 std::span<const LinkRequest> requests, WorkCounters* work = nullptr) const;
 
+  /// About how many chains over edges a link of the first transmitter with a receiver of the caller's takes where
+  /// discovery is sampled, by `max_interactions`: known before any is tried. Empty where there are none to try, or one
+  /// of the two is absent. In the current frame.
+  std::vector<double> estimated_chains(const Device& receiver) const;
+
   /// Closed shells that hold a point in the current frame or on which it lies, ascending.
   std::vector<ShellAtPoint> shells_at(const Vec3& point_m) const;
 

@@ -61,6 +61,9 @@ DCEM_INLINE std::vector<LinkResult> Simulator::solve(std::span<const Device> tra
                                                      std::span<const LinkRequest> requests, WorkCounters* work) const {
   return body_->simulator.solve(transmitters, receivers, requests, work);
 }
+DCEM_INLINE std::vector<double> Simulator::estimated_chains(const Device& receiver) const {
+  return body_->simulator.estimated_chains(receiver);
+}
 DCEM_INLINE std::vector<ShellAtPoint> Simulator::shells_at(const Vec3& point_m) const {
   return body_->simulator.shells_at(point_m);
 }

@@ -10,6 +10,7 @@
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/sampling_text.hpp"
+#include "dcem/io/slow_search.hpp"
 #include "dcem/io/text_table.hpp"
 #include "dcem/sim/discovery.hpp"
 #include "dcem/sim/link_choice.hpp"
@@ -122,6 +123,14 @@ io::RunFacts run_facts(const Job& job, const Simulator& simulator, const SearchP
           job.scenario.warnings,
           exactly_searched_interactions(propagation, plan),
           io::sampled_kinds(propagation, plan)};
+}
+
+void warn_of_slow_search(Job& job, const Simulator& simulator, const Device& receiver, std::size_t receivers) {
+  const std::vector<double> chains = simulator.estimated_chains(receiver);
+  const std::size_t links = receivers * simulator.scene().transmitters().size();
+  if (const auto hint = io::slow_search_hint({chains, links, job.frames.count()})) {
+    job.scenario.warnings.push_back(*hint);
+  }
 }
 
 void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options) {

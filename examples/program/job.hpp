@@ -39,6 +39,9 @@ Simulator make_simulator(Job& job, const ScenarioOptions& options);
 
 io::RunFacts run_facts(const Job& job, const Simulator& simulator, const SearchPlan& plan, std::size_t receivers);
 
+/// Where a sampled search would take hours, a warning says so. `receiver`: one of those that are searched for.
+void warn_of_slow_search(Job& job, const Simulator& simulator, const Device& receiver, std::size_t receivers);
+
 /// One line per warning on the error stream, unless the user wants quiet. Called when nothing in the input can be wrong
 /// any more, because an error is to be the only line.
 void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options);

@@ -32,6 +32,12 @@ struct MapOrders {
     for (const ReceiverList& list : lists) sum += list.receivers.size();
     return sum;
   }
+  /// A receiver in the midst of the first of them.
+  std::optional<Device> middle() const {
+    if (!grids.empty()) return grid_receiver(grids.front(), grids.front().rows() / 2, grids.front().columns() / 2);
+    if (lists.empty() || lists.front().receivers.empty()) return std::nullopt;
+    return lists.front().receivers[lists.front().receivers.size() / 2];
+  }
   std::size_t cells() const {
     std::size_t sum = 0;
     for (const ReceiverGrid& grid : grids) sum += grid.size();
@@ -306,6 +312,7 @@ void map_scenario(const ScenarioOptions& options) {
                                           simulator.scene().surface_count(), orders.points())) {
     job.scenario.warnings.push_back(*hint);
   }
+  if (const auto receiver = orders.middle()) warn_of_slow_search(job, simulator, *receiver, orders.points());
   io::RunSummary summary(run_facts(job, simulator, simulator.plan(), orders.points()), simulator.scene());
   print_warnings(job.scenario.warnings, options);
   // The powers, the best server and the SINR.

@@ -251,6 +251,8 @@ void run_scenario(const ScenarioOptions& options) {
   if (takes_all_links(simulator.scene(), simulator.settings().links)) {
     warn_of_plots(job, io::plotted_links(simulator.scene(), simulator.scene().receivers()));
   }
+  const auto receivers = simulator.scene().receivers();
+  if (!receivers.empty()) warn_of_slow_search(job, simulator, receivers.front(), receivers.size());
   std::optional<io::JournalReader> former = open_journal(job, options, identity, simulator);
   Run run(job, options, simulator, folder, devices);
   print_warnings(job.scenario.warnings, options);

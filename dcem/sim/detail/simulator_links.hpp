@@ -1,8 +1,10 @@
 #pragma once
 /// How a `BasicSimulator` solves the links of a frame; included by basic_simulator.hpp.
 #include <algorithm>
+#include <array>
 #include <utility>
 
+#include "dcem/paths/discover/chain_count.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/link_work.hpp"
 
@@ -243,6 +245,26 @@ std::optional<PathContribution> BasicSimulator<Surface, Index>::solve_path(std::
   PathContribution contribution = field.evaluate(std::move(*path), from_radio, to_radio);
   trace_elements({&contribution, 1}, {from_link, from_radio}, {to_link, to_radio}, field);
   return contribution;
+}
+
+/// Both ends are looked from as a link looks from them; what they reach is counted instead of joined.
+template <SurfaceModel Surface, SpatialIndex Index>
+std::vector<double> BasicSimulator<Surface, Index>::estimated_chains(const Device& receiver) const {
+  const PathSearchSettings search = search_settings();
+  if (search.max_diffractions == 0 || !needs_rays(search) || scene_.transmitters().empty()) return {};
+  const Device& transmitter = scene_.transmitters().front();
+  if (!state_of(transmitter).present || !state_of(receiver).present) return {};
+  const Tracer tracer(scene_, index_);
+  std::array<EdgeReach, 2> reach;
+  std::array<ReachedEdges, 2> reached;
+  SearchCounters counters;
+  const std::array<const Device*, 2> ends{&receiver, &transmitter};
+  for (std::size_t end = 0; end < ends.size(); ++end) {
+    const LinkEnd link = link_end(state_of(*ends[end]), counters.solver.traversal);
+    find_reach(tracer, search, link, {ends[end]->id, frame_.index}, search.rays, reach[end], counters);
+    reached[end] = reach[end].edges();
+  }
+  return count_chains(reached[0], reached[1], chain_limits(search));
 }
 
 }  // namespace dcem
