@@ -36,5 +36,8 @@ inline constexpr std::string_view utm_expected = "GeographicLib (libgeographicli
 /// The place of a point of the scene. Throws std::invalid_argument where UTM ends, and std::logic_error where this
 /// build knows no UTM.
 GeoPlace place_on_earth(const GeoAnchor& anchor, double x_m, double y_m);
+/// x and y of the point of the scene that has this place. Throws std::invalid_argument where the anchor has none for
+/// it, and std::logic_error where this build knows no UTM.
+std::array<double, 2> point_in_scene_m(const GeoAnchor& anchor, double lat_deg, double lon_deg);
 
 }  // namespace dcem::io

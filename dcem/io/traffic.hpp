@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dcem/geometry/vector.hpp"
+#include "dcem/io/geo_anchor.hpp"
 
 namespace dcem::io {
 
@@ -32,6 +34,7 @@ struct Traffic {
   };
 
   std::filesystem::path trace;
+  std::optional<GeoAnchor> degrees{};  ///< its x and y are longitudes and latitudes, and this places them in the scene
   double first_s = 0.0, last_s = 0.0;  ///< of the trace's steps
   std::vector<Type> types;             ///< ascending by name
   /// When the vehicles that the scenario names are there; those that never come are missing.

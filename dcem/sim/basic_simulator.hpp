@@ -86,9 +86,11 @@ class BasicSimulator {
 
   /// Moves scene and index to a frame without solving anything.
   TreeUpdateReport move_to(const Frame& frame);
+  /// About how many chains over edges a link of the first transmitter takes where discovery is sampled, by
+  /// `max_interactions`; as `Simulator` has it.
+  std::vector<double> estimated_chains(const Device& receiver) const;
   /// One path on its own, in the current frame: over `sequence`, counted from the receiver, between a transmitter and a
   /// receiver of the scene. Nothing where there is no such path or an end is absent.
-  std::vector<double> estimated_chains(const Device& receiver) const;
   std::optional<PathContribution> solve_path(std::size_t transmitter, std::size_t receiver,
                                              const Sequence& sequence) const;
 

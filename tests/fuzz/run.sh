@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets and runs each for some seconds, from the kept corpus and the good files of the tests. What is
-# kept must pass: where it does not, or nothing can be built, the exit code is 2; where new input finds something, 1.
+# kept must pass: where it does not, the exit code is 2; where new input finds something, 1; where the targets cannot be
+# built, 3.
 #
 #   tests/fuzz/run.sh [SECONDS [TARGET...]]   default: 60 seconds each, all targets; 0 seconds: the kept corpus alone
 #
@@ -17,7 +18,7 @@ read -ra targets <<<"${targets[*]}"
   examples/install_dependencies.sh clang &&
     cmake --preset fuzz >/dev/null &&
     cmake --build --preset fuzz --parallel "$(nproc)"
-} || exit 2
+} || exit 3
 
 export ASAN_OPTIONS="allocator_may_return_null=1:${ASAN_OPTIONS:-}"
 bounds=(-timeout=20 -rss_limit_mb=3000)

@@ -200,7 +200,7 @@ TEST_CASE("bash completes commands, options, words and lists of words") {
   CHECK(offered(folder, "map --res").empty());
   CHECK(offered(folder, "run street.json --discovery \"\"") == "exact sampled");
   CHECK(offered(folder, "run street.json --progress j") == "json");
-  CHECK(offered(folder, "run street.json --output p") == "paths pdp plots");
+  CHECK(offered(folder, "run street.json --output p") == "paths pdp p2m plots");
   CHECK(offered(folder, "run street.json --output links,pd") == "links,pdp");
   CHECK(offered(folder, "map street.json --output links,dop").empty());
   CHECK(offered(folder, "completion \"\"") == "bash zsh fish");

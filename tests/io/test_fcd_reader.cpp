@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -219,6 +220,30 @@ TEST_CASE("the reference trace: every row of every step") {
   CHECK(most == 196);
   CHECK(first_s == 600.0);
   CHECK(last_s == 659.9);
+}
+
+TEST_CASE("a trace in longitude and latitude has the vehicles where the same trace in metres has them") {
+  DCEM_NEEDS_SHARED();
+  if (!io::knows_utm()) return;
+  const io::UtmFrame frame{32, true, {543074.33, 5627577.65}};
+  io::FcdReader metres(test::shared_path("badhersfeld/fcd_600-660s_0.1s.xml.gz"));
+  io::FcdReader degrees(test::shared_path("badhersfeld/fcd_600-660s_1s_lonlat.xml.gz"), io::xml_chunk_bytes, frame);
+  std::size_t compared = 0;
+  double farthest_m = 0.0;
+  io::FcdStep expected;
+  for (io::FcdStep step; degrees.next(step);) {
+    while (expected.time_s < step.time_s) REQUIRE(metres.next(expected));
+    REQUIRE(expected.vehicles.size() == step.vehicles.size());
+    for (std::size_t index = 0; index < step.vehicles.size(); ++index) {
+      const io::FcdVehicle &one = step.vehicles[index], &other = expected.vehicles[index];
+      CHECK(one.id == other.id);
+      CHECK(one.angle_deg == other.angle_deg);
+      farthest_m = std::max(farthest_m, std::hypot(one.x_m - other.x_m, one.y_m - other.y_m));
+      ++compared;
+    }
+  }
+  CHECK(compared > 10'000);
+  CHECK(farthest_m < 0.075);  // half a millionth of a degree and half a centimetre in each direction
 }
 
 }  // namespace test_fcd_reader

@@ -387,8 +387,14 @@ TEST_CASE("longitudes and latitudes are not taken for metres") {
   TrafficCase files;
   files.trace_lines = step("0", vehicle("a", R"(x="9.7000" y="50.8700" angle="90" speed="15")")) +
                       step("10", vehicle("a", R"(x="9.7021" y="50.8700" angle="90" speed="15")"));
-  CHECK(holds(files.error(), "longitude and latitude are not in this version"));
+  CHECK(holds(files.error(), "for longitude and latitude the block geo, with the scene within a degree"));
+  files.more = R"(, "geo": {"origin_lat_deg": 10, "origin_lon_deg": 9.7})";  // somewhere else
+  CHECK(holds(files.error(), "for longitude and latitude the block geo, with the scene within a degree"));
+  files.more = R"(, "geo": {"origin_lat_deg": 50.87, "origin_lon_deg": 9.7})";
+  CHECK(files.load().traffic->degrees.has_value());
   files.trace_lines = step("0", car_at("a", 0)) + step("1000", car_at("a", 5));  // slow, but it moves
+  CHECK(!files.load().traffic->degrees.has_value());
+  files.more = "";
   CHECK(files.error() == "no error");
 }
 

@@ -49,4 +49,23 @@ TEST_CASE("UTM, in a build that knows it") {
   CHECK_THROWS_AS(place_on_earth(frame, 5e6, 0.0), std::invalid_argument);
 }
 
+TEST_CASE("a place leads back to its point of the scene") {
+  const auto check = [](const GeoAnchor& anchor) {
+    for (const double x_m : {-21000.0, -3.25, 0.0, 740.5, 9000.0}) {
+      for (const double y_m : {-15000.0, 0.0, 12.125, 8400.0}) {
+        const GeoPlace place = place_on_earth(anchor, x_m, y_m);
+        const auto [back_x_m, back_y_m] = point_in_scene_m(anchor, place.lat_deg, place.lon_deg);
+        CHECK(std::abs(back_x_m - x_m) < 2e-6);  // what Bowring's formula and UTM's series leave out
+        CHECK(std::abs(back_y_m - y_m) < 2e-6);
+      }
+    }
+  };
+  check(GeoOrigin{50.868, 9.708});
+  check(GeoOrigin{-33.9, 179.99});
+  CHECK_THROWS_AS(point_in_scene_m(GeoOrigin{50.0, 9.0}, 10.0, 150.0), std::invalid_argument);
+  if (!knows_utm()) return;
+  check(UtmFrame{32, true, {543074.33, 5627577.65}});
+  CHECK_THROWS_AS(point_in_scene_m(UtmFrame{32, true, {0.0, 0.0}}, 50.0, 150.0), std::invalid_argument);
+}
+
 }  // namespace test_geo_anchor

@@ -1,6 +1,8 @@
 #include "dcem/io/geo_anchor.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <stdexcept>
 
 #include "dcem/core/units.hpp"
 #include "dcem/io/src/geo/utm.hpp"
@@ -30,7 +32,33 @@ GeoPlace place_from_plane(const GeoOrigin& origin, double x_m, double y_m) {
   return {radians_to_degrees(lat_there), lon_there, -radians_to_degrees(turn * std::sin(lat))};
 }
 
+/// The plane's point above or below a place: up along the ellipsoid's normal there until it meets the plane.
+std::array<double, 2> point_on_plane(const GeoOrigin& origin, double lat_deg, double lon_deg) {
+  const double lat0 = degrees_to_radians(origin.lat_deg), lat = degrees_to_radians(lat_deg);
+  const double turn = degrees_to_radians(std::remainder(lon_deg - origin.lon_deg, 360.0));
+  const auto across_m = [](double at) {
+    return major_m / std::sqrt(1.0 - first_eccentricity2 * std::sin(at) * std::sin(at));
+  };
+  // From the origin, in Earth-centred axes: away from the Earth's axis in the origin's meridian, east, north.
+  const std::array<double, 3> normal{std::cos(lat) * std::cos(turn), std::cos(lat) * std::sin(turn), std::sin(lat)};
+  const std::array<double, 3> from_origin_m{
+      across_m(lat) * normal[0] - across_m(lat0) * std::cos(lat0), across_m(lat) * normal[1],
+      (1.0 - first_eccentricity2) * (across_m(lat) * normal[2] - across_m(lat0) * std::sin(lat0))};
+  const double upwards = std::cos(lat0) * normal[0] + std::sin(lat0) * normal[2];
+  if (!(upwards > 0.0)) throw std::invalid_argument("geo: a place beyond the horizon of the scene");
+  const double below_m = std::cos(lat0) * from_origin_m[0] + std::sin(lat0) * from_origin_m[2];
+  const auto on_plane_m = [&](std::size_t axis) { return from_origin_m[axis] - below_m / upwards * normal[axis]; };
+  return {on_plane_m(1), std::cos(lat0) * on_plane_m(2) - std::sin(lat0) * on_plane_m(0)};
+}
+
 }  // namespace
+
+std::array<double, 2> point_in_scene_m(const GeoAnchor& anchor, double lat_deg, double lon_deg) {
+  if (const auto* origin = std::get_if<GeoOrigin>(&anchor)) return point_on_plane(*origin, lat_deg, lon_deg);
+  const UtmFrame& frame = std::get<UtmFrame>(anchor);
+  const Vec2 there_m = utm_m({lat_deg, lon_deg}, {frame.zone, frame.northern});
+  return {there_m.x - frame.offset_m[0], there_m.y - frame.offset_m[1]};
+}
 
 GeoPlace place_on_earth(const GeoAnchor& anchor, double x_m, double y_m) {
   if (const auto* origin = std::get_if<GeoOrigin>(&anchor)) return place_from_plane(*origin, x_m, y_m);

@@ -26,8 +26,12 @@ Vec2 utm_m(const GeoPoint& point, const UtmZone& zone) {
   int its_zone = 0;
   bool is_north = true;
   Vec2 result(0.0);
-  GeographicLib::UTMUPS::Forward(point.latitude_deg, point.longitude_deg, its_zone, is_north, result.x, result.y,
-                                 zone.number);
+  try {
+    GeographicLib::UTMUPS::Forward(point.latitude_deg, point.longitude_deg, its_zone, is_north, result.x, result.y,
+                                   zone.number);
+  } catch (const GeographicLib::GeographicErr& error) {
+    throw std::invalid_argument(std::string("no place in UTM (") + error.what() + "); expected one within the zone");
+  }
   // A scene across the equator stays in one piece: northings go on below 0, or above 10 000 km.
   if (is_north != zone.is_north) result.y += is_north ? 1e7 : -1e7;
   return result;

@@ -26,7 +26,7 @@ std::string utm_library();
 
 /// The standard zone of a point.
 UtmZone utm_zone(const GeoPoint& point);
-/// Easting and northing in a zone, also of points somewhat outside of it.
+/// Easting and northing in a zone, also of points somewhat outside of it. Throws std::invalid_argument far outside.
 Vec2 utm_m(const GeoPoint& point, const UtmZone& zone);
 GeoPoint geo_point(const Vec2& utm_m, const UtmZone& zone);
 /// Throws as `place_on_earth`.

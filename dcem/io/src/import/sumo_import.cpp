@@ -172,13 +172,13 @@ class SumoImport {
     draft_.sources.push_back(files_.trace);
     nlohmann::ordered_json mobility{{"sumo_fcd", name_from(folder_, files_.trace)}, {"material", "metal"}};
     for (const auto& file : type_files_) mobility["vehicle_types"].push_back(name_from(folder_, file));
+    const TraceSurvey survey = survey_trace(files_.trace, vehicle_types(), {{}, true, anchor()});
     FcdStep first;
-    FcdReader(files_.trace).next(first);
+    FcdReader(files_.trace, xml_chunk_bytes, survey.traffic.degrees).next(first);
     if (first.vehicles.empty()) {
       throw InputError(files_.trace.string(), first.line,
                        "no vehicle in the first step; expected some to carry devices");
     }
-    const TraceSurvey survey = survey_trace(files_.trace, vehicle_types(), {{}, true});
     draft_.report.read["steps of the trace"] = survey.step_times_s.size();
     draft_.report.read["types of vehicles in the trace"] = survey.traffic.types.size();
     mobility["devices"] = {{"vehicles", equipped(survey.traffic.types_of_vehicles.size())},
@@ -187,6 +187,12 @@ class SumoImport {
     draft_.scenario["links"] = {{"range_m", 150}};
     draft_.scenario["transmitters"] = nlohmann::ordered_json::array({mast_json(draft_, parts, middle_of(first))});
     draft_.scenario["mobility"] = std::move(mobility);
+  }
+
+  /// Where the network lies on the Earth, as far as that is known.
+  std::optional<GeoAnchor> anchor() const {
+    if (!zone_) return std::nullopt;
+    return UtmFrame{zone_->number, zone_->is_north, {-location_->net_offset_m.x, -location_->net_offset_m.y}};
   }
 
   /// All of a few vehicles, some 40 of many.

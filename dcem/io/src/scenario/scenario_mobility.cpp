@@ -97,7 +97,7 @@ void read_mobility(const JsonObject& scenario, const std::filesystem::path& fold
   mobility.at("material").line();
   const std::filesystem::path trace = existing_file(mobility.at("sumo_fcd"), folder, "expected SUMO's FCD output");
   const VehicleTypes types = read_vehicle_types(mobility, folder);
-  SurveyWishes wishes{names_of_interest(scenario), mobility.has("devices")};
+  SurveyWishes wishes{names_of_interest(scenario), mobility.has("devices"), result.geo};
   collect_equipped(mobility, wishes.names);
   TraceSurvey survey = survey_trace(trace, types, wishes);
   result.time = trace_time(scenario, survey.traffic, std::move(survey.step_times_s));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
@@ -16,8 +17,8 @@ constexpr double largest_angle_deg = 1e6, latest_s = 1e9;
 
 }  // namespace
 
-FcdReader::FcdReader(const std::filesystem::path& file, std::size_t chunk_bytes)
-    : file_(file.string()), reader_(file, fcd_expectation, *this, chunk_bytes) {}
+FcdReader::FcdReader(const std::filesystem::path& file, std::size_t chunk_bytes, std::optional<GeoAnchor> degrees)
+    : file_(file.string()), reader_(file, fcd_expectation, *this, chunk_bytes), degrees_(degrees) {}
 
 bool FcdReader::next(FcdStep& step) {
   step_ = &step;
@@ -80,6 +81,17 @@ void FcdReader::start_vehicle(const XmlAttributes& attributes) {
   vehicle.angle_deg = number(attributes, "angle", largest_angle_deg);
   vehicle.speed_mps = number(attributes, "speed", speed_of_light_mps);
   vehicle.slope_deg = number(attributes, "slope", largest_angle_deg, 0.0);
+  if (degrees_) put_into_scene(vehicle);
+}
+
+void FcdReader::put_into_scene(FcdVehicle& vehicle) const {
+  try {
+    const auto [x_m, y_m] = point_in_scene_m(*degrees_, vehicle.y_m, vehicle.x_m);
+    vehicle.x_m = x_m;
+    vehicle.y_m = y_m;
+  } catch (const std::invalid_argument& error) {
+    reader_.fail("vehicle " + in_quotes(vehicle_) + ": " + error.what());
+  }
 }
 
 void FcdReader::finish_step() {

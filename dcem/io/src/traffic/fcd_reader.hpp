@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dcem/io/geo_anchor.hpp"
 #include "dcem/io/src/traffic/xml_reader.hpp"
 
 namespace dcem::io {
@@ -32,7 +33,10 @@ struct FcdStep {
 /// Elements other than `timestep` and `vehicle` (persons, containers) are passed over.
 class FcdReader : private XmlHandler {
  public:
-  explicit FcdReader(const std::filesystem::path& file, std::size_t chunk_bytes = xml_chunk_bytes);
+  /// `degrees`: x and y are longitude and latitude, and this says where they are in the scene. Angles are SUMO's own in
+  /// any case, from the network's y axis.
+  explicit FcdReader(const std::filesystem::path& file, std::size_t chunk_bytes = xml_chunk_bytes,
+                     std::optional<GeoAnchor> degrees = std::nullopt);
 
   /// Reads the next step into `step`, whose memory is used again; false at the end of the trace.
   bool next(FcdStep& step);
@@ -44,6 +48,7 @@ class FcdReader : private XmlHandler {
 
   void start_step(const XmlAttributes& attributes);
   void start_vehicle(const XmlAttributes& attributes);
+  void put_into_scene(FcdVehicle& vehicle) const;
   void finish_step();
   FcdVehicle& append_vehicle();
   void read_name(const XmlAttributes& attributes, const char* attribute, std::string& name) const;
@@ -54,6 +59,7 @@ class FcdReader : private XmlHandler {
 
   std::string file_;
   XmlReader reader_;
+  std::optional<GeoAnchor> degrees_;
   FcdStep* step_ = nullptr;
   std::size_t vehicle_count_ = 0;  ///< of the step so far
   std::size_t depth_ = 0;

@@ -26,7 +26,8 @@ Placement vehicle_placement(const FcdVehicle& vehicle, double length_m) {
   return {pose, velocity_along(pose, vehicle.speed_mps)};
 }
 
-TraceMotion::TraceMotion(const Traffic& traffic) : types_(traffic.types), reader_(traffic.trace) {
+TraceMotion::TraceMotion(const Traffic& traffic)
+    : types_(traffic.types), reader_(traffic.trace, xml_chunk_bytes, traffic.degrees) {
   read_step();
 }
 

@@ -19,7 +19,9 @@ struct TypeCount {
 class Surveyor {
  public:
   Surveyor(const VehicleTypes& types, const SurveyWishes& wishes, TraceSurvey& result)
-      : types_(types), wishes_(wishes), result_(result) {}
+      : types_(types), wishes_(wishes), result_(result) {
+    if (wishes.geo) near_ = place_on_earth(*wishes.geo, 0.0, 0.0);
+  }
 
   void read(const std::filesystem::path& trace) {
     FcdReader reader(trace);
@@ -27,9 +29,14 @@ class Surveyor {
       count_types(reader.file(), step);
       note_presence(step);
       add_distances(before, step);
+      look_for_degrees(step);
       result_.step_times_s.push_back(step.time_s);
     }
-    check_distances(reader.file());
+    if (near_) {
+      result_.traffic.degrees = wishes_.geo;
+    } else {
+      check_distances(reader.file());
+    }
     std::set<std::string> ordered;
     for (const auto& [name, count] : counts_) ordered.insert(name);
     for (const std::string& name : ordered) {
@@ -85,13 +92,23 @@ class Surveyor {
     }
   }
 
+  void look_for_degrees(const FcdStep& step) {
+    const auto is_near = [&](const FcdVehicle& vehicle) {
+      return std::abs(std::remainder(vehicle.x_m - near_->lon_deg, 360.0)) <= 1.0 &&
+             std::abs(vehicle.y_m - near_->lat_deg) <= 1.0;
+    };
+    if (near_ && !std::ranges::all_of(step.vehicles, is_near)) near_.reset();
+  }
+
   /// A degree is 100 km: longitudes and latitudes taken for metres would hardly move.
   void check_distances(const std::string& file) const {
     if (driven_m_ < 100.0 || moved_m_ > 1e-3 * driven_m_) return;
     const std::string moved_m = std::to_string(std::llround(moved_m_)),
                       driven_m = std::to_string(std::llround(driven_m_));
-    throw InputError(file, "vehicles move " + moved_m + " m where their speeds say " + driven_m +
-                               " m; expected x and y in metres (longitude and latitude are not in this version)");
+    throw InputError(
+        file,
+        "vehicles move " + moved_m + " m where their speeds say " + driven_m +
+            " m; expected x and y in metres; for longitude and latitude the block geo, with the scene within a degree");
   }
 
   const VehicleTypes& types_;
@@ -99,6 +116,7 @@ class Surveyor {
   TraceSurvey& result_;
   std::unordered_map<std::string, TypeCount> counts_;
   double moved_m_ = 0.0, driven_m_ = 0.0;
+  std::optional<GeoPlace> near_;  ///< the scene, as long as all vehicles are near it by longitude and latitude
 };
 
 }  // namespace

@@ -3,11 +3,13 @@
 /// there that the scenario names. Private to dcem::io.
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "dcem/io/geo_anchor.hpp"
 #include "dcem/io/src/traffic/fcd_reader.hpp"
 #include "dcem/io/src/traffic/vehicle_types.hpp"
 #include "dcem/io/traffic.hpp"
@@ -24,6 +26,9 @@ struct TraceSurvey {
 struct SurveyWishes {
   std::set<std::string> names;  ///< when these are there
   bool all_types = false;       ///< of which type each vehicle is
+  /// Where the scene lies on the Earth. A trace with all its vehicles within a degree of that, read as longitudes and
+  /// latitudes, is taken for one: in metres they would all stand on two metres.
+  std::optional<GeoAnchor> geo{};
 };
 
 /// Throws InputError: what `FcdReader` throws, and a vehicle whose type is not in `types`.

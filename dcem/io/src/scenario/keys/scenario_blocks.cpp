@@ -107,7 +107,11 @@ const BlockRule& mobility_block() {
   static const BlockRule rule{
       "mobility",
       "Vehicles of a SUMO trace, each a box of the size that its type has.",
-      {{"sumo_fcd", {file()}, required(), "SUMO's FCD output, plain or .gz; it is streamed.", R"("trace.fcd.xml")"},
+      {{"sumo_fcd",
+        {file()},
+        required(),
+        "SUMO's FCD output, plain or .gz; it is streamed. In longitude and latitude with the block geo.",
+        R"("trace.fcd.xml")"},
        {"vehicle_types",
         {file(), list(file(), 1, "file of vehicle types")},
         told("no type is known but SUMO's own"),
