@@ -8,30 +8,23 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
-#include <string>
-#include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "dcem/accel/spatial_index.hpp"
 #include "dcem/accel/wide_index.hpp"
-#include "dcem/channel/link_statistics.hpp"
 #include "dcem/channel/radio_map.hpp"
 #include "dcem/core/thread_pool.hpp"
-#include "dcem/field/diffuse/diffuse_power.hpp"
-#include "dcem/field/diffuse/facets_in_view.hpp"
-#include "dcem/field/element_paths.hpp"
 #include "dcem/field/field_evaluator.hpp"
 #include "dcem/field/medium_loss.hpp"
 #include "dcem/paths/lifetime/facet_rims.hpp"
 #include "dcem/paths/path_finder.hpp"
-#include "dcem/paths/query/obstruction.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/detail/frame_change.hpp"
 #include "dcem/sim/detail/link_work.hpp"
 #include "dcem/sim/detail/material_table_of.hpp"
 #include "dcem/sim/detail/receiver_memory.hpp"
+#include "dcem/sim/detail/transmitter_ends.hpp"
 #include "dcem/sim/discovery.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/link_choice.hpp"
@@ -107,45 +100,9 @@ class BasicSimulator {
   using Tracer = SceneTracer<Index>;
   using Evaluator = FieldEvaluator<Surface, AnyPathLoss>;
 
-  /// A transmitter as paths and as fields see it; absent while its object is away.
-  struct TransmitterEnds {
-    std::span<const Device> devices;  ///< all of them
-    std::vector<std::optional<LinkEnd>> link;
-    std::vector<RadioEnd> radio;
-    std::vector<ReachedEdges> reached;          ///< the edges within reach; empty lists where no diffraction is wanted
-    std::vector<EdgeReach> own_reach;           ///< holds them where nothing is remembered
-    HalfRefs halves;                            ///< none where the plan has none
-    std::vector<KeptHalf> own_halves;           ///< holds them where nothing is kept
-    std::vector<char> embedded;                 ///< edges that no path can use; empty where nobody has looked
-    std::vector<std::vector<FacetId>> in_view;  ///< the facets that each may see, where diffuse power is asked for
-    WorkCounters work;                          ///< what finding them took
-    std::vector<std::uint32_t> numbers;         ///< of those that were chosen; empty: as they stand in the scene
-    const TransmitterEnds* all = nullptr;       ///< those that they were chosen from
-    std::unordered_map<std::string_view, std::uint32_t> by_id{};  ///< their numbers, where they have halves
-
-    /// The number among all devices.
-    std::size_t number(std::size_t index) const { return numbers.empty() ? index : numbers[index]; }
-    const Device& device(std::size_t index) const { return devices[number(index)]; }
-    /// Some of them, for a receiver that has no links with the others.
-    TransmitterEnds only(std::vector<std::uint32_t> chosen) const;
-    /// What a receiver sees that is a transmitter, too, with lists where they are asked for; none where that has not
-    /// been worked out.
-    const KeptHalf* half_of(const std::string& receiver, const LinkEnd& end, bool with_lists) const;
-  };
-
-  /// One end of a link, as paths and as fields see it.
-  struct DeviceEnd {
-    const LinkEnd& link;
-    const RadioEnd& radio;
-  };
-
-  /// A solution of some receivers, with what it took.
-  struct Solved {
-    std::vector<LinkResult> links;
-    WorkCounters work;
-    CacheCounters cache;
-  };
-
+  using TransmitterEnds = detail::TransmitterEnds;
+  using DeviceEnd = detail::DeviceEnd;
+  using Solved = detail::Solved;
   struct Following;
   struct MapShare;
   struct MapOrder;
@@ -167,7 +124,6 @@ class BasicSimulator {
   /// `is_of_frame`: the receivers are those of the scene, with the links that were chosen.
   Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches,
                    bool is_of_frame) const;
-  static Solved sum_of(std::vector<Solved>&& by_receiver, const TransmitterEnds& transmitters);
   /// Devices as so many receivers need them. With `reach`, which has an entry per transmitter, edges that were within
   /// reach in frames before count, too. `embedded` as in `EdgeRules`. With `halves`, which has an entry per transmitter
   /// too, what is kept of them is brought up to date; without, what is kept is used where it is that of the frame, and
@@ -203,11 +159,13 @@ class BasicSimulator {
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
   Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                         PathCache* cache, const Proposals& proposals) const;
-  /// What rough surfaces bring to one receiver, by transmitter; empty entries where it is not asked for.
-  std::vector<DiffusePower> diffuse_powers(const Device& receiver, const DeviceEnd& end,
-                                           const TransmitterEnds& transmitters,
-                                           std::span<const std::optional<LinkEnd>> ends, ReceiverRoom* room,
-                                           WorkCounters& work) const;
+  /// The facets that a receiver may see, where diffuse power is asked for.
+  std::vector<FacetId> facets_seen_from(const Device& receiver, const LinkEnd& end, const TransmitterEnds& transmitters,
+                                        ReceiverRoom* room) const;
+  /// What rough surfaces bring from a transmitter to a receiver that sees these facets; nothing where it is not asked
+  /// for.
+  DiffusePower diffuse_power(const Device& receiver, const DeviceEnd& end, std::span<const FacetId> seen,
+                             const TransmitterEnds& transmitters, std::size_t transmitter, WorkCounters& work) const;
   LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const DeviceEnd& from,
                        const DeviceEnd& to, const Evaluator& evaluator) const;
   /// A link from all its paths, in any order, some of them more than once.
@@ -219,6 +177,8 @@ class BasicSimulator {
   /// … and those of one; `transmitters` are those that it has links with.
   Solved follow_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                          ReceiverRoom* room);
+  LinkResult follow_link(Following& following, detail::ReceiverMemory& memory, std::size_t transmitter, bool rests,
+                         bool fields_stay, WorkCounters& work) const;
   void check_some(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                   std::span<const LinkResult> links, ReceiverRoom* room) const;
   Solved solve_again(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
@@ -273,70 +233,6 @@ class BasicSimulator {
   std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
 };
 
-// ---------------------------------------------------------------------------------------------------------------------
-
-template <SurfaceModel Surface, SpatialIndex Index>
-BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings settings, Surface surface)
-    : scene_(std::move(scene)),
-      settings_(std::move(settings)),
-      surface_(std::move(surface)),
-      index_(settings_.tree),
-      choice_(scene_, settings_.links),
-      pool_(std::make_unique<ThreadPool>(settings_.threads)) {
-  validate(settings_);
-  check_surface_model();
-  medium_ = MediumLoss(settings_.propagation.atmosphere, scene_.materials(), settings_.frequency_hz);
-  plan_ = plan_search(settings_.propagation, scene_);
-  cache_ = resolve_cache(settings_.propagation, plan_.discovery);
-  const bool is_direct_alone = plan_.discovery == Discovery::exact && interaction_order(settings_.propagation) == 0;
-  // The direct path takes no views, unless it is asked for how long it lasts.
-  if (is_direct_alone && !settings_.propagation.valid_until_limit_m) {
-    plan_ = {Discovery::exact, true};
-    // What is remembered is what halves find: the same paths as by trying all sequences.
-  } else if (cache_ == CacheMode::exact && halves_cover(most_joined_interactions, settings_.propagation)) {
-    plan_ = {Discovery::exact, false, most_joined_interactions};
-  }
-  if (cache_ == CacheMode::seed) {
-    caches_.resize(scene_.receivers().size());
-    reach_.resize(scene_.transmitters().size());
-  }
-  frame_ = scene_.frame_at(0.0);
-  scene_.apply(frame_);
-  index_.build(scene_.triangle_view(), scene_.triangle_boxes(), scene_.first_triangles());
-  if (looks()) outlines_.emplace(scene_);
-  if (cache_ == CacheMode::exact) {
-    change_.emplace(scene_);
-    receivers_.resize(scene_.receivers().size());
-  }
-  if (plan_.joined == 0) return;
-  lanes_ = std::make_unique<LaneScene>(scene_, *outlines_);
-  const std::size_t transmitters = scene_.transmitters().size();
-  halves_.assign(transmitters, KeptHalf(detail::view_pixels_for(transmitters)));
-  if (cache_ != CacheMode::exact) return;
-  for (KeptHalf& half : halves_) half.keep_places(detail::longest_step_in_place_m, true);
-}
-
-/// What a model of the caller's own cannot do would otherwise be left out in silence.
-template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::check_surface_model() const {
-  if (!ScatteringModel<Surface> && settings_.propagation.diffuse.enabled) {
-    throw std::invalid_argument("diffuse: the surface model does not scatter; expected a ScatteringModel");
-  }
-  std::vector<bool> is_looked_at(scene_.materials().size());
-  for (const WorldFacet& facet : scene_.facets()) {
-    if (facet.transmits || facet.is_foliage || is_looked_at[facet.material.value]) continue;
-    is_looked_at[facet.material.value] = true;
-    const Material& material = scene_.material(facet.material);
-    for (const double cos_incidence : {0.25, 0.5, 1.0}) {
-      const SurfaceResponse response = surface_.response(facet.material, cos_incidence);
-      if (response.transmission.te == 0.0 && response.transmission.tm == 0.0) continue;
-      throw std::invalid_argument("material '" + material.name +
-                                  "': the surface model lets a wave through, but the scene's material blocks paths; "
-                                  "expected a material that transmits, such as ConstantReflection with a loss");
-    }
-  }
-}
-
 }  // namespace dcem
 
 #include "dcem/sim/detail/simulator_ends.hpp"
@@ -346,6 +242,7 @@ void BasicSimulator<Surface, Index>::check_surface_model() const {
 #include "dcem/sim/detail/simulator_maps.hpp"
 #include "dcem/sim/detail/simulator_memory.hpp"
 #include "dcem/sim/detail/simulator_moving.hpp"
+#include "dcem/sim/detail/simulator_setup.hpp"
 #include "dcem/sim/detail/simulator_standing.hpp"
 
 #if defined(DCEM_ENGINE)

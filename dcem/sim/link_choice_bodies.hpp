@@ -7,19 +7,12 @@
 #include <unordered_map>
 
 #include "dcem/core/build_mode.hpp"
+#include "dcem/sim/detail/device_numbers.hpp"
 #include "dcem/sim/link_choice.hpp"
 
 namespace dcem {
 
 namespace detail {
-
-inline std::unordered_map<std::string, std::uint32_t> numbers_by_id(std::span<const Device> devices) {
-  std::unordered_map<std::string, std::uint32_t> numbers;
-  for (std::size_t index = 0; index < devices.size(); ++index) {
-    numbers.emplace(devices[index].id, static_cast<std::uint32_t>(index));
-  }
-  return numbers;
-}
 
 inline std::uint32_t number_of_end(const std::unordered_map<std::string, std::uint32_t>& numbers, const std::string& id,
                                    const std::string& kind) {

@@ -1,15 +1,39 @@
 #pragma once
 /// What solving links took, and a device as fields see it: shared by the parts of `Simulator`.
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "dcem/core/units.hpp"
 #include "dcem/field/diffuse/diffuse_contribution.hpp"
 #include "dcem/field/radio_end.hpp"
+#include "dcem/paths/discover/cache_counters.hpp"
 #include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
 
 namespace dcem::detail {
+
+/// A solution of some receivers, with what it took.
+struct Solved {
+  std::vector<LinkResult> links;
+  WorkCounters work;
+  CacheCounters cache;
+};
+
+/// All links by transmitter, then receiver. `of_transmitters`: what these took beside.
+inline Solved sum_of(std::vector<Solved>&& by_receiver, const WorkCounters& of_transmitters) {
+  Solved sum;
+  sum.work = of_transmitters;
+  for (Solved& one : by_receiver) {
+    for (LinkResult& link : one.links) sum.links.push_back(std::move(link));
+    sum.work += one.work;
+    sum.cache += one.cache;
+  }
+  std::stable_sort(sum.links.begin(), sum.links.end(),
+                   [](const LinkResult& a, const LinkResult& b) { return a.transmitter < b.transmitter; });
+  return sum;
+}
 
 inline void add_search_work(const SearchCounters& counters, WorkCounters& work) {
   work.rays += counters.rays;

@@ -3,38 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "dcem/field/diffuse/facets_in_view.hpp"
 #include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/detail/device_numbers.hpp"
 #include "dcem/sim/detail/link_work.hpp"
 
 namespace dcem {
-
-template <SurfaceModel Surface, SpatialIndex Index>
-typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::TransmitterEnds::only(
-    std::vector<std::uint32_t> chosen) const {
-  TransmitterEnds some;
-  some.devices = devices;
-  for (const std::uint32_t index : chosen) {
-    some.link.push_back(link[index]);
-    some.radio.push_back(radio[index]);
-    some.reached.push_back(reached[index]);
-    if (!halves.empty()) some.halves.add(halves[index]);
-    if (!in_view.empty()) some.in_view.push_back(in_view[index]);
-  }
-  some.embedded = embedded;
-  some.numbers = std::move(chosen);
-  some.all = this;
-  return some;
-}
-
-template <SurfaceModel Surface, SpatialIndex Index>
-const KeptHalf* BasicSimulator<Surface, Index>::TransmitterEnds::half_of(const std::string& receiver,
-                                                                         const LinkEnd& end, bool with_lists) const {
-  if (all != nullptr) return all->half_of(receiver, end, with_lists);
-  const auto found = by_id.find(receiver);
-  if (found == by_id.end() || !link[found->second] || !detail::same_bits(link[found->second], end)) return nullptr;
-  const KeptHalf& half = halves[found->second];
-  return half.is_of_frame() && (!with_lists || half.lists() != nullptr) ? &half : nullptr;
-}
 
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::transmitter_ends(
@@ -42,6 +16,7 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
     std::vector<char> embedded, bool fine) const {
   TransmitterEnds ends;
   ends.devices = devices;
+  ends.by_id = detail::numbers_by_id(devices);
   ends.embedded = std::move(embedded);
   for (const Device& device : devices) {
     const DeviceState state = state_of(device);
@@ -54,12 +29,22 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
   if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
   if (plan_.joined > 0 && search.max_interactions > 0) find_transmitter_halves(ends, receivers, halves, fine);
   if (settings_.propagation.diffuse.enabled) find_facets_in_view(ends);
-  if (ends.halves.empty()) return ends;
-  for (std::uint32_t index = 0; index < devices.size(); ++index) ends.by_id.emplace(devices[index].id, index);
   return ends;
 }
 
-/// As `diffuse_powers` does for receivers, so that a link has the same bits in a run and on a map.
+/// The transmitters without the device that the receiver itself is: a device has no link to itself.
+template <SurfaceModel Surface, SpatialIndex Index>
+std::span<const std::optional<LinkEnd>> BasicSimulator<Surface, Index>::ends_beside(
+    const Device& receiver, const TransmitterEnds& transmitters, std::vector<std::optional<LinkEnd>>& others) const {
+  if (!transmitters.numbers.empty()) return transmitters.link;  // the choice has left it out
+  const auto same = transmitters.by_id.find(receiver.id);
+  if (same == transmitters.by_id.end()) return transmitters.link;
+  others = transmitters.link;
+  others[same->second].reset();
+  return others;
+}
+
+/// As `facets_seen_from` does for receivers, so that a link has the same bits in a run and on a map.
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::find_facets_in_view(TransmitterEnds& ends) const {
   ends.in_view.resize(ends.link.size());

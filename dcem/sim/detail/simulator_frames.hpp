@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "dcem/paths/query/obstruction.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/link_work.hpp"
 

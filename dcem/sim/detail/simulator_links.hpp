@@ -4,6 +4,10 @@
 #include <array>
 #include <utility>
 
+#include "dcem/channel/link_statistics.hpp"
+#include "dcem/field/diffuse/diffuse_power.hpp"
+#include "dcem/field/diffuse/facets_in_view.hpp"
+#include "dcem/field/element_paths.hpp"
 #include "dcem/paths/discover/chain_count.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/link_work.hpp"
@@ -40,7 +44,7 @@ std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const De
     by_receiver[index] = solve_receiver(receivers[index], index, ends.only(std::move(of_one)), nullptr,
                                         {rooms.empty() ? nullptr : &rooms[worker]});
   });
-  Solved solved = sum_of(std::move(by_receiver), ends);
+  Solved solved = detail::sum_of(std::move(by_receiver), ends.work);
   if (work != nullptr) *work += solved.work;
   return std::move(solved.links);
 }
@@ -63,36 +67,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     by_receiver[index] = solve_receiver(receivers[index], index, transmitters.only(chosen_[index]), cache, proposals);
     by_receiver[index].cache.died += gone;
   });
-  return sum_of(std::move(by_receiver), transmitters);
-}
-
-template <SurfaceModel Surface, SpatialIndex Index>
-typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::sum_of(
-    std::vector<Solved>&& by_receiver, const TransmitterEnds& transmitters) {
-  Solved sum;
-  sum.work = transmitters.work;
-  for (Solved& one : by_receiver) {
-    for (LinkResult& link : one.links) sum.links.push_back(std::move(link));
-    sum.work += one.work;
-    sum.cache += one.cache;
-  }
-  std::stable_sort(sum.links.begin(), sum.links.end(),
-                   [](const LinkResult& a, const LinkResult& b) { return a.transmitter < b.transmitter; });
-  return sum;
-}
-
-/// The transmitters without the device that the receiver itself is: a device has no link to itself.
-template <SurfaceModel Surface, SpatialIndex Index>
-std::span<const std::optional<LinkEnd>> BasicSimulator<Surface, Index>::ends_beside(
-    const Device& receiver, const TransmitterEnds& transmitters, std::vector<std::optional<LinkEnd>>& others) const {
-  if (!transmitters.numbers.empty()) return transmitters.link;  // the choice has left it out
-  const std::span<const Device> devices = scene_.transmitters();
-  const auto is_receiver = [&](const Device& device) { return device.id == receiver.id; };
-  const auto same = std::find_if(devices.begin(), devices.end(), is_receiver);
-  if (same == devices.end() || transmitters.link.empty()) return transmitters.link;
-  others = transmitters.link;
-  others[static_cast<std::size_t>(same - devices.begin())].reset();
-  return others;
+  return detail::sum_of(std::move(by_receiver), transmitters.work);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -128,12 +103,12 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
       find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached, joined);
   const Evaluator field = evaluator();
   const RadioEnd to = detail::radio_end(receiver, state);
-  std::vector<DiffusePower> diffuse =
-      diffuse_powers(receiver, {end, to}, transmitters, ends, proposals.room, solved.work);
+  const std::vector<FacetId> seen = facets_seen_from(receiver, end, transmitters, proposals.room);
   for (std::size_t transmitter = 0; transmitter < found.size(); ++transmitter) {
     if (!ends[transmitter]) continue;
+    DiffusePower diffuse = diffuse_power(receiver, {end, to}, seen, transmitters, transmitter, solved.work);
     LinkResult& link = solved.links.emplace_back(
-        make_link(std::move(found[transmitter]), std::move(diffuse[transmitter]), transmitters.number(transmitter),
+        make_link(std::move(found[transmitter]), std::move(diffuse), transmitters.number(transmitter),
                   {*ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field));
     link.receiver = index;
     link.complete = !needs_rays(search) || search.max_interactions == 0;
@@ -145,28 +120,31 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-std::vector<DiffusePower> BasicSimulator<Surface, Index>::diffuse_powers(const Device& receiver, const DeviceEnd& end,
-                                                                         const TransmitterEnds& transmitters,
-                                                                         std::span<const std::optional<LinkEnd>> ends,
-                                                                         ReceiverRoom* room, WorkCounters& work) const {
-  std::vector<DiffusePower> powers(ends.size());
+std::vector<FacetId> BasicSimulator<Surface, Index>::facets_seen_from(const Device& receiver, const LinkEnd& end,
+                                                                      const TransmitterEnds& transmitters,
+                                                                      ReceiverRoom* room) const {
+  if (!settings_.propagation.diffuse.enabled) return {};
+  if (const std::vector<FacetId>* const known = transmitters.view_of(receiver.id, end)) return *known;
+  return facets_in_view(room->sight, scene_, *outlines_, end, settings_.propagation.max_transmissions);
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+DiffusePower BasicSimulator<Surface, Index>::diffuse_power(const Device& receiver, const DeviceEnd& end,
+                                                           std::span<const FacetId> seen,
+                                                           const TransmitterEnds& transmitters, std::size_t transmitter,
+                                                           WorkCounters& work) const {
   const PropagationSettings& propagation = settings_.propagation;
-  if (!propagation.diffuse.enabled) return powers;
+  if (!propagation.diffuse.enabled) return {};
   const Tracer tracer(scene_, index_);
   const ScatteredPower<Surface, AnyPathLoss> scattered(scene_, surface_, propagation.path_loss, medium_,
                                                        settings_.frequency_hz);
   DiffuseIntegral<Index, Surface, AnyPathLoss> integral(tracer, scattered, propagation.diffuse,
                                                         propagation.max_transmissions);
-  const std::vector<FacetId> own =
-      facets_in_view(room->sight, scene_, *outlines_, end.link, propagation.max_transmissions);
-  for (std::size_t index = 0; index < ends.size(); ++index) {
-    if (!ends[index]) continue;
-    const DiffuseKey key{propagation.seed, transmitters.device(index).id, receiver.id};
-    powers[index] = integral.evaluate(*ends[index], transmitters.radio[index], end.link, end.radio,
-                                      in_both(own, transmitters.in_view[index]), key);
-    detail::add_diffuse_work(powers[index], work);
-  }
-  return powers;
+  const DiffuseKey key{propagation.seed, transmitters.device(transmitter).id, receiver.id};
+  DiffusePower power = integral.evaluate(*transmitters.link[transmitter], transmitters.radio[transmitter], end.link,
+                                         end.radio, in_both(seen, transmitters.in_view[transmitter]), key);
+  detail::add_diffuse_work(power, work);
+  return power;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>

@@ -14,7 +14,7 @@ namespace dcem {
 /// One receiver in one frame: what its links are solved with.
 template <SurfaceModel Surface, SpatialIndex Index>
 struct BasicSimulator<Surface, Index>::Following {
-  Following(const BasicSimulator& simulator, const TransmitterEnds& ends, const Tracer& of, const Device& receiver,
+  Following(const BasicSimulator& simulator, const TransmitterEnds& ends, const Tracer& of, const Device& at_end,
             const LinkEnd& at, const RadioEnd& at_receiver)
       : transmitters(ends),
         search(simulator.search_settings(ends.embedded)),
@@ -22,9 +22,10 @@ struct BasicSimulator<Surface, Index>::Following {
         solver(tracer, search.max_transmissions, search.edges),
         ways(tracer, search.max_transmissions),
         field(simulator.evaluator()),
+        receiver(at_end),
         end(at),
         radio(at_receiver),
-        as_transmitter(ends.half_of(receiver.id, at, joins_triples(search))) {}
+        as_transmitter(ends.half_of(at_end.id, at, joins_triples(search))) {}
 
   /// What a sequence brings between a transmitter and the receiver.
   std::optional<PathContribution> solve(std::size_t transmitter, const Sequence& sequence) {
@@ -39,12 +40,14 @@ struct BasicSimulator<Surface, Index>::Following {
   PathSolver<Index> solver;
   WayFinder<Index> ways;
   Evaluator field;
+  const Device& receiver;
   const LinkEnd& end;
   const RadioEnd& radio;
   const KeptHalf* as_transmitter;  ///< what the receiver sees, where it is a transmitter, too, and that is known
   // What it sees, and what it reaches where sequences of three elements are joined.
   const PathHalf* half = nullptr;
   const BeamLists* lists = nullptr;
+  std::vector<FacetId> in_view{};  ///< where diffuse power is asked for
   SearchCounters counters;
   CacheCounters cache;
 };
@@ -61,7 +64,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
                              ? follow_receiver(receivers[index], index, transmitters, room)
                              : follow_receiver(receivers[index], index, transmitters.only(chosen_[index]), room);
   });
-  return sum_of(std::move(by_receiver), transmitters);
+  return detail::sum_of(std::move(by_receiver), transmitters.work);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -115,22 +118,11 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     if (!following) {
       following.emplace(*this, transmitters, tracer, receiver, end, radio);
       look_from_receiver(*following, memory, *room, stands);
+      following->in_view = facets_seen_from(receiver, end, transmitters, room);
     }
     const bool fields_stay = rests && is_same && transmitter_is_same_[number] != 0;
-    std::vector<PathContribution> paths = rests && link.standing.is_known()
-                                              ? paths_of_standing(*following, memory, transmitter, fields_stay)
-                                              : paths_of_moving(*following, memory, transmitter, rests);
-    std::vector<DiffusePower> diffuse(ends.size());
-    if (settings_.propagation.diffuse.enabled) {
-      std::vector<std::optional<LinkEnd>> alone(ends.size());
-      alone[transmitter] = ends[transmitter];
-      diffuse = diffuse_powers(receiver, {end, radio}, transmitters, alone, room, solved.work);
-    }
-    LinkResult result =
-        finish_link(std::move(paths), std::move(diffuse[transmitter]), number,
-                    {*ends[transmitter], transmitters.radio[transmitter]}, {end, radio}, following->field);
+    LinkResult result = follow_link(*following, memory, transmitter, rests, fields_stay, solved.work);
     result.receiver = index;
-    result.complete = true;
     detail::count_births(link.result, result, solved.cache);
     link.result = result;
     solved.links.push_back(std::move(result));
@@ -147,6 +139,24 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     solved.cache += following->cache;
   }
   return solved;
+}
+
+/// One link, from what is known of it. `rests`: both ends are where they were.
+template <SurfaceModel Surface, SpatialIndex Index>
+LinkResult BasicSimulator<Surface, Index>::follow_link(Following& following, detail::ReceiverMemory& memory,
+                                                       std::size_t transmitter, bool rests, bool fields_stay,
+                                                       WorkCounters& work) const {
+  const TransmitterEnds& transmitters = following.transmitters;
+  std::vector<PathContribution> paths = rests && memory.links[transmitter].standing.is_known()
+                                            ? paths_of_standing(following, memory, transmitter, fields_stay)
+                                            : paths_of_moving(following, memory, transmitter, rests);
+  const DeviceEnd to{following.end, following.radio};
+  DiffusePower diffuse = diffuse_power(following.receiver, to, following.in_view, transmitters, transmitter, work);
+  LinkResult result =
+      finish_link(std::move(paths), std::move(diffuse), transmitters.number(transmitter),
+                  {*transmitters.link[transmitter], transmitters.radio[transmitter]}, to, following.field);
+  result.complete = true;
+  return result;
 }
 
 /// One in a hundred pairs of link and frame, chosen at random, is solved from scratch: in builds that are not for use.

@@ -60,11 +60,9 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_moving(Fo
     if (memory.half.place()) return paths_in_place(following, memory, transmitter);
     prepare_pool(following, memory, transmitter);
   }
-  std::vector<std::optional<LinkEnd>> alone(following.transmitters.link.size());
-  alone[transmitter] = following.transmitters.link[transmitter];
   if (following.half == &memory.half.half()) memory.half.lay_out_images(scene_, *outlines_);
   const LinkHalves halves{*outlines_, *lanes_, following.transmitters.halves, *following.half, *following.lists};
-  const SequenceList proposed = join_halves(scene_, following.search, halves, alone)[transmitter];
+  const SequenceList proposed = join_link(scene_, following.search, halves, transmitter);
   StandingLink<PathContribution>& standing = memory.links[transmitter].standing;
   const bool notes = rests && scene_.bodies().size() > 1;
   std::vector<PathContribution> paths;

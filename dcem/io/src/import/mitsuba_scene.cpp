@@ -43,14 +43,7 @@ class MitsubaReader : private XmlHandler {
 
   /// The whole text, however long: names of files and ids must not be cut.
   static std::string text(const XmlAttributes& attributes, const char* name) {
-    std::string whole(attributes.find(name).value_or(""));
-    std::replace_if(
-        whole.begin(), whole.end(),
-        [](char letter) {
-          return !is_printable({&letter, 1});
-        },
-        '?');
-    return whole;
+    return without_controls(attributes.find(name).value_or(""));
   }
 
   /// What wraps another material (`twosided`) has its id; what is inside says no more of radio.

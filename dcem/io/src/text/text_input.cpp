@@ -91,9 +91,14 @@ bool is_printable(std::string_view text) {
   return std::none_of(text.begin(), text.end(), is_control);
 }
 
-std::string printable(std::string_view text) {
-  std::string result(text.substr(0, longest_quotation));
+std::string without_controls(std::string_view text) {
+  std::string result(text);
   std::replace_if(result.begin(), result.end(), is_control, '?');
+  return result;
+}
+
+std::string printable(std::string_view text) {
+  std::string result = without_controls(text.substr(0, longest_quotation));
   if (text.size() <= longest_quotation) return result;
   // A character of several bytes must not be cut in two.
   while (!result.empty() && (static_cast<unsigned char>(result.back()) & 0x80U) != 0) result.pop_back();

@@ -14,6 +14,8 @@ namespace dcem::io {
 /// `expectation` says what should have been there, e.g. "expected an OBJ file".
 std::string read_text_file(const std::filesystem::path& file, const std::string& expectation);
 
+/// The same text with a '?' for each control character.
+std::string without_controls(std::string_view text);
 /// Text from a file as it may stand in a message: on one line, without control characters, cut when too long.
 std::string printable(std::string_view text);
 /// The same in quotes.
