@@ -16,7 +16,8 @@ namespace dcem {
 bool takes_all_links(const Scene& scene, const LinkSettings& settings);
 
 /// Of each receiver of a scene, the transmitters that it has links with: never the device that it is itself, of two
-/// devices that both transmit and receive the one with the lesser id alone, and what `LinkSettings` leaves.
+/// devices that both transmit and receive the one with the lesser id alone, and what the range and the pairs of
+/// `LinkSettings` leave.
 class LinkChoice {
  public:
   /// Throws std::invalid_argument where a pair names a device that is not there.

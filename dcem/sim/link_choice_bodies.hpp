@@ -38,7 +38,7 @@ inline std::vector<std::uint32_t> transceiver_ranks(std::span<const Device> devi
 
 DCEM_INLINE bool takes_all_links(const Scene& scene, const LinkSettings& settings) {
   const std::span<const Device> receivers = scene.receivers();
-  return !settings.range_m && !settings.pairs &&
+  return !settings.range_m && !settings.pairs && !settings.receivers &&
          std::none_of(receivers.begin(), receivers.end(), [](const Device& device) { return device.is_transceiver; });
 }
 

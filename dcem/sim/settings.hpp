@@ -76,11 +76,19 @@ struct PropagationSettings {
 };
 
 /// Which links there are. A device never has one to itself.
+/// One of `of` parts of the receivers of a frame (sim/receiver_part.hpp), counted from 0.
+struct ReceiverPart {
+  std::uint32_t part = 0;
+  std::uint32_t of = 1;
+};
+
 struct LinkSettings {
   /// Only between ends that are at most so far apart in this frame, metres; none: at any distance.
   std::optional<double> range_m{};
   /// Only these, by the ids of transmitter and receiver, of two transceivers in any order; none: all.
   std::optional<std::vector<std::pair<std::string, std::string>>> pairs{};
+  /// Only of these receivers; none: of all. What each link brings does not depend on it.
+  std::optional<ReceiverPart> receivers{};
 };
 
 struct SimulationSettings {

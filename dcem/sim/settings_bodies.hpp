@@ -28,6 +28,8 @@ DCEM_INLINE void validate(const SimulationSettings& settings) {
   check(limit_m >= 1e-3 && limit_m <= 100.0, "valid_until_limit_m: expected 0.001 to 100");
   const double range_m = settings.links.range_m.value_or(1.0);
   check(range_m >= 1e-3 && range_m <= 1e9, "links: range_m: expected 0.001 to 1e9");
+  const ReceiverPart part = settings.links.receivers.value_or(ReceiverPart{});
+  check(part.part < part.of, "links: receivers: expected a part below the number of parts");
   if (const auto* close_in = std::get_if<CloseIn>(&propagation.path_loss.model)) validate(*close_in);
   check(propagation.rays >= 1 && propagation.rays <= 100'000'000, "rays: expected 1 to 1e8");
   check(steady_rays(propagation) >= 1 && steady_rays(propagation) <= 100'000'000, "rays_steady: expected 1 to 1e8");

@@ -13,6 +13,7 @@
 
 #include "dcem/core/random.hpp"
 #include "dcem/sim/link_choice.hpp"
+#include "dcem/sim/receiver_part.hpp"
 #include "dcem/sim/simulator.hpp"
 #include "tests/support/memory_trial.hpp"
 
@@ -167,6 +168,72 @@ TEST_CASE("links by pairs are those, and with a range those of them that are no 
                           [&](const Ends& ends, double apart_m) { return named.contains(ends) && apart_m <= 30.0; });
 }
 
+TEST_CASE("parts of a run have each link once, with the bits that it has in the run as a whole") {
+  const std::vector<Ends> pairs{{"car1", "car0"}, {"mast", "walker"}, {"car2", "car5"}, {"mast", "car3"}};
+  for (const LinkSettings& links : {LinkSettings{}, LinkSettings{40.0}, LinkSettings{std::nullopt, pairs}}) {
+    SimulationSettings settings = memory_settings({1, 0, 1, 2});
+    settings.links = links;
+    Simulator whole(busy_street(), with_cache(settings, CacheMode::off));
+    constexpr std::uint32_t parts = 3;
+    std::vector<Simulator> own;
+    for (std::uint32_t part = 0; part < parts; ++part) {
+      settings.links.receivers = ReceiverPart{part, parts};
+      settings.threads = 1 + part % 2;
+      own.emplace_back(busy_street(), with_cache(settings, part == 0 ? CacheMode::off : CacheMode::exact));
+    }
+    std::size_t parts_with_links = 0;
+    for (std::size_t index = 0; index < frames; ++index) {
+      const Frame frame = whole.scene().frame_at(static_cast<double>(index), index);
+      std::vector<LinkResult> together;
+      for (Simulator& part : own) {
+        const std::vector<LinkResult> links_of_part = part.advance(frame).links;
+        parts_with_links += links_of_part.empty() ? 0 : 1;
+        together.insert(together.end(), links_of_part.begin(), links_of_part.end());
+      }
+      std::ranges::sort(together, {},
+                        [](const LinkResult& link) { return std::pair(link.transmitter, link.receiver); });
+      CHECK(bits(whole.scene(), together) == bits(whole.scene(), whole.advance(frame).links));
+    }
+    CHECK(parts_with_links >= 2 * frames);
+  }
+}
+
+TEST_CASE("receivers of one part are near each other where links have a range, and parts have about as many links") {
+  RandomStream random(3);
+  std::vector<std::optional<Vec3>> places_m;
+  std::vector<std::vector<std::uint32_t>> all;
+  std::size_t links = 0;
+  for (std::size_t index = 0; index < 4000; ++index) {
+    places_m.emplace_back(Vec3(4000.0 * random.uniform() - 1000.0, 4000.0 * random.uniform(), 1.5));
+    all.emplace_back(static_cast<std::size_t>(12.0 * random.uniform()), 0U);
+    links += all.back().size();
+  }
+  places_m[5].reset();
+  links -= all[5].size();
+  all[5].clear();
+  constexpr std::uint32_t parts = 16;
+  std::vector<int> owners(places_m.size(), 0);
+  double area_m2 = 0.0;
+  for (std::uint32_t part = 0; part < parts; ++part) {
+    auto own = all;
+    keep_part({part, parts}, 100.0, places_m, own);
+    std::size_t count = 0;
+    Aabb<double> box;
+    for (std::size_t index = 0; index < own.size(); ++index) {
+      if (own[index].empty()) continue;
+      CHECK(own[index] == all[index]);
+      ++owners[index];
+      count += own[index].size();
+      box.extend(*places_m[index]);
+    }
+    CHECK(std::abs(static_cast<double>(count) - static_cast<double>(links) / parts) <= 12.0);
+    area_m2 += (box.max.x - box.min.x) * (box.max.y - box.min.y);
+  }
+  for (std::size_t index = 0; index < all.size(); ++index) CHECK(owners[index] == (all[index].empty() ? 0 : 1));
+  // Dealt out, the box of each part would be the whole square: sixteen times its area in all.
+  CHECK(area_m2 < 3.0 * 4000.0 * 4000.0);
+}
+
 TEST_CASE("what is sampled remembers links that come and go by range, and reports only valid ones") {
   SimulationSettings settings = memory_settings({1, 0, 1, 2});
   settings.propagation.discovery = Discovery::sampled;
@@ -192,6 +259,8 @@ TEST_CASE("a pair of a device that is not there is an error") {
   CHECK_THROWS_WITH_AS(Simulator(busy_street(), settings), "links: pairs: there is no receiver 'nobody'",
                        std::invalid_argument);
   settings.links = {0.0, std::nullopt};
+  CHECK_THROWS_AS(Simulator(busy_street(), settings), std::invalid_argument);
+  settings.links = {std::nullopt, std::nullopt, ReceiverPart{2, 2}};
   CHECK_THROWS_AS(Simulator(busy_street(), settings), std::invalid_argument);
 }
 

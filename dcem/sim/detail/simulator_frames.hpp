@@ -7,6 +7,7 @@
 #include "dcem/paths/query/obstruction.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/link_work.hpp"
+#include "dcem/sim/receiver_part.hpp"
 
 namespace dcem {
 
@@ -59,10 +60,14 @@ void BasicSimulator<Surface, Index>::choose_links() {
   }
   choice_.place(places_m);
   chosen_.assign(receivers.size(), {});
+  std::vector<std::optional<Vec3>> receivers_m(receivers.size());
   pool_->for_each(receivers.size(), [&](std::size_t index, unsigned) {
     const DeviceState state = state_of(receivers[index]);
-    if (state.present) chosen_[index] = choice_.transmitters_of(index, state.position_m);
+    if (!state.present) return;
+    receivers_m[index] = state.position_m;
+    chosen_[index] = choice_.transmitters_of(index, state.position_m);
   });
+  if (settings_.links.receivers) keep_part(*settings_.links.receivers, settings_.links.range_m, receivers_m, chosen_);
   links_of_.assign(places_m.size(), 0);
   for (const std::vector<std::uint32_t>& of_one : chosen_) {
     for (const std::uint32_t transmitter : of_one) ++links_of_[transmitter];
