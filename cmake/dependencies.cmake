@@ -58,6 +58,8 @@ if(DCEM_BUILD_IO)
 endif()
 if(DCEM_BUILD_EXAMPLES)
   dcem_find_library(CLI11 CLI11::CLI11 libcli11-dev CONFIG)
+  set(MPI_CXX_SKIP_MPICXX TRUE)  # its C interface alone
+  dcem_find_optional(DCEM_MPI MPI MPI::MPI_CXX "libopenmpi-dev openmpi-bin" "runs over several processes of mpirun")
 endif()
 if(DCEM_BUILD_TESTS)
   dcem_find_library(doctest doctest::doctest doctest-dev CONFIG)

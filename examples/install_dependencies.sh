@@ -9,7 +9,7 @@ packages=(
   g++ make cmake python3
   libglm-dev libtinyobjloader-dev nlohmann-json3-dev libstb-dev libexpat1-dev zlib1g-dev libzip-dev libcli11-dev
   doctest-dev libjs-three libcairo2-dev fonts-dejavu-core libmatio-dev libhdf5-dev libgeographiclib-dev
-  libgeos-dev libosmium2-dev
+  libgeos-dev libosmium2-dev libopenmpi-dev openmpi-bin
   "$@"
 )
 

@@ -13,20 +13,13 @@
 #include <vector>
 
 #include "dcem/io/atomic_file.hpp"
+#include "dcem/io/link_lines.hpp"
 #include "dcem/io/scenario.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/settings.hpp"
 
 namespace dcem::io {
-
-/// The columns of `links.csv`, as its first line has them.
-inline constexpr std::string_view links_csv_header =
-    "frame,time_s,tx,rx,line_of_sight,path_count,complete,valid_until_m,power_dbm,power_incoherent_dbm,power_los_dbm,"
-    "power_reflected_dbm,power_transmitted_dbm,power_diffracted_dbm,power_diffuse_dbm,path_gain_db,first_delay_s,"
-    "mean_delay_s,rms_delay_spread_s,k_factor_db,azimuth_spread_arrival_rad,azimuth_spread_departure_rad,"
-    "mean_doppler_hz,rms_doppler_spread_hz,zenith_spread_arrival_rad,zenith_spread_departure_rad,"
-    "coherence_bandwidth_hz,coherence_time_s";
 
 inline constexpr std::string_view pdp_csv_header = "frame,tx,rx,delay_s,power_dbm";
 /// Where diffuse power is computed, its share of `power_dbm` follows.
@@ -97,13 +90,13 @@ class ResultWriter {
   };
 
   CsvLine begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const;
-  void append_link(std::string& text, const FrameResult& frame, const LinkResult& link) const;
   void append_profile(const FrameResult& frame, const LinkResult& link);
   void append_doppler(const FrameResult& frame, const LinkResult& link);
 
   OutputSettings output_;
   ResultFacts facts_;
   const Scene& scene_;
+  LinkLines link_lines_;
   Sheet paths_, links_, profile_, doppler_;
   std::unique_ptr<PathLines> lines_;
   // Absent: not asked for.
@@ -111,8 +104,6 @@ class ResultWriter {
   std::unique_ptr<PathCollector> arrays_;
   std::unique_ptr<PlotCollector> plots_;
   std::vector<std::unique_ptr<FrameExport>> exports_;
-  // Names as they stand in the files, prepared once.
-  std::vector<std::string> csv_transmitters_, csv_receivers_;
   std::vector<double> power_dbm_;  // of each transmitter
 };
 

@@ -40,6 +40,7 @@ struct RunIdentity {
 struct JournalEntry {
   FrameFigures figures;
   std::string link_lines;
+  std::vector<LinkRequest> line_links;  ///< of each line, which link it is of
   std::vector<LinkResult> links;
 
   /// The result as it was. Takes the links.
@@ -77,12 +78,16 @@ class RunJournal {
   bool is_kept_, has_frames_ = false;
 };
 
+/// What a journal is read for; only what is said where it cannot be depends on it.
+enum class JournalUse : std::uint8_t { resume, merge };
+
 /// Reads a journal.
 class JournalReader {
  public:
   /// Throws InputError where there is no journal, and where it is that of another run: `scenario` is the file that is
   /// named then.
-  JournalReader(const std::filesystem::path& folder, const RunIdentity& identity, const std::string& scenario);
+  JournalReader(const std::filesystem::path& folder, const RunIdentity& identity, const std::string& scenario,
+                JournalUse use = JournalUse::resume);
 
   /// Whole frames in it.
   std::size_t frames() const { return frames_; }
@@ -97,7 +102,7 @@ class JournalReader {
     std::string bytes;
   };
 
-  void check_head(const RunIdentity& identity, const std::string& scenario);
+  void check_head(const RunIdentity& identity, const std::string& scenario, JournalUse use);
   void count_frames();
   std::optional<Piece> next_piece();
 

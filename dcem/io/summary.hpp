@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dcem/io/scenario.hpp"
+#include "dcem/io/shard_facts.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/settings.hpp"
@@ -62,6 +63,8 @@ class RunSummary {
   void add_late_warning(std::string line) { late_warnings_.push_back(std::move(line)); }
   /// What is missing on links that were searched again.
   void set_sampling(SamplingReport report) { sampling_ = std::move(report); }
+  /// Where the run is a part of one.
+  void set_shard(ShardFacts shard) { shard_ = std::move(shard); }
   void set_interruption(Interruption interruption) { interruption_ = std::move(interruption); }
   /// What the run is of, as `RunIdentity::text` has it, and the names of all its files, the summary among them.
   void set_files(std::string identity, std::vector<std::string> names) {
@@ -69,9 +72,9 @@ class RunSummary {
     files_ = std::move(names);
   }
 
-  /// The text of `summary.json`: `version`, `scenario`, `identity`, `files`, `interrupted`, `scene`, `settings`,
-  /// `warnings`, `sampling` (null where nothing is left to rays), `totals`, `frames`. Times
-  /// differ from run to run; everything else is the same for the same input.
+  /// The text of `summary.json`: `version`, `scenario`, `identity`, `files`, `interrupted`, `shard` (of a part alone),
+  /// `scene`, `settings`, `warnings`, `sampling` (null where nothing is left to rays), `totals`, `frames`. Times differ
+  /// from run to run; everything else is the same for the same input.
   [[nodiscard]] std::string json() const;
 
   /// What is known only after the last frame; one line each.
@@ -81,7 +84,6 @@ class RunSummary {
   [[nodiscard]] std::string table(const std::filesystem::path& folder) const;
 
  private:
-  [[nodiscard]] std::vector<double> frame_times_s() const;
   [[nodiscard]] std::string cache_text(const CacheCounters& cache) const;
   [[nodiscard]] std::vector<std::string> warnings() const;
   [[nodiscard]] std::string diffuse_text(const FrameFigures& sum) const;
@@ -92,6 +94,7 @@ class RunSummary {
   SamplingReport sampling_{};
   std::vector<std::string> late_warnings_{};
   std::optional<Interruption> interruption_;
+  std::optional<ShardFacts> shard_;
   std::string identity_;
   std::vector<std::string> files_;
 };

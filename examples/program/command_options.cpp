@@ -1,6 +1,7 @@
 #include "command_options.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 
 #include "dcem/core/instruction_set.hpp"
@@ -65,19 +66,45 @@ double parse_bytes(const std::string& text) {
                    "a number of bytes from 1, with K, M or G of 1024, 1024^2 or 1024^3 bytes, as in 512M");
 }
 
-void add_common_options(CLI::App& command, ScenarioOptions& options) {
-  command.add_option("scenario", options.scenario, "The scenario file (JSON)")->required()->type_name("SCENARIO.json");
-  command.add_option("--threads", options.threads, "Number of threads (default: all cores); never changes a result")
+/// Part i of N, from 0.
+ReceiverPart parse_shard(const std::string& text) {
+  constexpr std::uint32_t most = 1'000'000;
+  ReceiverPart part{0, 0};
+  const char* const end = text.data() + text.size();
+  const auto number = std::from_chars(text.data(), end, part.part);
+  const bool has_slash = number.ec == std::errc{} && number.ptr != end && *number.ptr == '/';
+  const auto count = has_slash ? std::from_chars(number.ptr + 1, end, part.of) : number;
+  if (has_slash && count.ec == std::errc{} && count.ptr == end && part.part < part.of && part.of <= most) return part;
+  throw UsageError("--shard " + text + ": no part of a run", "i/N with 0 <= i < N <= " + std::to_string(most));
+}
+
+void add_resources(CLI::App& command, std::optional<unsigned>& threads, std::optional<double>& memory_limit_bytes) {
+  command.add_option("--threads", threads, "Number of threads (default: all cores); never changes a result")
       ->check(CLI::Range(1U, 4096U))
       ->type_name("N");
   command
       .add_option_function<std::string>(
-          "--memory-limit", [&](const std::string& text) { options.memory_limit_bytes = parse_bytes(text); },
+          "--memory-limit", [&](const std::string& text) { memory_limit_bytes = parse_bytes(text); },
           "Refuse what is foreseen to take more (K, M and G: 1024 each; default: the machine's memory): grids, lists, "
           "links "
           "and maps before anything is computed, paths.npz as soon as its paths are too many; not every byte is "
           "foreseen")
       ->type_name("BYTES");
+}
+
+void add_progress(CLI::App& command, io::ProgressMode& mode, bool& quiet) {
+  CLI::Option* progress =
+      add_choice(command, "--progress",
+                 "Progress on the error stream: a bar, auto (on a terminal), always or never; or json, lines "
+                 "with stage, done, total, elapsed_s, remaining_s",
+                 progress_modes, mode);
+  progress->type_name("WHEN");
+  command.add_flag("--quiet", quiet, "No table, no progress and no warnings")->excludes(progress);
+}
+
+void add_common_options(CLI::App& command, ScenarioOptions& options) {
+  command.add_option("scenario", options.scenario, "The scenario file (JSON)")->required()->type_name("SCENARIO.json");
+  add_resources(command, options.threads, options.memory_limit_bytes);
   command.add_option("--frames", options.frames, "Only the frames A to B - 1")->type_name("A:B");
   command.add_option("--discovery", options.overrides.discovery, "How paths are found: exact or sampled")
       ->check(CLI::IsMember({"exact", "sampled"}))
@@ -94,13 +121,7 @@ void add_common_options(CLI::App& command, ScenarioOptions& options) {
           "Instructions that trace rays (default: the best that the processor has); never changes a result")
       ->check(CLI::IsMember({"baseline", "avx2", "avx512"}))
       ->type_name("LEVEL");
-  CLI::Option* progress =
-      add_choice(command, "--progress",
-                 "Progress on the error stream: a bar, auto (on a terminal), always or never; or json, lines "
-                 "with stage, done, total, elapsed_s, remaining_s",
-                 progress_modes, options.progress);
-  progress->type_name("WHEN");
-  command.add_flag("--quiet", options.quiet, "No table, no progress and no warnings")->excludes(progress);
+  add_progress(command, options.progress, options.quiet);
 }
 
 void add_cache_option(CLI::App& command, ScenarioOptions& options) {
@@ -165,8 +186,26 @@ void add_run_options(CLI::App& command, ScenarioOptions& options) {
       .add_option_function<std::string>("--output", choose,
                                         "Result files, in place of those that the scenario asks for")
       ->type_name(list_type(run_outputs));
+  command
+      .add_option_function<std::string>(
+          "--shard", [&](const std::string& text) { options.shard = parse_shard(text); },
+          "Only part i of N, from 0: the links of some of the receivers; 'dcem merge' makes one result of all parts")
+      ->type_name("i/N");
   command.add_flag("--resume", options.resume,
                    "Go on with a run that was ended; scenario and options must be those of that run");
+}
+
+void add_merge_options(CLI::App& command, MergeOptions& options) {
+  command.add_option("shards", options.shards, "The folders of 'dcem run --shard i/N', one for each i, in any order")
+      ->required()
+      ->type_name("SHARD...");
+  add_folder_option(command, options.folder, "out/<scenario name>");
+  command
+      .add_option("--scenario", options.scenario,
+                  "Where the scenario of the parts is now (default: where it was when they were run)")
+      ->type_name("SCENARIO.json");
+  add_resources(command, options.threads, options.memory_limit_bytes);
+  add_progress(command, options.progress, options.quiet);
 }
 
 void add_map_options(CLI::App& command, ScenarioOptions& options) {

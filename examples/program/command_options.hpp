@@ -7,6 +7,7 @@
 namespace dcem::program {
 
 void add_run_options(CLI::App& command, ScenarioOptions& options);
+void add_merge_options(CLI::App& command, MergeOptions& options);
 void add_map_options(CLI::App& command, ScenarioOptions& options);
 void add_verify_options(CLI::App& command, ScenarioOptions& options);
 void add_inspect_options(CLI::App& command, InspectOptions& options);

@@ -10,6 +10,7 @@
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/sampling_text.hpp"
+#include "dcem/io/shard_facts.hpp"
 #include "dcem/io/slow_search.hpp"
 #include "dcem/io/text_table.hpp"
 #include "dcem/sim/discovery.hpp"
@@ -41,6 +42,11 @@ FrameRange parse_frames(const std::string& text, std::size_t available) {
   return {*first, *last};
 }
 
+/// "0-of-4".
+std::string part_name(const ReceiverPart& part) {
+  return std::to_string(part.part) + "-of-" + std::to_string(part.of);
+}
+
 double memory_of_machine_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
@@ -60,7 +66,9 @@ Job prepare_job(const ScenarioOptions& options) {
   job.frames = parse_frames(options.frames, job.scenario.time.frames);
   io::require_attached_devices(job.scenario, job.frames.first, job.frames.last);
   if (options.threads) job.scenario.settings.threads = *options.threads;
+  job.scenario.settings.links.receivers = options.shard;
   if (job.folder.empty()) job.folder = std::filesystem::path("out") / job.scenario.name;
+  if (options.folder.empty() && options.shard) job.folder += ".shard-" + part_name(*options.shard);
   return job;
 }
 
@@ -168,6 +176,11 @@ io::RunIdentity run_identity(const Job& job, const ScenarioOptions& options) {
   add("--output", given.output);
   add("--output", options.map_output);
   return {DCEM_VERSION, io::content_hash(job.scenario.files), text};
+}
+
+io::RunIdentity part_identity(io::RunIdentity whole, const ReceiverPart& part) {
+  whole.options += " --shard " + io::shard_text(part);
+  return whole;
 }
 
 void require_effect(const ScenarioOptions& options, const Simulator& simulator) {

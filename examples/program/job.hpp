@@ -56,8 +56,11 @@ void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary);
 /// How progress is shown, which is not at all when the user wants quiet.
 io::ProgressMode progress_mode(const ScenarioOptions& options);
 
-/// What a run goes on with has to be of the same.
+/// What a run goes on with has to be of the same; of a part that of the whole run.
 io::RunIdentity run_identity(const Job& job, const ScenarioOptions& options);
+
+/// That of a part of the run.
+io::RunIdentity part_identity(io::RunIdentity whole, const ReceiverPart& part);
 
 /// Throws UsageError for an option that changes nothing: rays and their seed where no ray is shot.
 void require_effect(const ScenarioOptions& options, const Simulator& simulator);

@@ -46,6 +46,7 @@ struct ScenarioOptions {
   std::string frames;  ///< "A:B"; empty: all
   io::ScenarioOverrides overrides;
   std::optional<std::string> map_output;  ///< "csv,png,…": of `dcem map`, in place of the file's `output`
+  std::optional<ReceiverPart> shard;      ///< of `dcem run`: a part alone
   bool resume = false;
   io::ProgressMode progress = io::ProgressMode::automatic;
   bool quiet = false;
@@ -75,6 +76,16 @@ struct ImportOptions {
   bool quiet = false;
 };
 
+struct MergeOptions {
+  std::vector<std::string> shards;  ///< folders
+  std::string folder;               ///< empty: out/<scenario name>
+  std::string scenario;             ///< empty: where it was
+  std::optional<unsigned> threads;
+  std::optional<double> memory_limit_bytes;
+  io::ProgressMode progress = io::ProgressMode::automatic;
+  bool quiet = false;
+};
+
 struct KeysOptions {
   std::string word;  ///< empty: all keys
   bool markdown = false;
@@ -83,6 +94,9 @@ struct KeysOptions {
 // The commands. They return when everything is written; errors are thrown.
 
 void run_scenario(const ScenarioOptions& options);
+/// A part of a run: what --shard says.
+void run_shard(const ScenarioOptions& options);
+void merge_shards(const MergeOptions& options);
 void map_scenario(const ScenarioOptions& options);
 void verify_scenario(const ScenarioOptions& options);
 void inspect_scene(const InspectOptions& options);

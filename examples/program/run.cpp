@@ -1,62 +1,34 @@
 /// `dcem run`: every frame of a scenario, all links.
 #include <iostream>
-#include <limits>
 #include <optional>
-#include <stdexcept>
+#include <utility>
 
 #include "dcem/io/frame_source.hpp"
-#include "dcem/io/input_error.hpp"
-#include "dcem/io/placement_watch.hpp"
-#include "dcem/io/result_writer.hpp"
 #include "dcem/io/run_journal.hpp"
-#include "dcem/sim/discovery.hpp"
-#include "dcem/sim/link_choice.hpp"
 #include "job.hpp"
+#include "ranks.hpp"
+#include "resume.hpp"
+#include "run_on_ranks.hpp"
+#include "run_results.hpp"
 #include "stop_signal.hpp"
 
 namespace dcem::program {
 namespace {
 
-io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
-                             const ScenarioOptions& options) {
-  const DiffuseSettings& diffuse = simulator.settings().propagation.diffuse;
-  const io::ResultFacts facts{simulator.discovery(),
-                              simulator.settings().frequency_hz,
-                              diffuse.enabled,
-                              diffuse.enabled && diffuse.list_paths,
-                              job.frames.count(),
-                              job.frames.first,
-                              exactly_searched_interactions(simulator.settings().propagation, simulator.plan()),
-                              options.memory_limit_bytes.value_or(std::numeric_limits<double>::infinity()),
-                              takes_all_links(simulator.scene(), simulator.settings().links),
-                              job.scenario.geo};
-  try {
-    return {folder, simulator.scene(), simulator.scene().receivers(), facts, job.scenario.output};
-  } catch (const std::invalid_argument& error) {
-    throw io::InputError(options.scenario, error.what());
-  }
-}
-
 std::string frames_text(std::size_t first, std::size_t beyond) {
   return "frames " + std::to_string(first) + " to " + std::to_string(beyond - 1);
 }
 
-/// A run from frame to frame. What it has written after some frames depends on these frames alone, so that it may end
-/// behind any of them, and go on there.
+/// A run from frame to frame, which may end behind any of them and go on there.
 class Run {
  public:
-  /// The scene's first `devices` receivers are of the scenario's own, the others are points of its grids.
-  Run(Job& job, const ScenarioOptions& options, Simulator& simulator, ResultFolder& folder, std::size_t devices)
+  Run(const Job& job, const ScenarioOptions& options, Simulator& simulator, RunResults& results)
       : job_(job),
         options_(options),
         simulator_(simulator),
+        results_(results),
         frames_(job.scenario),
-        writer_(make_writer(folder.files(), job, simulator, options)),
-        viewer_(make_viewer(folder.files(), job, simulator)),
-        summary_(run_facts(job, simulator, simulator.plan(), simulator.scene().receivers().size()), simulator.scene()),
-        watch_(options.scenario, simulator, simulator.scene().receivers().first(devices), job.scenario.grids),
-        next_(job.frames.first),
-        needs_paths_(io::needs_paths(job.scenario.output)) {}
+        next_(job.frames.first) {}
 
   /// Takes over the frames of a journal. Nothing is changed where a signal comes meanwhile.
   void replay(io::JournalReader& journal, const StopRequest& stop) {
@@ -68,14 +40,8 @@ class Run {
       }
       const Frame instant = frames_.frame(simulator_.scene(), next_);
       const TreeUpdateReport tree = simulator_.pass(instant, entry->figures.work);
-      if (entry->figures.index != next_ || tree != entry->figures.tree) {
-        throw io::InputError((job_.folder / io::journal_name).string(),
-                             "does not fit frame " + std::to_string(next_) + "; expected the journal of this run");
-      }
-      watch_.look(instant);
-      summary_.add(entry->figures);
-      check(instant, nullptr, entry->figures.work.sequences_proposed, stop);
-      needs_paths_ ? write(instant, entry->take_result()) : writer_.write_lines(entry->link_lines);
+      require_frame(job_.folder, entry->figures, next_, tree);
+      results_.add(instant, std::move(*entry), stop);
       ++next_;
       bar.advance();
     }
@@ -86,104 +52,21 @@ class Run {
     io::ProgressBar bar("frames", job_.frames.last - next_, progress_mode(options_));
     for (; next_ < job_.frames.last && stop.signal() == 0; ++next_) {
       const Frame instant = frames_.frame(simulator_.scene(), next_);
-      const FrameResult result = simulator_.advance(instant);
-      watch_.look(instant);
-      if (needs_paths_) {
-        write(instant, result);
-        if (journal != nullptr) journal->add(result);
-      } else {
-        const std::string lines = writer_.link_lines(result);
-        writer_.write_lines(lines);
-        if (journal != nullptr) journal->add(result, lines);
-      }
-      summary_.add(io::figures_of(result));
-      check(instant, &result.links, result.work.sequences_proposed, stop);
+      results_.add(instant, simulator_.advance(instant), journal, stop);
       bar.advance();
     }
   }
 
   std::size_t next_frame() const { return next_; }
 
-  /// Writes what is complete only now.
-  io::RunSummary& finish() {
-    const io::ProgressStage stage("writing results", progress_mode(options_));
-    if (job_.scenario.output.plots && next_ - job_.frames.first < 2) {
-      summary_.add_late_warning("output.plots: one frame alone has its power delay profile and no pictures over time");
-    }
-    for (const std::string& line : watch_.warnings()) summary_.add_late_warning(line);
-    writer_.finish();
-    finish_viewer(viewer_.get(), summary_);
-    return summary_;
-  }
-
  private:
-  /// What the settings of an output cannot do with the delays of a frame is an error of the scenario.
-  void write(const Frame& instant, const FrameResult& result) {
-    try {
-      writer_.write(result);
-    } catch (const std::invalid_argument& error) {
-      const std::string problem = error.what();
-      const bool says_what = problem.find("; expected ") != std::string::npos;
-      throw io::InputError(options_.scenario, problem + (says_what ? "" : "; expected wider bins"));
-    }
-    if (viewer_ != nullptr) viewer_->add(instant, result);
-  }
-
-  /// What rays lack on some links, in three of the frames. Not where the run is to end, whatever it has still to say.
-  void check(const Frame& instant, const std::vector<LinkResult>* links, std::uint64_t sequences,
-             const StopRequest& stop) {
-    const std::size_t first = job_.frames.first, last = job_.frames.last - 1;
-    const bool is_chosen = next_ == first || next_ == (first + last) / 2 || next_ == last;
-    if (simulator_.discovery() == Discovery::exact || !is_chosen || stop.signal() != 0) return;
-    const auto receivers = simulator_.scene().receivers();
-    std::vector<LinkResult> own;
-    if (links == nullptr) own = simulator_.solve(receivers);  // the journal has lines alone; nothing is remembered
-    SamplingReport report = check_sampling(simulator_, instant, {receivers, links ? *links : own, sequences});
-    if (simulator_.cache() == CacheMode::seed) report.rays_steady = steady_rays(simulator_.settings().propagation);
-    sampling_.add(report);
-    summary_.set_sampling(sampling_);
-  }
-
   const Job& job_;
   const ScenarioOptions& options_;
   Simulator& simulator_;
+  RunResults& results_;
   io::FrameSource frames_;
-  io::ResultWriter writer_;
-  std::unique_ptr<io::ViewerWriter> viewer_;
-  io::RunSummary summary_;
-  io::PlacementWatch watch_;
-  SamplingReport sampling_;
   std::size_t next_;
-  const bool needs_paths_;
 };
-
-/// What the pictures leave out is said, not left to be found out.
-void warn_of_plots(Job& job, std::size_t links) {
-  const io::OutputSettings& output = job.scenario.output;
-  if (!output.plots || links <= output.plots_max_links) return;
-  job.scenario.warnings.push_back("output.plots: the first " + std::to_string(output.plots_max_links) + " of " +
-                                  std::to_string(links) + " links have pictures (output.plots.max_links)");
-}
-
-/// With --resume: the journal to go on with; nothing where a run begins anew, since its frames need what the frames
-/// before have remembered.
-std::optional<io::JournalReader> open_journal(const Job& job, const ScenarioOptions& options,
-                                              const io::RunIdentity& identity, const Simulator& simulator) {
-  if (!options.resume) return std::nullopt;
-  if (simulator.cache() != CacheMode::seed) {
-    return std::optional<io::JournalReader>(std::in_place, job.folder, identity, options.scenario);
-  }
-  print_warnings({"--resume: the run begins again with frame " + std::to_string(job.frames.first) +
-                  ", because with cache seed a frame needs what those before it have remembered"},
-                 options);
-  return std::nullopt;
-}
-
-bool is_complete(const Job& job, const ResultFolder& folder, const io::RunIdentity& identity) {
-  const auto& former = folder.former();
-  return former && !former->is_interrupted && former->identity == identity.text() &&
-         !std::filesystem::exists(job.folder / io::journal_name);
-}
 
 /// Where the run was ended by a signal: what is there, and what is not.
 [[noreturn]] void end_interrupted(int signal, const Job& job, std::size_t next_frame, bool has_journal) {
@@ -203,16 +86,17 @@ std::optional<io::RunJournal> begin_journal(const Job& job, const io::RunIdentit
   if (former) return std::optional<io::RunJournal>(std::in_place, job.folder, former->bytes());
   std::error_code ignored;
   std::filesystem::remove(job.folder / io::journal_name, ignored);
+  std::filesystem::remove_all(job.folder / parts_folder, ignored);
   if (simulator.cache() == CacheMode::seed || job.frames.count() < 2) return std::nullopt;
   return std::optional<io::RunJournal>(std::in_place, job.folder, identity);
 }
 
 /// Writes what is there as the result, where that is a frame at least, and says so where frames are left.
-void write_result(Run& run, const Job& job, const ScenarioOptions& options, ResultFolder& folder,
-                  const io::RunIdentity& identity, io::RunJournal* journal, int signal) {
+void write_result(const Run& run, RunResults& results, const Job& job, const ScenarioOptions& options,
+                  ResultFolder& folder, const io::RunIdentity& identity, io::RunJournal* journal, int signal) {
   const bool is_cut = run.next_frame() < job.frames.last;
   if (is_cut && run.next_frame() == job.frames.first) end_interrupted(signal, job, run.next_frame(), false);
-  io::RunSummary& summary = run.finish();
+  io::RunSummary& summary = results.finish(run.next_frame() - job.frames.first);
   if (is_cut) summary.set_interruption({signal_name(signal), run.next_frame(), job.frames.last});
   folder.commit(summary, identity.text());
   if (journal != nullptr) is_cut ? journal->keep() : journal->remove();
@@ -222,11 +106,11 @@ void write_result(Run& run, const Job& job, const ScenarioOptions& options, Resu
 }
 
 /// Solves the frames that are left.
-void go_on(Run& run, const Job& job, const ScenarioOptions& options, ResultFolder& folder,
+void go_on(Run& run, RunResults& results, const Job& job, const ScenarioOptions& options, ResultFolder& folder,
            const io::RunIdentity& identity, io::RunJournal* journal, const StopRequest& stop) {
   try {
     run.solve(journal, stop);
-    write_result(run, job, options, folder, identity, journal, stop.signal());
+    write_result(run, results, job, options, folder, identity, journal, stop.signal());
   } catch (const io::OutputError&) {
     if (journal != nullptr) journal->keep();  // a disk that is full today has room tomorrow
     throw;
@@ -236,6 +120,8 @@ void go_on(Run& run, const Job& job, const ScenarioOptions& options, ResultFolde
 }  // namespace
 
 void run_scenario(const ScenarioOptions& options) {
+  if (options.shard) return run_shard(options);
+  if (job_size() > 1) return run_on_ranks(options);
   Job job = prepare_job(options);
   const std::size_t devices = job.scenario.scene.receivers().size();
   expand_grids(job.scenario, options);
@@ -243,23 +129,19 @@ void run_scenario(const ScenarioOptions& options) {
   require_effect(options, simulator);
   const io::RunIdentity identity = run_identity(job, options);
   ResultFolder folder(job.folder, "summary.json", "map_summary.json");
-  if (job.scenario.output.html) folder.require_free("viewer.html");
-  if (options.resume && is_complete(job, folder, identity)) {
+  if (options.resume && holds_result(folder, identity)) {
     std::cerr << job.folder.string() << ": the run is complete; nothing is left to resume\n";
     return;
   }
-  if (takes_all_links(simulator.scene(), simulator.settings().links)) {
-    warn_of_plots(job, io::plotted_links(simulator.scene(), simulator.scene().receivers()));
-  }
-  const auto receivers = simulator.scene().receivers();
-  if (!receivers.empty()) warn_of_slow_search(job, simulator, receivers.front(), receivers.size());
-  std::optional<io::JournalReader> former = open_journal(job, options, identity, simulator);
-  Run run(job, options, simulator, folder, devices);
+  prepare_results(job, simulator, folder);
+  std::optional<io::JournalReader> former = open_journal(job.folder, job, options, identity, simulator);
+  RunResults results(job, options, simulator, folder, devices);
+  Run run(job, options, simulator, results);
   print_warnings(job.scenario.warnings, options);
   const StopRequest stop;
   if (former) run.replay(*former, stop);
   std::optional<io::RunJournal> journal = begin_journal(job, identity, simulator, former);
-  go_on(run, job, options, folder, identity, journal ? &*journal : nullptr, stop);
+  go_on(run, results, job, options, folder, identity, journal ? &*journal : nullptr, stop);
 }
 
 }  // namespace dcem::program

@@ -23,15 +23,20 @@ inline std::string quoted(const std::filesystem::path& path) {
   return "'" + path.string() + "'";
 }
 
-inline Outcome dcem_program(const TemporaryFolder& folder, const std::string& arguments) {
+/// What a line of the shell gives that is said in a folder.
+inline Outcome shell_line(const TemporaryFolder& folder, const std::string& line) {
   const auto output = folder / ".stdout", error = folder / ".stderr";
-  const std::string command = "cd " + quoted(folder.path()) + " && " + quoted(DCEM_PROGRAM) + " " + arguments + " > " +
-                              quoted(output) + " 2> " + quoted(error);
+  const std::string command =
+      "cd " + quoted(folder.path()) + " && " + line + " > " + quoted(output) + " 2> " + quoted(error);
   const int status = std::system(command.c_str());
   Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_bytes(output), file_bytes(error)};
   std::filesystem::remove(output);
   std::filesystem::remove(error);
   return outcome;
+}
+
+inline Outcome dcem_program(const TemporaryFolder& folder, const std::string& arguments) {
+  return shell_line(folder, quoted(DCEM_PROGRAM) + " " + arguments);
 }
 
 inline void write(const std::filesystem::path& path, const std::string& text) {

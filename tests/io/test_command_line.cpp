@@ -73,7 +73,8 @@ TEST_CASE("the help of each command lists exactly what it takes") {
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;
   const std::vector<std::pair<std::string, Words>> expected{
-      {"run", common + Words{"--cache", "-o", "--output", "--resume"}},
+      {"run", common + Words{"--cache", "-o", "--output", "--resume", "--shard"}},
+      {"merge", {"-h", "--help", "-o", "--scenario", "--threads", "--memory-limit", "--progress", "--quiet"}},
       {"map", common + Words{"-o", "--output"}},
       {"verify", common + Words{"--cache"}},
       {"inspect", {"-h", "--help", "--json", "--up", "--unit-m", "--frequency-hz"}},

@@ -13,6 +13,7 @@
 
 #include "tests/io/drawing_needed.hpp"
 #include "tests/io/program_case.hpp"
+#include "tests/io/result_files.hpp"
 #include "tests/io/running_program.hpp"
 
 namespace test_long_runs {
@@ -23,43 +24,6 @@ namespace {
 
 const std::string town = DCEM_DATA_DIR "/town_drive.json";
 const std::string first_frame_done = R"({"stage":"frames","done":1,)";
-
-/// Every file of a folder by its name. Of a summary without what a clock has measured, and without how much work it
-/// was: who goes on remembers nothing.
-std::map<std::string, std::string> files_of(const std::filesystem::path& folder) {
-  static const std::regex clocked(
-      R"re("(update_time_s|solve_time_s|real_time_factor|frame_time_[a-z0-9]+_s)": ?(null|[-+.e0-9]+))re");
-  static const std::regex worked(R"re("(tree|cache|work)": ?\{[^{}]*\})re");
-  std::map<std::string, std::string> files;
-  if (!std::filesystem::exists(folder)) return files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    const std::string bytes = file_bytes(entry.path());
-    const bool is_summary = name.ends_with("summary.json");
-    files[name] = is_summary ? std::regex_replace(std::regex_replace(bytes, clocked, ""), worked, "") : bytes;
-  }
-  return files;
-}
-
-std::vector<std::string> names_in(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& [name, bytes] : files_of(folder)) names.push_back(name);
-  return names;
-}
-
-bool holds(const std::vector<std::string>& names, const std::string& part) {
-  return std::any_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return name.find(part) != std::string::npos; });
-}
-
-void check_same_files(const std::filesystem::path& folder, const std::filesystem::path& expected) {
-  CHECK(names_in(folder) == names_in(expected));
-  const auto files = files_of(folder), others = files_of(expected);
-  for (const auto& other : others) {
-    CAPTURE(other.first);
-    CHECK((files.contains(other.first) && files.at(other.first) == other.second));  // not shown: megabytes
-  }
-}
 
 std::vector<std::string> words(const std::string& text) {
   std::vector<std::string> list;

@@ -89,6 +89,10 @@ void fields(auto& archive, IsOf<LinkResult> auto& value) {
   auto& [transmitter, receiver, complete, paths, diffuse, statistics, valid_until_m] = value;
   archive(transmitter, receiver, complete, paths, diffuse, statistics, valid_until_m);
 }
+void fields(auto& archive, IsOf<LinkRequest> auto& value) {
+  auto& [transmitter, receiver] = value;
+  archive(transmitter, receiver);
+}
 void fields(auto& archive, IsOf<TreeUpdateReport> auto& value) {
   auto& [kept, refit, rebuilt, subtrees, root_rebuilt, sah_cost, sah_cost_at_build, reinserted, rotated, in_place] =
       value;

@@ -1,7 +1,6 @@
 #include "dcem/io/result_writer.hpp"
 #include "dcem/core/naming.hpp"
 
-#include "dcem/channel/coherence.hpp"
 #include "dcem/channel/doppler_spectrum.hpp"
 #include "dcem/core/units.hpp"
 #include "dcem/io/src/exchange/frame_export.hpp"
@@ -42,6 +41,7 @@ ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<c
     : output_(output),
       facts_(facts),
       scene_(scene),
+      link_lines_(scene, receivers),
       lines_(std::make_unique<PathLines>(scene, receivers, facts, output.paths_top)) {
   paths_.file = open_sheet(folder, output.paths, output.paths_gzip ? "paths.jsonl.gz" : "paths.jsonl");
   if (output.paths && output.paths_gzip) paths_.gzip = std::make_unique<GzipEncoder>(*paths_.file);
@@ -56,11 +56,7 @@ ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<c
     arrays_ = std::make_unique<PathCollector>(folder, scene, receivers, facts, output);
   if (output.plots) plots_ = std::make_unique<PlotCollector>(folder, scene, receivers, facts, output);
   exports_ = make_exports({folder, scene, receivers, facts, output});
-  for (const Device& device : scene.transmitters()) {
-    csv_transmitters_.push_back(csv_field(device.id));
-    power_dbm_.push_back(device.power_dbm);
-  }
-  for (const Device& device : receivers) csv_receivers_.push_back(csv_field(device.id));
+  for (const Device& device : scene.transmitters()) power_dbm_.push_back(device.power_dbm);
 }
 
 ResultWriter::~ResultWriter() = default;
@@ -71,7 +67,7 @@ void ResultWriter::write(const FrameResult& frame) {
   };
   for (const LinkResult& link : frame.links) {
     if (output_.paths) lines_->append(paths_.text, frame, link);
-    if (output_.links) append_link(links_.text, frame, link);
+    if (output_.links) link_lines_.append(links_.text, frame, link);
     if (output_.pdp) dcem::detail::naming("output.pdp.bin_s", [&] { append_profile(frame, link); });
     if (output_.doppler) dcem::detail::naming("output.doppler.bin_hz", [&] { append_doppler(frame, link); });
     flush_all(sheet_bytes);
@@ -86,10 +82,7 @@ void ResultWriter::write(const FrameResult& frame) {
 }
 
 std::string ResultWriter::link_lines(const FrameResult& frame) const {
-  std::string lines;
-  if (!output_.links) return lines;
-  for (const LinkResult& link : frame.links) append_link(lines, frame, link);
-  return lines;
+  return output_.links ? link_lines_.text(frame) : std::string();
 }
 
 void ResultWriter::write_lines(std::string_view link_lines) {
@@ -107,27 +100,8 @@ void ResultWriter::finish() {
 
 CsvLine ResultWriter::begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const {
   CsvLine line(sheet.text);
-  line.count(frame.index).prepared(csv_transmitters_[link.transmitter]).prepared(csv_receivers_[link.receiver]);
+  line.count(frame.index).prepared(link_lines_.transmitter(link)).prepared(link_lines_.receiver(link));
   return line;
-}
-
-void ResultWriter::append_link(std::string& text, const FrameResult& frame, const LinkResult& link) const {
-  const LinkStatistics& values = link.statistics;
-  const std::vector<PowerSample> samples = power_samples(link.paths, link.diffuse);
-  CsvLine line(text);
-  line.count(frame.index).number(frame.time_s);
-  line.prepared(csv_transmitters_[link.transmitter]).prepared(csv_receivers_[link.receiver]);
-  line.flag(values.line_of_sight).count(values.path_count).flag(link.complete);
-  line.number(link.valid_until_m);
-  line.number(values.power_dbm).number(values.power_incoherent_dbm).number(values.power_los_dbm);
-  line.number(values.power_reflected_dbm).number(values.power_transmitted_dbm);
-  line.number(values.power_diffracted_dbm).number(values.power_diffuse_dbm);
-  line.number(values.path_gain_db).number(values.first_delay_s).number(values.mean_delay_s);
-  line.number(values.rms_delay_spread_s).number(values.k_factor_db);
-  line.number(values.azimuth_spread_arrival_rad).number(values.azimuth_spread_departure_rad);
-  line.number(values.mean_doppler_hz).number(values.rms_doppler_spread_hz);
-  line.number(values.zenith_spread_arrival_rad).number(values.zenith_spread_departure_rad);
-  line.number(coherence_bandwidth_hz(samples)).number(coherence_time_s(samples)).end();
 }
 
 void ResultWriter::append_profile(const FrameResult& frame, const LinkResult& link) {

@@ -95,7 +95,7 @@ RunJournal::~RunJournal() {
 
 void RunJournal::add(const FrameResult& frame) {
   ByteWriter figures;
-  figures(figures_of(frame), std::string(), frame.links.size());
+  figures(figures_of(frame), std::string(), std::vector<LinkRequest>(), frame.links.size());
   put(figures_piece, figures.bytes());
   for (const LinkResult& link : frame.links) {
     ByteWriter writer;
@@ -107,7 +107,9 @@ void RunJournal::add(const FrameResult& frame) {
 
 void RunJournal::add(const FrameResult& frame, const std::string& link_lines) {
   ByteWriter figures;
-  figures(figures_of(frame), link_lines, std::size_t{0});
+  std::vector<LinkRequest> line_links;
+  for (const LinkResult& link : frame.links) line_links.push_back({link.transmitter, link.receiver});
+  figures(figures_of(frame), link_lines, line_links, std::size_t{0});
   put(figures_piece, figures.bytes());
   end_frame();
 }
@@ -133,18 +135,19 @@ void RunJournal::remove() {
   fs::remove(file_, ignored);
 }
 
-JournalReader::JournalReader(const fs::path& folder, const RunIdentity& identity, const std::string& scenario)
+JournalReader::JournalReader(const fs::path& folder, const RunIdentity& identity, const std::string& scenario,
+                             JournalUse use)
     : file_(folder / journal_name), stream_(file_, std::ios::binary) {
   if (!stream_) {
     throw InputError(folder.string(), "nothing to resume; expected the folder of a run that was ended, with its " +
                                           std::string(journal_name));
   }
   size_ = fs::file_size(file_);
-  check_head(identity, scenario);
+  check_head(identity, scenario, use);
   count_frames();
 }
 
-void JournalReader::check_head(const RunIdentity& identity, const std::string& scenario) {
+void JournalReader::check_head(const RunIdentity& identity, const std::string& scenario, JournalUse use) {
   const std::array<std::string, 4> expected = head_lines(identity);
   std::array<std::string, 4> found;
   for (std::string& line : found) std::getline(stream_, line);
@@ -154,8 +157,9 @@ void JournalReader::check_head(const RunIdentity& identity, const std::string& s
   }
   if (found[2] != expected[2]) {
     throw InputError(scenario,
-                     "is not as it was when the run began, or a file that it names is not; expected the same "
-                     "(without --resume the run begins anew)");
+                     "is not as it was when the run began, or a file that it names is not; expected the same " +
+                         std::string(use == JournalUse::resume ? "(without --resume the run begins anew)"
+                                                               : "(otherwise all parts are to be run again)"));
   }
   if (found[3] != expected[3]) {
     throw InputError(file_.string(), "is of a run with other options; expected those of that run (" +
@@ -195,7 +199,7 @@ std::optional<JournalEntry> JournalReader::next() {
     std::size_t links = 0;
     for (auto piece = next_piece(); piece; piece = next_piece()) {
       ByteReader reader(piece->bytes);
-      if (piece->kind == figures_piece) reader(entry.figures, entry.link_lines, links);
+      if (piece->kind == figures_piece) reader(entry.figures, entry.link_lines, entry.line_links, links);
       if (piece->kind == link_piece) reader(entry.links.emplace_back());
       if (piece->kind == end_piece && links == entry.links.size()) return entry;
     }

@@ -10,6 +10,7 @@
 #include "dcem/core/thread_pool.hpp"
 #include "dcem/io/sampling_text.hpp"
 #include "dcem/io/src/results/fact_json.hpp"
+#include "dcem/io/src/results/shard_json.hpp"
 #include "dcem/io/src/scenario/enum_words.hpp"
 #include "dcem/io/src/scenario/settings_json.hpp"
 #include "dcem/io/src/text/json_values.hpp"
@@ -149,6 +150,35 @@ FrameFigures sum_of(const std::vector<FrameFigures>& frames) {
   return sum;
 }
 
+std::vector<double> times_of(const std::vector<FrameFigures>& frames) {
+  std::vector<double> times_s;
+  for (const FrameFigures& frame : frames) times_s.push_back(total_time_s(frame));
+  return times_s;
+}
+
+Json totals_json(const std::vector<FrameFigures>& frames, double step_s) {
+  const FrameFigures sum = sum_of(frames);
+  const std::vector<double> times_s = times_of(frames);
+  const double covered_s = step_s * static_cast<double>(frames.size());
+  return {{"frames", frames.size()},
+          {"links", sum.links},
+          {"links_with_line_of_sight", sum.links_with_line_of_sight},
+          {"paths", sum.paths},
+          {"update_time_s", sum.update_time_s},
+          {"solve_time_s", sum.solve_time_s},
+          {"frame_time_median_s", median(times_s)},
+          {"frame_time_p95_s", quantile(times_s, 0.95)},
+          {"frame_time_max_s", quantile(times_s, 1.0)},
+          {"real_time_factor", optional_json(real_time_factor(covered_s, total_time_s(sum)))},
+          {"tree",
+           {{"nodes_kept", sum.tree.nodes_kept},
+            {"nodes_refit", sum.tree.nodes_refit},
+            {"nodes_rebuilt", sum.tree.nodes_rebuilt},
+            {"subtrees_rebuilt", sum.tree.subtrees_rebuilt}}},
+          {"cache", cache_json(sum.cache)},
+          {"work", work_json(sum.work)}};
+}
+
 Json interruption_json(const std::optional<Interruption>& interruption) {
   if (!interruption) return nullptr;
   return {{"signal", interruption->signal},
@@ -177,12 +207,6 @@ FrameFigures figures_of(const FrameResult& frame) {
 }
 
 RunSummary::RunSummary(RunFacts facts, const Scene& scene) : facts_(std::move(facts)), scene_(scene) {}
-
-std::vector<double> RunSummary::frame_times_s() const {
-  std::vector<double> times_s;
-  for (const FrameFigures& frame : frames_) times_s.push_back(total_time_s(frame));
-  return times_s;
-}
 
 std::string RunSummary::cache_text(const CacheCounters& cache) const {
   if (facts_.cache == CacheMode::off) return "off";
@@ -217,36 +241,18 @@ std::string RunSummary::diffuse_text(const FrameFigures& sum) const {
 }
 
 std::string RunSummary::json() const {
-  const FrameFigures sum = sum_of(frames_);
-  const std::vector<double> times_s = frame_times_s();
-  const double covered_s = facts_.time.step_s * static_cast<double>(frames_.size());
-  std::string text = json_text({{"version", facts_.version},
-                                {"scenario", facts_.scenario},
-                                {"identity", identity_},
-                                {"files", files_},
-                                {"interrupted", interruption_json(interruption_)},
-                                {"scene", scene_json(scene_, facts_.receivers)},
-                                {"settings", settings_json(facts_)},
-                                {"warnings", warnings()},
-                                {"sampling", sampling_.is_sampled ? sampling_json(sampling_) : Json(nullptr)},
-                                {"totals",
-                                 {{"frames", frames_.size()},
-                                  {"links", sum.links},
-                                  {"links_with_line_of_sight", sum.links_with_line_of_sight},
-                                  {"paths", sum.paths},
-                                  {"update_time_s", sum.update_time_s},
-                                  {"solve_time_s", sum.solve_time_s},
-                                  {"frame_time_median_s", median(times_s)},
-                                  {"frame_time_p95_s", quantile(times_s, 0.95)},
-                                  {"frame_time_max_s", quantile(times_s, 1.0)},
-                                  {"real_time_factor", optional_json(real_time_factor(covered_s, total_time_s(sum)))},
-                                  {"tree",
-                                   {{"nodes_kept", sum.tree.nodes_kept},
-                                    {"nodes_refit", sum.tree.nodes_refit},
-                                    {"nodes_rebuilt", sum.tree.nodes_rebuilt},
-                                    {"subtrees_rebuilt", sum.tree.subtrees_rebuilt}}},
-                                  {"cache", cache_json(sum.cache)},
-                                  {"work", work_json(sum.work)}}}});
+  Json head{{"version", facts_.version},
+            {"scenario", facts_.scenario},
+            {"identity", identity_},
+            {"files", files_},
+            {"interrupted", interruption_json(interruption_)}};
+  if (shard_) head["shard"] = shard_json(*shard_);
+  head["scene"] = scene_json(scene_, facts_.receivers);
+  head["settings"] = settings_json(facts_);
+  head["warnings"] = warnings();
+  head["sampling"] = sampling_.is_sampled ? sampling_json(sampling_) : Json(nullptr);
+  head["totals"] = totals_json(frames_, facts_.time.step_s);
+  std::string text = json_text(head);
   text.resize(text.rfind('}'));
   while (text.back() == '\n') text.pop_back();
   text += ",\n  \"frames\": [";
@@ -260,10 +266,11 @@ std::string RunSummary::json() const {
 
 std::string RunSummary::table(const std::filesystem::path& folder) const {
   const FrameFigures sum = sum_of(frames_);
-  const std::vector<double> times_s = frame_times_s();
+  const std::vector<double> times_s = times_of(frames_);
   const double covered_s = facts_.time.step_s * static_cast<double>(frames_.size());
   const auto factor = real_time_factor(covered_s, total_time_s(sum));
   TextTable table({{"", TextTable::Align::left}, {"", TextTable::Align::left}});
+  if (shard_) table.add_row({"part of a run", shard_text(shard_->part)});
   table.add_row({"frames", std::to_string(frames_.size())});
   table.add_row({"links", std::to_string(sum.links) + " (" + std::to_string(sum.links_with_line_of_sight) +
                               " with line of sight)"});

@@ -1,0 +1,127 @@
+/// `dcem merge`: the parts of a run as one, with the bytes that the run has as a whole.
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "dcem/io/frame_source.hpp"
+#include "dcem/io/input_error.hpp"
+#include "dcem/io/shards.hpp"
+#include "job.hpp"
+#include "merge.hpp"
+#include "run_results.hpp"
+#include "stop_signal.hpp"
+
+namespace dcem::program {
+namespace {
+
+/// The command line that the whole run would have had.
+ScenarioOptions whole_run(const MergeOptions& options, const io::ShardFacts& facts) {
+  ScenarioOptions whole;
+  whole.scenario = options.scenario.empty() ? facts.scenario : options.scenario;
+  whole.folder = options.folder;
+  whole.threads = options.threads;
+  whole.memory_limit_bytes = options.memory_limit_bytes;
+  whole.frames = facts.frames;
+  whole.overrides = facts.overrides;
+  whole.progress = options.progress;
+  whole.quiet = options.quiet;
+  if (!std::filesystem::exists(whole.scenario)) {
+    throw io::InputError(whole.scenario,
+                         "is not there; expected the scenario of the parts (--scenario FILE says where it is now)");
+  }
+  return whole;
+}
+
+std::vector<io::RunIdentity> identities_of(const io::RunIdentity& whole, std::uint32_t parts) {
+  std::vector<io::RunIdentity> identities;
+  for (std::uint32_t part = 0; part < parts; ++part) {
+    identities.push_back(part_identity(whole, {part, parts}));
+  }
+  return identities;
+}
+
+void require_folder_of_its_own(const Job& job, const std::vector<io::ShardFolder>& shards) {
+  std::error_code ignored;
+  for (const io::ShardFolder& shard : shards) {
+    if (!std::filesystem::equivalent(job.folder, shard.folder, ignored)) continue;
+    throw io::InputError(job.folder.string(), "is the folder of a part; expected another one (-o)");
+  }
+}
+
+/// The tree follows as it did in the run, as far as the work of the parts adds up to that of the run.
+TreeUpdateReport follow(Simulator& simulator, const Frame& instant, const WorkCounters& spent) {
+  return simulator.cache() == CacheMode::seed ? simulator.move_to(instant) : simulator.pass(instant, spent);
+}
+
+void take_all(io::ShardReader& shards, const Job& job, const ScenarioOptions& options, Simulator& simulator,
+              RunResults& results) {
+  io::FrameSource frames(job.scenario);
+  const StopRequest stop;
+  io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
+  std::size_t next = job.frames.first;
+  for (auto entry = shards.next(); entry; entry = shards.next()) {
+    if (stop.signal() != 0) {
+      throw Interrupted(stop.signal(), "interrupted by " + signal_name(stop.signal()) + ": nothing is written");
+    }
+    const Frame instant = frames.frame(simulator.scene(), next++);
+    entry->figures.tree = follow(simulator, instant, entry->figures.work);
+    results.add(instant, std::move(*entry), stop);
+    bar.advance();
+  }
+}
+
+/// One for this simulator, while the job keeps its scene.
+Simulator simulator_of(const Job& job, const ScenarioOptions& options) {
+  const io::ProgressStage stage("building tree", progress_mode(options));
+  try {
+    return {job.scenario.scene, job.scenario.settings};
+  } catch (const std::invalid_argument& error) {
+    throw io::InputError(options.scenario, error.what());
+  }
+}
+
+}  // namespace
+
+Merger::Merger(Job& job, const ScenarioOptions& options, std::size_t devices, io::RunIdentity identity)
+    : job_(job),
+      options_(options),
+      devices_(devices),
+      identity_(std::move(identity)),
+      simulator_(simulator_of(job, options)),
+      results_(job.folder, "summary.json", "map_summary.json") {
+  require_effect(options, simulator_);
+  prepare_results(job, simulator_, results_);
+  print_warnings(job.scenario.warnings, options);
+}
+
+bool Merger::is_complete() {
+  return holds_result(results_, identity_);
+}
+
+void Merger::merge(std::span<const std::filesystem::path> folders) {
+  const std::vector<io::ShardFolder> shards = io::read_shards(folders);
+  require_folder_of_its_own(job_, shards);
+  const auto parts = static_cast<std::uint32_t>(shards.size());
+  io::ShardReader reader(shards, identities_of(identity_, parts), options_.scenario, job_.frames.count());
+  RunResults results(job_, options_, simulator_, results_, devices_);
+  take_all(reader, job_, options_, simulator_, results);
+  io::RunSummary& summary = results.finish(job_.frames.count());
+  results_.commit(summary, identity_.text());
+  print_warnings(summary.late_warnings(), options_);
+  if (!options_.quiet) std::cout << summary.table(job_.folder) << std::flush;
+}
+
+void merge_shards(const MergeOptions& options) {
+  const std::vector<std::filesystem::path> folders(options.shards.begin(), options.shards.end());
+  const std::vector<io::ShardFolder> shards = io::read_shards(folders);
+  const ScenarioOptions whole = whole_run(options, shards.front().facts);
+  Job job = prepare_job(whole);
+  require_folder_of_its_own(job, shards);
+  const std::size_t devices = job.scenario.scene.receivers().size();
+  expand_grids(job.scenario, whole);
+  Merger(job, whole, devices, run_identity(job, whole)).merge(folders);
+}
+
+}  // namespace dcem::program
