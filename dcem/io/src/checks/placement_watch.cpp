@@ -99,13 +99,15 @@ void PlacementWatch::look_at_transmitter(const Device& device) {
   if (!state.present) return;
   const std::string subject = "transmitter " + in_quotes(device.id);
   look_at_place(state.position_m, subject);
+  const std::vector<Shell> shells = closed_shells(state);
+  if (shells.empty()) return;  // before all others are asked: they may be ten thousand
   const auto number = static_cast<std::size_t>(&device - simulator_.scene().transmitters().data());
   std::set<Shell> elsewhere;  // rooms of the other transmitters: who is there has one of those
   for (std::size_t other = 0; other < rooms_.size(); ++other) {
     if (other != number) elsewhere.insert(rooms_[other].begin(), rooms_[other].end());
   }
   for (const Shell& own : rooms_[number]) elsewhere.erase(own);
-  for (const Shell& shell : closed_shells(state)) {
+  for (const Shell& shell : shells) {
     const double share = share_of_receivers_in(shell, elsewhere);
     if (share >= 0.5) continue;
     note(Problem::shut_in_alone, subject,
@@ -144,8 +146,8 @@ void PlacementWatch::look_at_object(BodyId body) {
   if (is_far(middle_m, subject) || glm::length(state.placement.velocity.linear_mps) < moving_mps) return;
   for (const ShellAtPoint& at : simulator_.shells_at(middle_m)) {
     const Shell shell{at.body, at.number};
-    const bool is_room = std::ranges::any_of(rooms_, [&](const auto& own) { return own.contains(shell); });
-    if (at.body == body || at.is_on_it || is_room || lets_through(shell) || moves_along(body, at.body)) continue;
+    if (at.body == body || at.is_on_it || lets_through(shell) || moves_along(body, at.body)) continue;
+    if (std::ranges::any_of(rooms_, [&](const auto& own) { return own.contains(shell); })) continue;
     note(Problem::drives_through, subject, "is with its middle inside " + name_of(shell) + "; is its way meant?");
   }
 }
