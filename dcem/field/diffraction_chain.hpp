@@ -188,16 +188,10 @@ class DiffractionChain {
   }
 
   ComplexMatrix2 cascade() const {
-    std::vector<double> alignments;
-    for (const Edge& edge : edges_) alignments.push_back(edge.alignment);
     std::vector<CascadeEdge<ComplexMatrix2>> edges;
     for (std::size_t index = 0; index < edges_.size(); ++index) {
       const Edge& edge = edges_[index];
-      const double distance_m = cascade_distance_parameter_m(CascadeDistances::symmetric, legs_m_, alignments, index,
-                                                             edge.angles.edge_angle_rad);
-      edges.push_back({diffraction_matrix_with_slopes(edge.angles, wave_number_rad_per_m_, equal_distances(distance_m),
-                                                      edge.matrices),
-                       edge.angles.edge_angle_rad, legs_m_[index + 1], edge.arrival, edge.alignment});
+      edges.push_back({edge.angles, edge.matrices.in_order(), legs_m_[index + 1], edge.arrival, edge.alignment});
     }
     return cascade_transfer<ComplexMatrix2>(wave_number_rad_per_m_, legs_m_[0], edges);
   }

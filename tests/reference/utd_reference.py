@@ -2,14 +2,15 @@
 """Reference values of edge diffraction and of layered walls, with mpmath (pip install mpmath), by routes other than the
 engine's. One table per call:
 
-    for table in transition half_plane wedge_plane wedge_line wedge_point double_screen multilayer; do
+    for table in transition half_plane wedge_plane wedge_line wedge_point double_transition double_screen close_screens \
+                 three_screens multilayer; do
       python3 utd_reference.py $table > utd_$table.inc
     done
 
 exp(+j w t) throughout. Everything starts from the exact values of the doubles that are printed.
 
 transition     F(x) = sqrt(pi) z exp(z^2) erfc(z), z = exp(j pi/4) sqrt(x), by mpmath's erfc, above x = 300 by its
-               asymptotic series; F_s = 2jx (1 - F), F_c = jx (F - F_s). 40 digits.
+               asymptotic series. 40 digits.
 half_plane     Sommerfeld 1896: u = e^{jkr cos b} erfc(-e^{j pi/4} sqrt(2kr) cos(b/2))/2 for b = phi - phi', and the
                same for phi + phi' with the sign of the boundary condition.
 wedge_*        The perfectly conducting wedge: geometrical optics (images) plus the exact diffraction integral
@@ -18,8 +19,13 @@ wedge_*        The perfectly conducting wedge: geometrical optics (images) plus 
                (Bowman, Senior & Uslenghi; Svensson et al., JASA 106, 1999), H0(kD) for a line, and exp(-jk rho cosh x)
                for a plane wave; on the path of steepest descent. The plane wave is compared here with the series of
                eigenfunctions, and the script stops where they differ.
+double_transition  The double integral that defines T, inner one by erfc, outer one along a rotated path. 30 digits.
 double_screen  Two absorbing screens, Kirchhoff's double integral in Fresnel's approximation (Vogler 1982), inner integral
                by erfc, outer one along a rotated path.
+close_screens  The same from a wavelength apart to a kilometre. Heights over the line from end to end: the one nearer to
+               it u radii of the first Fresnel zone, the other higher by d*sqrt(wavelength*distance apart), where that
+               is less than a slope of 0.2 between them.
+three_screens  Three: over the middle screen outside, both others by erfc.
 multilayer     The chain (ABCD) matrix of three lines in a row, in 50 digits.
 """
 import sys
@@ -47,37 +53,28 @@ def row(numbers, values):
 # --- transition ------------------------------------------------------------------------------------------------------
 def transition(x):
     if x == 0:
-        return mp.mpc(0), mp.mpc(0), mp.mpc(0)
-    y = 2 * J * x
+        return mp.mpc(0)
     if x < 300:
-        with mp.workdps(200):  # exp(z^2) erfc(z) cancels nothing, but 1 - F does
+        with mp.workdps(200):
             z = mp.exp(J * mp.pi / 4) * mp.sqrt(x)
-            f = mp.sqrt(mp.pi) * z * mp.exp(J * x) * mp.erfc(z)
-            slope = 2 * J * x * (1 - f)
-            return f, slope, J * x * (f - slope)
+            return mp.sqrt(mp.pi) * z * mp.exp(J * x) * mp.erfc(z)
     # 1 - 1/y + 3/y^2 - 15/y^3 + ...; the smallest term is exp(-x).
+    y = 2 * J * x
     terms = [mp.mpc(1)]
     while abs(terms[-1]) > mp.mpf(10) ** -60 and len(terms) < 200:
         terms.append(-terms[-1] * (2 * len(terms) - 1) / y)
-    f = mp.fsum(terms)
-    slope = -y * mp.fsum(terms[1:] + [-terms[-1] * (2 * len(terms) - 1) / y])
-    extended = terms[1:]
-    for _ in range(2):
-        extended.append(-extended[-1] * (2 * len(extended) + 1) / y)
-    # F - F_s = sum of (term_m + y term_{m+1}); the leading ones cancel exactly.
-    difference = mp.fsum(terms[m] + y * extended[m] for m in range(1, len(terms)))
-    return f, slope, y / 2 * difference
+    return mp.fsum(terms)
 
 
 def table_transition():
-    print("// Made by utd_reference.py transition; do not edit. x, F, F_s, F_c")
+    print("// Made by utd_reference.py transition; do not edit. x, F")
     points = [0.0, 5e-324, 1e-310, 2.2250738585072014e-308]
     points += [10.0 ** e for e in range(-300, -20, 20)]
     points += [m * 10.0 ** e for e in range(-16, 4) for m in (1.0, 1.3, 2.1, 3.7, 4.0, 4.000001, 5.5, 8.2)]
     points += [10.0 ** e for e in list(range(4, 20)) + list(range(20, 320, 20))]
     points += [9.99e16, 1.01e17, 1.7e308]
     for x in sorted(points):
-        row([x], transition(mp.mpf(x)))
+        row([x], [transition(mp.mpf(x))])
 
 
 # --- half plane ------------------------------------------------------------------------------------------------------
@@ -231,32 +228,116 @@ def table_wedge_point():
                         [incident + difference - reflected - total, incident + difference + reflected + total])
 
 
-# --- two screens -----------------------------------------------------------------------------------------------------
+# --- two edges -------------------------------------------------------------------------------------------------------
+def tail(z):  # exp(j z^2) int_z^inf exp(-j t^2) dt
+    q = mp.exp(J * mp.pi / 4)
+    return mp.exp(J * z * z) * mp.sqrt(mp.pi) / 2 / q * mp.erfc(q * z)
+
+
+def double_transition(alpha, beta, rho, s):
+    turn = mp.exp(-J * mp.pi / 4)
+
+    def integrand(r):
+        return mp.exp(-2 * J * s * beta * turn * r - r * r) * tail(s * alpha - rho * turn * r)
+
+    points = [0] + sorted([mp.mpf(x) / (1 + s * beta) for x in (0.3, 1, 3, 8, 20)] +
+                          [x / s for x in (0.5, 1, 2, 3, 4, 6, 9)])
+    return -4 * s * s * alpha * beta * turn * mp.quad(integrand, points)
+
+
+def table_double_transition():
+    print("// Made by utd_reference.py double_transition; do not edit. alpha, beta, rho, s; T")
+    for s in (1e-4, 0.01, 0.2, 0.7, 0.999):
+        for alpha, beta in ((1e-3, 2e-3), (0.03, 1.0), (0.5, 0.5000001), (1.7, 0.9), (2.1, 2.2), (4.0, 0.2), (3.1, 5.0),
+                            (9.0, 11.0), (100.0, 0.7), (70.0, 70.1), (1500.0, 0.01), (800.0, 900.0)):
+            for sign in (-1, 1):
+                s_exact, a, b = mp.mpf(s), mp.mpf(alpha), mp.mpf(beta)
+                rho = sign * mp.sqrt(1 - s_exact * s_exact)
+                row([alpha, beta, rho, s], [double_transition(a, b, rho, s_exact)])
+
+
+# --- screens ---------------------------------------------------------------------------------------------------------
+def over_screen(k, height, before, after, neighbours):
+    """The field over a screen between two ways; neighbours: how much of it the others pass, at each height."""
+    curvature = 1 / before + 1 / after
+    scale = mp.sqrt(2 / (k * curvature))
+    points = [0] + [scale * 10 * mp.mpf(2) ** -n for n in range(16, -1, -1)]
+
+    def upwards(start, sign):
+        def integrand(w):
+            x = start + mp.exp(-J * mp.pi / 4) * w
+            return mp.exp(-J * k / 2 * curvature * x * x) * neighbours(sign * x)
+        whole = mp.sqrt(J * k * curvature / (2 * mp.pi)) * mp.exp(-J * mp.pi / 4)
+        return whole * mp.quad(integrand, points, method="gauss-legendre")
+
+    if height >= 0:
+        return upwards(height, 1)
+    return neighbours(None) - upwards(-height, -1)  # all of it, but for what would pass below
+
+
+def passes(k, height, way, other_way):
+    """The share of the field from one end to a height on the next screen that passes over this one."""
+    q = 1 / way + 1 / other_way
+    return lambda x: mp.erfc(mp.sqrt(J * k * q / 2) * (height - x / (other_way * q))) / 2
+
+
+def single_screen(k, height, before, after):
+    return mp.erfc(mp.sqrt(J * k / 2 * (1 / before + 1 / after)) * height) / 2
+
+
 def double_screen(k, a, b, c, height_1, height_2):
-    q = 1 / b + 1 / c
+    second = passes(k, height_2, c, b)
+    return over_screen(k, height_1, a, b + c,
+                       lambda x: single_screen(k, height_2, a + b, c) if x is None else second(x))
 
-    def integrand(w):
-        x = height_1 + mp.exp(-J * mp.pi / 4) * w
-        inner = mp.sqrt(mp.pi / (2 * J * k * q)) * mp.erfc(mp.sqrt(J * k * q / 2) * (height_2 - x / (b * q)))
-        return mp.exp(-J * k / 2 * (1 / a + 1 / b - 1 / (b * b * q)) * x * x) * inner
 
-    scale = mp.sqrt(2 / (k * (1 / a + 1 / b - 1 / (b * b * q))))
-    points = [scale * p for p in (0, 0.5, 1, 2, 4, 8)]
-    if height_1 < 0:
-        points = [scale * p for p in (0, 0.3, 0.6, 1, 1.5, 2, 3, 4, 6, 8, 10, 14, 20)]
-    integral = mp.exp(-J * mp.pi / 4) * mp.quad(integrand, points)
-    whole = 2 * mp.pi / (J * k) / mp.sqrt((1 / a + 1 / b) * (1 / b + 1 / c) - 1 / (b * b))
-    return integral / whole
+def three_screens(k, a, b, c, d, height_1, height_2, height_3):
+    first, third = passes(k, height_1, a, b), passes(k, height_3, d, c)
+    return over_screen(k, height_2, a + b, c + d,
+                       lambda x: double_screen(k, a, b + c, d, height_1, height_3) if x is None else first(x) * third(x))
 
 
 def table_double_screen():
-    mp.mp.dps = 20
+    mp.mp.dps = 30
     print("// Made by utd_reference.py double_screen; do not edit. k, legs a, b, c, heights 1, 2; field over free space")
     assert abs(double_screen(mp.mpf(600), *[mp.mpf(100)] * 3, mp.mpf(0), mp.mpf(0)) - mp.mpf(1) / 3) < 1e-15
     for a, b, c in ((100.0, 100.0, 100.0), (300.0, 50.0, 120.0), (80.0, 400.0, 60.0)):
         for first, second in ((0.0, 0.0), (1.0, 1.0), (0.5, 2.0), (2.0, 0.3), (3.0, 3.0), (0.2, 0.0)):
             values = [mp.mpf(v) for v in (600.0, a, b, c, first, second)]
             row([600.0, a, b, c, first, second], [double_screen(*values)])
+
+
+def table_close_screens():
+    mp.mp.dps = 45
+    print("// Made by utd_reference.py close_screens; do not edit. k, legs a, b, c, heights 1, 2; field over free space")
+    for wavelength, a, c in ((0.01, 200.0, 200.0), (0.1, 1000.0, 60.0)):
+        k = float(2 * mp.pi / wavelength)
+        for b in (b for b in (0.01, 0.1, 1.0, 10.0, 100.0, 1000.0) if b >= wavelength):
+            before, after = a + b / 2, c + b / 2
+            radius = (wavelength * before * after / (before + after)) ** 0.5
+            for u in (-5.0, -2.0, -0.6, 0.0, 0.3, 1.0, 2.5, 5.0):
+                for d in (-5.0, -1.5, -0.2, 0.0, 0.2, 1.5, 5.0):
+                    step = d * (wavelength * b) ** 0.5
+                    if abs(step) > 0.2 * b:
+                        continue
+                    first, second = u * radius, u * radius + step
+                    if abs(second) < abs(first) or (d < 0 and u == 0):
+                        first, second = u * radius - step, u * radius
+                    if abs(first) > 0.3 * a or abs(second) > 0.3 * c:
+                        continue
+                    values = [mp.mpf(v) for v in (k, a, b, c, first, second)]
+                    row([k, a, b, c, first, second], [double_screen(*values)])
+
+
+def table_three_screens():
+    mp.mp.dps = 45
+    print("// Made by utd_reference.py three_screens; do not edit. k, legs a to d, heights 1 to 3; field over free space")
+    assert abs(three_screens(mp.mpf(600), *[mp.mpf(100)] * 4, *[mp.mpf(0)] * 3) - mp.mpf(1) / 4) < 1e-15
+    for legs in ((100.0, 100.0, 100.0, 100.0), (200.0, 2.0, 2.0, 200.0), (200.0, 2.0, 100.0, 50.0), (20.0, 300.0, 40.0, 90.0)):
+        for heights in ((0.0, 0.0, 0.0), (0.3, 0.3, 0.3), (1.0, 1.0, 1.0), (0.5, 0.9, 0.6), (0.5, 0.1, 0.4), (-0.4, 0.2, 0.1),
+                        (-0.5, -0.6, -0.5), (2.0, 2.1, 2.0)):
+            values = [mp.mpf(v) for v in (600.0,) + legs + heights]
+            row((600.0,) + legs + heights, [three_screens(*values)])
 
 
 # --- layers ----------------------------------------------------------------------------------------------------------

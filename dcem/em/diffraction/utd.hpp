@@ -1,6 +1,6 @@
 #pragma once
 /// The four terms of the diffraction coefficient of a wedge (Kouyoumjian & Pathak, Proc. IEEE 62, 1974, eq. 25;
-/// McNamara, Pistorius & Malherbe 1990, chapter 6), their derivatives, distance parameters and spreading factors.
+/// McNamara, Pistorius & Malherbe 1990, chapter 6), distance parameters and spreading factors.
 ///
 /// A wedge has the exterior angle nπ, 1 < n ≤ 2. Azimuths about the edge run through the exterior from face 0 (azimuth
 /// 0) to face n (azimuth nπ): φ' is where the source stands, φ where the observer stands, as seen from the edge. With
@@ -16,6 +16,7 @@
 /// cotangent has its pole. There each term jumps: it has the sign of δ, which is positive on the side where the
 /// geometrical field exists. Exactly on a boundary a term has the value of the side without that field, as is right
 /// where an edge blocks what touches it.
+#include <array>
 #include <cmath>
 
 #include "dcem/core/constants.hpp"
@@ -58,7 +59,7 @@ inline double diffraction_spreading(double edge_plane_radius_m, double diffracte
   return 1.0 / std::sqrt(diffracted_m * (1.0 + diffracted_m / edge_plane_radius_m));
 }
 
-/// The terms D1…D4 in m^(1/2), or one of their derivatives.
+/// The terms D1…D4 in m^(1/2).
 struct UtdTerms {
   Complex incident_plus;   ///< D1
   Complex incident_minus;  ///< D2
@@ -67,51 +68,46 @@ struct UtdTerms {
 
   Complex soft() const { return incident_plus + incident_minus - reflected_n - reflected_0; }
   Complex hard() const { return incident_plus + incident_minus + reflected_n + reflected_0; }
+  std::array<Complex, 4> in_order() const { return {incident_plus, incident_minus, reflected_n, reflected_0}; }
 };
 
-/// A coefficient with the derivatives that slope diffraction needs.
-template <typename Coefficient>
-struct WithSlopes {
-  Coefficient value;
-  Coefficient by_diffracted;  ///< ∂/∂φ, per rad
-  Coefficient by_incident;    ///< ∂/∂φ', per rad
-  Coefficient by_both;        ///< ∂²/∂φ∂φ', per rad²
+/// Where the rays of one diffraction stand to the boundary that a term carries.
+struct BoundaryDistance {
+  double root;                  ///< √(k·L·a) ≥ 0, the root of the argument of F; 0 on the boundary
+  double away_with_diffracted;  ///< +1 where a growing φ leads away from the boundary, −1 where it leads there
+  double away_with_incident;    ///< the same for φ'
 };
 
 namespace detail {
 
-/// cot δ·F and what stands for its first and second derivative with respect to δ: −csc²δ·F_s and 2·cot δ·csc²δ·F_c.
-struct CotangentTerm {
-  Complex value, first, second;
+/// One of the four: the sign with which φ and φ' stand in 2nδ, and δ.
+struct CotangentArgument {
+  double delta, by_diffracted, by_incident;
 };
 
-/// `argument_rad` is (π ± b)/2n, `wave_distance` is k·L.
-inline CotangentTerm cotangent_term(double argument_rad, double wave_distance, double n) {
-  const double delta = argument_rad - pi * std::round(argument_rad / pi);
-  const double sine_ratio = delta == 0.0 ? n : std::sin(n * delta) / std::sin(delta);
-  // √a·√(kL)/|sin δ|: the transition functions are taken without the powers of sin δ that cancel the poles.
-  const double scale = std::sqrt(2.0 * wave_distance) * sine_ratio;
-  const double root_of_x = scale * std::sin(delta);
-  const ReducedTransition reduced = reduced_transition(root_of_x * root_of_x);
-  const double signed_cosine = delta > 0.0 ? std::cos(delta) : -std::cos(delta);
-  return {signed_cosine * scale * reduced.value, -scale * scale * reduced.slope,
-          2.0 * signed_cosine * scale * scale * scale * reduced.curvature};
+/// `argument_rad` is (π ± b)/2n.
+inline CotangentArgument cotangent_argument(double argument_rad, double by_diffracted, double by_incident) {
+  return {argument_rad - pi * std::round(argument_rad / pi), by_diffracted, by_incident};
 }
 
-struct CotangentTerms {
-  CotangentTerm incident_plus, incident_minus, reflected_n, reflected_0;
-};
-
-inline CotangentTerms cotangent_terms(const WedgeAngles& angles, double wave_number_rad_per_m,
-                                      const DistanceParameters& distances) {
-  const double n = angles.exterior_angle_over_pi;
+/// In the order D1…D4.
+inline std::array<CotangentArgument, 4> cotangent_arguments(const WedgeAngles& angles) {
+  const double twice_n = 2.0 * angles.exterior_angle_over_pi;
   const double difference = angles.diffracted_azimuth_rad - angles.incident_azimuth_rad;
   const double sum = angles.diffracted_azimuth_rad + angles.incident_azimuth_rad;
-  const auto term = [n, wave_number_rad_per_m](double twice_n_argument, double distance_m) {
-    return cotangent_term(twice_n_argument / (2.0 * n), wave_number_rad_per_m * distance_m, n);
-  };
-  return {term(pi + difference, distances.incident_m), term(pi - difference, distances.incident_m),
-          term(pi + sum, distances.reflected_n_m), term(pi - sum, distances.reflected_0_m)};
+  return {cotangent_argument((pi + difference) / twice_n, 1.0, -1.0),
+          cotangent_argument((pi - difference) / twice_n, -1.0, 1.0),
+          cotangent_argument((pi + sum) / twice_n, 1.0, 1.0), cotangent_argument((pi - sum) / twice_n, -1.0, -1.0)};
+}
+
+/// cot δ·F, `wave_distance` is k·L.
+inline Complex cotangent_term(double delta, double wave_distance, double n) {
+  const double sine_ratio = delta == 0.0 ? n : std::sin(n * delta) / std::sin(delta);
+  // √a·√(kL)/|sin δ|: the transition function is taken without the power of sin δ that cancels the pole.
+  const double scale = std::sqrt(2.0 * wave_distance) * sine_ratio;
+  const double root_of_x = scale * std::sin(delta);
+  const double signed_cosine = delta > 0.0 ? std::cos(delta) : -std::cos(delta);
+  return signed_cosine * scale * reduced_transition_function(root_of_x * root_of_x);
 }
 
 /// P at the head of this file.
@@ -131,36 +127,29 @@ inline Complex utd_factor(const WedgeAngles& angles, double wave_number_rad_per_
 inline UtdTerms utd_terms(const WedgeAngles& angles, double wave_number_rad_per_m,
                           const DistanceParameters& distances) {
   const Complex factor = detail::utd_factor(angles, wave_number_rad_per_m);
-  const auto terms = detail::cotangent_terms(angles, wave_number_rad_per_m, distances);
-  return {factor * terms.incident_plus.value, factor * terms.incident_minus.value, factor * terms.reflected_n.value,
-          factor * terms.reflected_0.value};
+  const auto arguments = detail::cotangent_arguments(angles);
+  const auto term = [&](std::size_t index, double distance_m) {
+    return factor * detail::cotangent_term(arguments[index].delta, wave_number_rad_per_m * distance_m,
+                                           angles.exterior_angle_over_pi);
+  };
+  return {term(0, distances.incident_m), term(1, distances.incident_m), term(2, distances.reflected_n_m),
+          term(3, distances.reflected_0_m)};
 }
 
-/// D1…D4 with their slopes. As usual in slope diffraction the derivatives are those of the cotangents, with F_s and F_c
-/// of em/diffraction/transition_function.hpp in place of F: outside the transition zones they are the derivatives, at a
-/// boundary they keep its leading term. What is left out against the derivative of D itself is bounded by (2 +
-/// n²)/3·|F_s − F| beside csc²δ.
-inline WithSlopes<UtdTerms> utd_terms_with_slopes(const WedgeAngles& angles, double wave_number_rad_per_m,
-                                                  const DistanceParameters& distances) {
-  const Complex factor = detail::utd_factor(angles, wave_number_rad_per_m);
-  const auto [d1, d2, d3, d4] = detail::cotangent_terms(angles, wave_number_rad_per_m, distances);
-  // dδ/dφ = +, −, +, − and dδ/dφ' = −, +, +, − times 1/2n.
-  const Complex once = factor / (2.0 * angles.exterior_angle_over_pi);
-  const Complex twice = once / (2.0 * angles.exterior_angle_over_pi);
-  return {{factor * d1.value, factor * d2.value, factor * d3.value, factor * d4.value},
-          {once * d1.first, -once * d2.first, once * d3.first, -once * d4.first},
-          {-once * d1.first, once * d2.first, once * d3.first, -once * d4.first},
-          {-twice * d1.second, -twice * d2.second, twice * d3.second, twice * d4.second}};
-}
-
-/// The coefficient of a perfectly conducting wedge for a scalar field that vanishes on it (soft: E along the edge).
-inline WithSlopes<Complex> soft_coefficient(const WithSlopes<UtdTerms>& terms) {
-  return {terms.value.soft(), terms.by_diffracted.soft(), terms.by_incident.soft(), terms.by_both.soft()};
-}
-
-/// The same for a field whose normal derivative vanishes on it (hard: H along the edge).
-inline WithSlopes<Complex> hard_coefficient(const WithSlopes<UtdTerms>& terms) {
-  return {terms.value.hard(), terms.by_diffracted.hard(), terms.by_incident.hard(), terms.by_both.hard()};
+/// How far the boundaries of D1…D4 are, in this order, with one L for all. Exactly on a boundary the observer stands on
+/// the side that the terms take.
+inline std::array<BoundaryDistance, 4> boundary_distances(const WedgeAngles& angles, double wave_number_rad_per_m,
+                                                          double distance_parameter_m) {
+  std::array<BoundaryDistance, 4> distances;
+  const auto arguments = detail::cotangent_arguments(angles);
+  for (std::size_t index = 0; index < 4; ++index) {
+    const auto& [delta, by_diffracted, by_incident] = arguments[index];
+    const double side = delta > 0.0 ? 1.0 : -1.0;
+    const double root = std::sqrt(2.0 * wave_number_rad_per_m * distance_parameter_m) *
+                        std::abs(std::sin(angles.exterior_angle_over_pi * delta));
+    distances[index] = {root, side * by_diffracted, side * by_incident};
+  }
+  return distances;
 }
 
 }  // namespace dcem

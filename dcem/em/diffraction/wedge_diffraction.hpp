@@ -20,6 +20,7 @@
 /// Where φ = φ' at oblique incidence the two reciprocal variants change which of the two rays sets the angle. The mixed
 /// entries of G_f jump there (reciprocity admits no other value than 0 on that line); they are small away from RSBs.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -128,6 +129,9 @@ ComplexMatrix2 wedge_transmission_matrix(const WedgeAngles& angles, const Face0&
 struct WedgeMatrices {
   ComplexMatrix2 incident_plus, incident_minus, reflected_n, reflected_0;
 
+  /// As D1…D4.
+  std::array<ComplexMatrix2, 4> in_order() const { return {incident_plus, incident_minus, reflected_n, reflected_0}; }
+
   ComplexMatrix2 combine(const UtdTerms& terms) const {
     return terms.incident_plus * incident_plus + terms.incident_minus * incident_minus +
            terms.reflected_n * reflected_n + terms.reflected_0 * reflected_0;
@@ -149,7 +153,7 @@ WedgeMatrices wedge_matrices(const WedgeAngles& angles, const Face0& face_0, con
   const bool forward = angles.diffracted_azimuth_rad >= angles.incident_azimuth_rad;
   const ComplexMatrix2 twice = forward ? g_n * g_0 : g_0 * g_n;
   const ComplexMatrix2 regular = Complex(-0.5) * (blocked * twice + twice * blocked);
-  if (detail::is_level(angles)) {  // D1 and D2 are the same there; their slopes are opposite
+  if (detail::is_level(angles)) {  // D1 and D2 are the same there
     const ComplexMatrix2 mean = Complex(0.5) * (regular + incident);
     return {mean, mean, g_n, g_0};
   }
@@ -160,16 +164,6 @@ WedgeMatrices wedge_matrices(const WedgeAngles& angles, const Face0& face_0, con
 inline ComplexMatrix2 diffraction_matrix(const WedgeAngles& angles, double wave_number_rad_per_m,
                                          const DistanceParameters& distances, const WedgeMatrices& matrices) {
   return matrices.combine(utd_terms(angles, wave_number_rad_per_m, distances));
-}
-
-/// M with its slopes, for a cascade. The derivatives act on D1…D4; the face matrices are held.
-inline WithSlopes<ComplexMatrix2> diffraction_matrix_with_slopes(const WedgeAngles& angles,
-                                                                 double wave_number_rad_per_m,
-                                                                 const DistanceParameters& distances,
-                                                                 const WedgeMatrices& matrices) {
-  const auto terms = utd_terms_with_slopes(angles, wave_number_rad_per_m, distances);
-  return {matrices.combine(terms.value), matrices.combine(terms.by_diffracted), matrices.combine(terms.by_incident),
-          matrices.combine(terms.by_both)};
 }
 
 /// A face of perfect conductor, as FaceCoefficients.

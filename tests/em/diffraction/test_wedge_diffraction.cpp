@@ -314,44 +314,30 @@ TEST_CASE("next to a pole: the limit as printed, n·(√(2πkL)·sgn ε − 2kL�
     }
 }
 
-TEST_CASE("slopes: outside the transition zones they are the derivatives, by differences") {
-  const double k = 1e6;
-  const double step = 1e-4;
-  for (const double n : {1.3, 1.5, 2.0}) {
-    const auto value = [&](double diffracted, double incident) {
-      return utd_terms({n, incident, diffracted, 1.2}, k, equal_distances(3.0));
-    };
-    const auto slopes = utd_terms_with_slopes({n, 0.7, 3.0, 1.2}, k, equal_distances(3.0));
-    const auto check = [&](auto part) {
-      const Complex by_phi = (part(value(3.0 + step, 0.7)) - part(value(3.0 - step, 0.7))) / (2.0 * step);
-      const Complex by_incident = (part(value(3.0, 0.7 + step)) - part(value(3.0, 0.7 - step))) / (2.0 * step);
-      const Complex by_both = (part(value(3.0 + step, 0.7 + step)) - part(value(3.0 + step, 0.7 - step)) -
-                               part(value(3.0 - step, 0.7 + step)) + part(value(3.0 - step, 0.7 - step))) /
-                              (4.0 * step * step);
-      // The term of order 1/kL that the slope forms leave out, and the step squared.
-      CHECK(std::abs(part(slopes.value) - part(value(3.0, 0.7))) == 0.0);
-      CHECK(std::abs(part(slopes.by_diffracted) / by_phi - 1.0) <= 2e-4);
-      CHECK(std::abs(part(slopes.by_incident) / by_incident - 1.0) <= 2e-4);
-      CHECK(std::abs(part(slopes.by_both) / by_both - 1.0) <= 2e-3);
-    };
-    check([](const UtdTerms& terms) { return terms.incident_plus; });
-    check([](const UtdTerms& terms) { return terms.incident_minus; });
-    check([](const UtdTerms& terms) { return terms.reflected_n; });
-    check([](const UtdTerms& terms) { return terms.reflected_0; });
-  }
-}
-
-TEST_CASE("slopes: at a boundary they are continuous and equal to the leading term of the derivative") {
-  // F_s ≈ 2jx and x ≈ 2kL(nδ)², so csc²δ·F_s → 4jkL·n² and ∂D2/∂φ = P/2n times that.
+TEST_CASE("boundary distances: their squares are what F is of, and their signs say where a turn leads") {
   const double k = 40.0;
   const double distance = 5.0;
-  const double n = 1.5;
-  const Complex p = -unit_phasor(-0.25 * pi) / (2.0 * n * std::sqrt(2.0 * pi * k));
-  const Complex expected = p * Complex(0.0, 2.0 * k * distance * n);
-  for (const double offset : {0.0, 1e-13, -1e-13, 1e-9, -1e-9}) {
-    const auto slopes = utd_terms_with_slopes({n, 0.5, 0.5 + pi + offset, 0.5 * pi}, k, equal_distances(distance));
-    CHECK(std::abs(slopes.by_diffracted.incident_minus / expected - 1.0) <= 1e-6);
-    CHECK(std::abs(slopes.by_incident.incident_minus / expected + 1.0) <= 1e-6);
+  for (const double n : {1.25, 1.5, 2.0}) {
+    const double incident = 0.5;
+    const auto at = [&](double diffracted) {
+      return boundary_distances({n, incident, diffracted, 0.5 * pi}, k, distance);
+    };
+    // a⁻(φ − φ') = 2cos²((φ − φ')/2) and a⁻(φ + φ') = 2cos²((φ + φ')/2) with N = 0.
+    const auto near = at(2.0);
+    CHECK(near[1].root ==
+          doctest::Approx(std::sqrt(2.0 * k * distance) * std::cos(0.5 * (2.0 - incident))).epsilon(1e-14));
+    CHECK(near[3].root ==
+          doctest::Approx(std::sqrt(2.0 * k * distance) * std::cos(0.5 * (2.0 + incident))).epsilon(1e-14));
+    // Before the shadow of the direct field a growing φ leads to it, behind it away; φ' the other way round.
+    CHECK(at(incident + pi - 0.1)[1].away_with_diffracted == -1.0);
+    CHECK(at(incident + pi - 0.1)[1].away_with_incident == 1.0);
+    CHECK(at(incident + pi + 0.1)[1].away_with_diffracted == 1.0);
+    CHECK(at(incident + pi + 0.1)[1].away_with_incident == -1.0);
+    // The end of the reflection at face 0: both azimuths alike.
+    CHECK(at(pi - incident - 0.1)[3].away_with_diffracted == -1.0);
+    CHECK(at(pi - incident - 0.1)[3].away_with_incident == -1.0);
+    CHECK(at(pi - incident + 0.1)[3].away_with_diffracted == 1.0);
+    CHECK(at(pi - incident + 0.1)[3].away_with_incident == 1.0);
   }
 }
 
