@@ -13,6 +13,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "dcem/core/work_times.hpp"
+
 namespace dcem {
 
 /// Number of threads to use: `requested`, or all hardware threads when it is 0.
@@ -34,9 +36,13 @@ class ThreadPool {
 
   /// Calls `body(index, worker)` for index = 0 … count−1; `worker` in 0 … size()−1 names the calling thread, for
   /// scratch space. The first exception of any iteration stops the loop and is thrown here. Loops of several threads
-  /// take turns; a loop within a loop runs on the thread that asks for it.
+  /// take turns; a loop within a loop runs on the thread that asks for it. `work_times` of the calling thread has what
+  /// they took; a loop of one iteration, or within a loop, is like any other code.
   template <typename Body>
   void for_each(std::size_t count, Body&& body);
+  /// `body(index)` for each index, in blocks: for iterations so quick that a few are not worth waking anybody.
+  template <typename Body>
+  void for_each_quick(std::size_t count, Body&& body);
 
  private:
   struct Loop {
@@ -45,13 +51,16 @@ class ThreadPool {
     void (*call)(void* body, std::size_t index, unsigned worker);
     std::atomic<std::size_t> next{0};
     std::exception_ptr failure{};
-    std::mutex failure_mutex{};
+    std::mutex mutex{};  ///< of what stands below and above it
+    detail::LoopTimes all{}, of_caller{};
 
     void work(unsigned worker);
+    void note(const detail::LoopTimes& times, unsigned worker);
   };
 
   void start(unsigned workers);
   void run(Loop& loop, unsigned workers);
+  void share(Loop& loop, unsigned workers);
   void wait_for_loops(unsigned worker, std::uint64_t begun);
 
   static inline thread_local bool is_within_loop_ = false;
@@ -79,7 +88,7 @@ void parallel_for(std::size_t count, unsigned threads, Body&& body) {
 template <typename Body>
 void ThreadPool::for_each(std::size_t count, Body&& body) {
   const auto workers = static_cast<unsigned>(std::min<std::size_t>(size_, count));
-  if (workers <= 1 || is_within_loop_) {
+  if (count <= 1 || is_within_loop_) {
     for (std::size_t index = 0; index < count; ++index) body(index, 0U);
     return;
   }
@@ -89,19 +98,45 @@ void ThreadPool::for_each(std::size_t count, Body&& body) {
   run(loop, workers);
 }
 
+template <typename Body>
+void ThreadPool::for_each_quick(std::size_t count, Body&& body) {
+  constexpr std::size_t block = 64;
+  for_each((count + block - 1) / block, [&](std::size_t number, unsigned) {
+    for (std::size_t index = number * block; index < std::min(count, (number + 1) * block); ++index) body(index);
+  });
+}
+
 inline void ThreadPool::Loop::work(unsigned worker) {
   is_within_loop_ = true;
+  detail::LoopWatch watch;
   try {
-    for (std::size_t index = next++; index < count; index = next++) call(body, index, worker);
+    for (std::size_t index = next++; index < count; index = next++) {
+      call(body, index, worker);
+      watch.lap();
+    }
   } catch (...) {
-    const std::lock_guard lock(failure_mutex);
+    const std::lock_guard lock(mutex);
     if (!failure) failure = std::current_exception();
     next = count;
   }
+  note(watch.times(), worker);
   is_within_loop_ = false;
 }
 
+inline void ThreadPool::Loop::note(const detail::LoopTimes& times, unsigned worker) {
+  const std::lock_guard lock(mutex);
+  all.busy_s += times.busy_s;
+  all.longest_task_s = std::max(all.longest_task_s, times.longest_task_s);
+  if (worker == 0) of_caller = times;
+}
+
 inline void ThreadPool::run(Loop& loop, unsigned workers) {
+  workers == 1 ? loop.work(0) : share(loop, workers);
+  detail::asked_work.add(loop.of_caller, loop.all);
+  if (loop.failure) std::rethrow_exception(loop.failure);
+}
+
+inline void ThreadPool::share(Loop& loop, unsigned workers) {
   const std::lock_guard turn(turn_);
   start(workers);
   {
@@ -115,7 +150,6 @@ inline void ThreadPool::run(Loop& loop, unsigned workers) {
   loop.work(0);
   std::unique_lock lock(mutex_);
   done_.wait(lock, [&] { return still_working_ == 0; });
-  if (loop.failure) std::rethrow_exception(loop.failure);
 }
 
 inline void ThreadPool::start(unsigned workers) {

@@ -104,6 +104,17 @@ TEST_CASE("one pool does many loops of all lengths, each of them whole") {
   }
 }
 
+TEST_CASE("quick iterations, too, are done once each") {
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    ThreadPool pool(threads);
+    for (const std::size_t count : {0U, 1U, 63U, 64U, 65U, 128U, 1000U}) {
+      std::vector<std::atomic<int>> calls(count);
+      pool.for_each_quick(count, [&](std::size_t index) { ++calls[index]; });
+      for (const auto& times : calls) REQUIRE(times == 1);
+    }
+  }
+}
+
 TEST_CASE("a pool goes on after an exception") {
   ThreadPool pool(4);
   for (int repeat = 0; repeat < 20; ++repeat) {
