@@ -20,6 +20,8 @@
 
 namespace dcem {
 
+class ThreadPool;
+
 /// The standing scenery, an object, or a slot of a body pool, which objects of one shape take in turn.
 struct Body {
   std::string id;    ///< empty for the scenery and for slots
@@ -75,8 +77,9 @@ class Scene {
   /// Poses and velocities of all bodies at `time_s`, from their motions. Slots are empty.
   Frame frame_at(double time_s, std::size_t index = 0) const;
   /// Moves the bodies to where the frame says. Throws std::invalid_argument, having changed nothing, where a pose is
-  /// not finite or the name of an object in a slot is empty, has a slash, or is there twice.
-  ChangeSet apply(const Frame& frame);
+  /// not finite or the name of an object in a slot is empty, has a slash, or is there twice. Many bodies are moved by
+  /// the threads of `pool`, where there is one.
+  ChangeSet apply(const Frame& frame, ThreadPool* pool = nullptr);
   /// Where a device is in a frame, and how its antenna is turned.
   DeviceState device_state(const Device& device, const Frame& frame) const;
   /// The same in the current frame, whose instant is `time_s`.

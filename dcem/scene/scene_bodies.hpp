@@ -8,6 +8,7 @@
 #include "dcem/core/build_mode.hpp"
 #include "dcem/core/error.hpp"
 #include "dcem/core/naming.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/geometry/surfaces/build_surface_mesh.hpp"
 #include "dcem/scene/scene.hpp"
 
@@ -176,12 +177,18 @@ DCEM_INLINE Frame Scene::frame_at(double time_s, std::size_t index) const {
   return frame;
 }
 
-DCEM_INLINE ChangeSet Scene::apply(const Frame& frame) {
+DCEM_INLINE ChangeSet Scene::apply(const Frame& frame, ThreadPool* pool) {
   check_frame(frame);
   ChangeSet changes;
   for (std::size_t index = 1; index < bodies_.size(); ++index) {  // the scenery stands
     if (frame.bodies[index] != states_[index]) take_over(BodyId(index), frame.bodies[index], changes);
   }
+  const auto place = [&](std::size_t number) {
+    const BodyId id = changes.moved[number];
+    world_.place(id, body(id).mesh, states_[id.value]);
+  };
+  ThreadPool alone(1);
+  (pool != nullptr ? *pool : alone).for_each_quick(changes.moved.size(), place);
   for (const BodyId id : changes.replaced) {  // after all have left their slots: objects may change slots
     if (body_state(id).present) body_by_id_[body_state(id).occupant] = id;
   }
@@ -198,7 +205,6 @@ DCEM_INLINE void Scene::take_over(BodyId id, const BodyState& state, ChangeSet& 
   }
   if (!before.present && !state.present) return;
   if (before.present == state.present && before.placement.pose == state.placement.pose) return;
-  world_.place(id, body(id).mesh, state);
   changes.moved.push_back(id);
 }
 

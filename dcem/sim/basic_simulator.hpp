@@ -46,6 +46,7 @@ class BasicSimulator {
 
   const Scene& scene() const { return scene_; }
   const SimulationSettings& settings() const { return settings_; }
+  ThreadPool& pool() const { return *pool_; }
   const Index& index() const { return index_; }
   const Surface& surface() const { return surface_; }
   Discovery discovery() const { return plan_.discovery; }  ///< exact or sampled: what is really done
@@ -56,6 +57,9 @@ class BasicSimulator {
   FrameResult advance(const Frame& frame);
   /// The same for the instant `time_s`, by the motions of the scene.
   FrameResult advance_to(double time_s, std::size_t index = 0) { return advance(scene_.frame_at(time_s, index)); }
+
+  /// Takes the room of a frame that nobody needs any more: where links are many, the next frame begins with it.
+  void give_back(FrameResult&& spent) { room_ = detail::room_of(std::move(spent.links), *pool_); }
 
   /// Moves to a frame whose results are known already and took `spent`. What follows is as after `advance`; every
   /// counter included, too, where the cache is off. Throws std::logic_error where `cache()` is seed: what it remembers
@@ -230,6 +234,7 @@ class BasicSimulator {
   std::optional<FacetRims> rims_;                              ///< where lifetimes are asked for
   std::vector<char> transmitter_rests_, transmitter_is_same_;  ///< as in the frame before: its place; all of it
   Frame frame_;
+  std::vector<LinkResult> room_;      ///< of a frame that has been given back
   std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
 };
 

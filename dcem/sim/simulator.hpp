@@ -18,6 +18,7 @@
 
 namespace dcem {
 
+class ThreadPool;
 class WideIndex;
 
 /// Owns the scene and the tree over it.
@@ -36,10 +37,15 @@ class Simulator {
   CacheMode cache() const;         ///< what is really remembered
   const WideIndex& index() const;  ///< over the scene's triangles (dcem/accel/wide_index.hpp)
 
+  ThreadPool& pool() const;  ///< its threads, for what is done with a frame before the next one
+
   /// Moves the scene to a frame and solves all links, starting from what is remembered of the frame before.
   FrameResult advance(const Frame& frame);
   /// The same for the instant `time_s`, by the motions of the scene.
   FrameResult advance_to(double time_s, std::size_t index = 0);
+
+  /// Takes the room of a frame that nobody needs any more: where links are many, the next frame begins with it.
+  void give_back(FrameResult&& spent);
 
   /// Moves to a frame whose results are known already and took `spent`. What follows is as after `advance`; every
   /// counter included, too, where the cache is off. Throws std::logic_error where `cache()` is seed: what it remembers

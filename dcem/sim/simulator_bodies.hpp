@@ -42,12 +42,18 @@ DCEM_INLINE CacheMode Simulator::cache() const {
 DCEM_INLINE const WideIndex& Simulator::index() const {
   return body_->simulator.index();
 }
+DCEM_INLINE ThreadPool& Simulator::pool() const {
+  return body_->simulator.pool();
+}
 
 DCEM_INLINE FrameResult Simulator::advance(const Frame& frame) {
   return body_->simulator.advance(frame);
 }
 DCEM_INLINE FrameResult Simulator::advance_to(double time_s, std::size_t index) {
   return body_->simulator.advance_to(time_s, index);
+}
+DCEM_INLINE void Simulator::give_back(FrameResult&& spent) {
+  body_->simulator.give_back(std::move(spent));
 }
 DCEM_INLINE TreeUpdateReport Simulator::pass(const Frame& frame, const WorkCounters& spent) {
   return body_->simulator.pass(frame, spent);

@@ -10,6 +10,7 @@
 #include "dcem/paths/discover/cache_counters.hpp"
 #include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/scene/scene.hpp"
+#include "dcem/sim/detail/gather_links.hpp"
 #include "dcem/sim/frame_result.hpp"
 
 namespace dcem::detail {
@@ -21,17 +22,18 @@ struct Solved {
   CacheCounters cache;
 };
 
-/// All links by transmitter, then receiver. `of_transmitters`: what these took beside.
-inline Solved sum_of(std::vector<Solved>&& by_receiver, const WorkCounters& of_transmitters) {
+/// All links by transmitter, then receiver. `of_transmitters`: what these took beside. `room`: as in `gather_links`.
+inline Solved sum_of(std::vector<Solved>&& by_receiver, const WorkCounters& of_transmitters, ThreadPool& pool,
+                     std::vector<LinkResult>&& room = {}) {
   Solved sum;
   sum.work = of_transmitters;
+  std::vector<std::vector<LinkResult>> links;
   for (Solved& one : by_receiver) {
-    for (LinkResult& link : one.links) sum.links.push_back(std::move(link));
+    links.push_back(std::move(one.links));
     sum.work += one.work;
     sum.cache += one.cache;
   }
-  std::stable_sort(sum.links.begin(), sum.links.end(),
-                   [](const LinkResult& a, const LinkResult& b) { return a.transmitter < b.transmitter; });
+  sum.links = gather_links(std::move(links), std::move(room), pool);
   return sum;
 }
 

@@ -18,12 +18,14 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
   ends.devices = devices;
   ends.by_id = detail::numbers_by_id(devices);
   ends.embedded = std::move(embedded);
-  for (const Device& device : devices) {
-    const DeviceState state = state_of(device);
+  ends.link.resize(devices.size());
+  ends.radio.resize(devices.size());
+  pool_->for_each_quick(devices.size(), [&](std::size_t index) {
+    const DeviceState state = state_of(devices[index]);
     TraversalCounters counters;
-    ends.link.push_back(state.present ? std::optional(link_end(state, counters)) : std::nullopt);
-    ends.radio.push_back(detail::radio_end(device, state));
-  }
+    if (state.present) ends.link[index] = link_end(state, counters);
+    ends.radio[index] = detail::radio_end(devices[index], state);
+  });
   ends.reached.resize(ends.link.size());
   const PathSearchSettings search = search_settings(ends.embedded);
   if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);

@@ -27,7 +27,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   FrameResult result{frame.index, frame.time_s, {}, {}, {}, {}, 0.0, 0.0};
   const detail::Stopwatch update_watch;
-  const ChangeSet changes = scene_.apply(frame);
+  const ChangeSet changes = scene_.apply(frame, pool_.get());
   if (change_) change_->note(frame_, frame);
   result.tree = update_index(changes);
   forget_replaced(changes, result.cache);
@@ -36,7 +36,8 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   const detail::Stopwatch solve_watch;
   choose_links();
   const TransmitterEnds transmitters = transmitter_ends(
-      scene_.transmitters(), change_ ? receivers_on_the_move() : scene_.receivers().size(), reach_, halves_);
+      scene_.transmitters(), change_ && plan_.joined > 0 ? receivers_on_the_move() : scene_.receivers().size(), reach_,
+      halves_);
   halves_are_current_ = !transmitters.halves.empty() && choice_.takes_all();
   if (change_) note_transmitters(transmitters);
   Solved solved = change_ ? follow_all(transmitters) : solve_all(scene_.receivers(), transmitters, caches_, true);
@@ -53,15 +54,15 @@ template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::choose_links() {
   if (choice_.takes_all()) return;
   const std::span<const Device> receivers = scene_.receivers();
-  std::vector<std::optional<Vec3>> places_m;
-  for (const Device& device : scene_.transmitters()) {
-    const DeviceState state = state_of(device);
-    places_m.push_back(state.present ? std::optional(state.position_m) : std::nullopt);
-  }
+  std::vector<std::optional<Vec3>> places_m(scene_.transmitters().size());
+  pool_->for_each_quick(places_m.size(), [&](std::size_t index) {
+    const DeviceState state = state_of(scene_.transmitters()[index]);
+    if (state.present) places_m[index] = state.position_m;
+  });
   choice_.place(places_m);
   chosen_.assign(receivers.size(), {});
   std::vector<std::optional<Vec3>> receivers_m(receivers.size());
-  pool_->for_each(receivers.size(), [&](std::size_t index, unsigned) {
+  pool_->for_each_quick(receivers.size(), [&](std::size_t index) {
     const DeviceState state = state_of(receivers[index]);
     if (!state.present) return;
     receivers_m[index] = state.position_m;
@@ -94,14 +95,14 @@ void BasicSimulator<Surface, Index>::note_transmitters(const TransmitterEnds& en
   transmitter_states_before_.resize(count);
   transmitter_rests_.assign(count, 0);
   transmitter_is_same_.assign(count, 0);
-  for (std::size_t index = 0; index < count; ++index) {
+  pool_->for_each_quick(count, [&](std::size_t index) {
     const DeviceState state = state_of(scene_.transmitters()[index]);
     transmitter_rests_[index] = ends.link[index] && detail::same_bits(transmitters_before_[index], *ends.link[index]);
     transmitter_is_same_[index] =
         transmitter_rests_[index] != 0 && detail::same_bits(transmitter_states_before_[index], state);
     transmitters_before_[index] = ends.link[index];
     transmitter_states_before_[index] = state;
-  }
+  });
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -124,7 +125,7 @@ std::vector<ShellAtPoint> BasicSimulator<Surface, Index>::shells_at(const Vec3& 
 
 template <SurfaceModel Surface, SpatialIndex Index>
 TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
-  const ChangeSet changes = scene_.apply(frame);
+  const ChangeSet changes = scene_.apply(frame, pool_.get());
   CacheCounters not_reported;
   forget_replaced(changes, not_reported);
   frame_ = frame;

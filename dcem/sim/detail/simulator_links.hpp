@@ -44,7 +44,7 @@ std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const De
     by_receiver[index] = solve_receiver(receivers[index], index, ends.only(std::move(of_one)), nullptr,
                                         {rooms.empty() ? nullptr : &rooms[worker]});
   });
-  Solved solved = detail::sum_of(std::move(by_receiver), ends.work);
+  Solved solved = detail::sum_of(std::move(by_receiver), ends.work, *pool_);
   if (work != nullptr) *work += solved.work;
   return std::move(solved.links);
 }
@@ -67,7 +67,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     by_receiver[index] = solve_receiver(receivers[index], index, transmitters.only(chosen_[index]), cache, proposals);
     by_receiver[index].cache.died += gone;
   });
-  return detail::sum_of(std::move(by_receiver), transmitters.work);
+  return detail::sum_of(std::move(by_receiver), transmitters.work, *pool_);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>

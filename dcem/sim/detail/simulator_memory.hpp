@@ -64,7 +64,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
                              ? follow_receiver(receivers[index], index, transmitters, room)
                              : follow_receiver(receivers[index], index, transmitters.only(chosen_[index]), room);
   });
-  return detail::sum_of(std::move(by_receiver), transmitters.work);
+  return detail::sum_of(std::move(by_receiver), transmitters.work, *pool_, std::move(room_));
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
