@@ -1,10 +1,12 @@
 #pragma once
 /// The lines of `links.csv`.
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
 
@@ -18,6 +20,9 @@ inline constexpr std::string_view links_csv_header =
     "mean_doppler_hz,rms_doppler_spread_hz,zenith_spread_arrival_rad,zenith_spread_departure_rad,"
     "coherence_bandwidth_hz,coherence_time_s";
 
+/// Lines of many links, in pieces; shared by all that write them.
+using LinePieces = std::shared_ptr<const std::vector<std::string>>;
+
 /// Numbers have the fewest digits that read back as the same double; what is not defined is an empty field.
 class LinkLines {
  public:
@@ -26,8 +31,8 @@ class LinkLines {
 
   /// Appends the line of a link, with its end of line.
   void append(std::string& text, const FrameResult& frame, const LinkResult& link) const;
-  /// The lines of all links of a frame.
-  [[nodiscard]] std::string text(const FrameResult& frame) const;
+  /// The lines of all links of a frame, made by the threads of a pool.
+  [[nodiscard]] LinePieces pieces(const FrameResult& frame, ThreadPool& pool) const;
 
   /// Names as they stand in tables of this kind.
   const std::string& transmitter(const LinkResult& link) const { return transmitters_[link.transmitter]; }

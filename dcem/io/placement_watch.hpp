@@ -4,6 +4,7 @@
 /// all frames. It knows the scenery and guesses at what is meant: a warning is no error.
 #include <cstddef>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <span>
@@ -41,21 +42,32 @@ class PlacementWatch {
     std::vector<std::size_t> frames;
   };
 
+  /// What is seen of one device, grid or object in one frame.
+  struct Note {
+    Problem problem;
+    std::string subject, detail;
+    double extent_m = 0.0;
+  };
+  using Notes = std::vector<Note>;
+
+  /// Calls `look(index, notes)` on all threads, then takes the notes in the order of the indices.
+  template <typename Look>
+  void look_at_each(std::size_t count, Look&& look);
   void note_rooms();
-  void look_at_place(const Vec3& position_m, const std::string& subject);
-  void look_at_receiver(const Device& device);
-  void look_at_transmitter(const Device& device);
-  void look_at_grid(const ReceiverGrid& grid);
-  void look_at_object(BodyId body);
-  void note(Problem problem, const std::string& subject, const std::string& detail, double extent_m = 0.0);
-  bool is_far(const Vec3& position_m, const std::string& subject);
+  void look_at_place(const Vec3& position_m, const std::string& subject, Notes& notes) const;
+  void look_at_receiver(const Device& device, Notes& notes) const;
+  void look_at_transmitter(std::size_t number, Notes& notes) const;
+  void look_at_grid(const ReceiverGrid& grid, Notes& notes) const;
+  void look_at_object(BodyId body, Notes& notes) const;
+  void take(Note&& note);
+  bool is_far(const Vec3& position_m, const std::string& subject, Notes& notes) const;
   bool is_under_ground(const Vec3& position_m) const;
   bool ground_is_hit(const Vec3& from_m, const Vec3& direction, double farthest_m) const;
   /// Shells around a device that let nothing through, but those of what it rides on or is mounted on.
   std::vector<Shell> closed_shells(const DeviceState& of) const;
   bool lets_through(const Shell& shell) const;
   bool moves_along(BodyId one, BodyId other) const;
-  double share_of_receivers_in(const Shell& shell, const std::set<Shell>& elsewhere) const;
+  double share_of_receivers_in(const Shell& shell, const std::set<Shell>& own) const;
   std::string name_of(const Shell& shell) const;
 
   std::string file_;
@@ -65,7 +77,9 @@ class PlacementWatch {
   Aabb<double> box_;                            ///< of the scenery
   std::vector<std::optional<Vec3>> middles_m_;  ///< of all bodies, in their own coordinates
   const Frame* frame_ = nullptr;                ///< while it is looked at
-  std::vector<std::set<Shell>> rooms_;          ///< by transmitter: shells that hold it or carry it
+  std::vector<std::vector<Shell>> rooms_;       ///< by transmitter: shells that hold it or carry it …
+  std::set<Shell> all_rooms_;                   ///< … and those of all
+  mutable std::mutex mutex_;                    ///< of `transmits_`
   mutable std::map<Shell, bool> transmits_;
   std::vector<Sighting> sightings_;  ///< in the order in which they were seen first
   std::map<std::pair<Problem, std::string>, std::size_t> numbers_;

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dcem/core/beside.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/link_lines.hpp"
 #include "dcem/io/scenario.hpp"
@@ -38,6 +40,7 @@ struct ResultFacts {
   double memory_limit_bytes = std::numeric_limits<double>::infinity();  ///< of the arrays of a file, beside their 16 GB
   bool all_links = true;  ///< every transmitter with every receiver; otherwise a frame says which links there are
   std::optional<GeoAnchor> geo{};  ///< where on the Earth the scene lies
+  ThreadPool* pool = nullptr;      ///< makes the lines of a frame, which are written beside; none: the caller does all
 };
 
 /// Whether more is asked for than `links.csv`, whose lines say all that there is to write of a frame.
@@ -65,38 +68,44 @@ class ResultWriter {
                const OutputSettings& output);
   ~ResultWriter();
 
-  /// Appends a frame. Lines are in the order of the frame's links. Throws `OutputError`, and
+  /// Appends a frame. Lines are in the order of the frame's links. Throws `OutputError`, be it of the frame before, and
   /// std::invalid_argument where the paths as arrays would need more memory than 16 GB or the limit.
   void write(const FrameResult& frame);
   /// The lines of `links.csv` of a frame; empty where it is not asked for.
-  [[nodiscard]] std::string link_lines(const FrameResult& frame) const;
+  [[nodiscard]] LinePieces link_lines(const FrameResult& frame);
   /// Appends a frame that is known by these lines alone. Precondition: no more than they is asked for. Throws
-  /// `OutputError`.
-  void write_lines(std::string_view link_lines);
+  /// `OutputError`, be it of the frame before.
+  void write_lines(LinePieces lines);
+  void write_lines(std::string_view lines);
   /// After the last frame, be it the last that was announced or not: writes what is complete only now. Throws
   /// `OutputError`.
   void finish();
 
  private:
-  /// A file with the lines that are not yet handed to the operating system.
   struct Sheet {
     AtomicFile* file = nullptr;         // absent: not asked for
     std::unique_ptr<GzipEncoder> gzip;  // absent: the file is plain
-    std::string text;
 
     Sheet();
     ~Sheet();
-    void flush(std::size_t limit);
+    void write(std::string_view text);
+  };
+  /// What some links bring to each sheet.
+  struct Lines {
+    std::string paths, links, profile, doppler;
   };
 
-  CsvLine begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const;
-  void append_profile(const FrameResult& frame, const LinkResult& link);
-  void append_doppler(const FrameResult& frame, const LinkResult& link);
+  ThreadPool& pool() { return facts_.pool != nullptr ? *facts_.pool : alone_; }
+  Lines lines_of(const FrameResult& frame, std::span<const LinkResult> links) const;
+  CsvLine begin_line(std::string& text, const FrameResult& frame, const LinkResult& link) const;
+  void append_profile(std::string& text, const FrameResult& frame, const LinkResult& link) const;
+  void append_doppler(std::string& text, const FrameResult& frame, const LinkResult& link) const;
 
   OutputSettings output_;
   ResultFacts facts_;
   const Scene& scene_;
   LinkLines link_lines_;
+  ThreadPool alone_{1};
   Sheet paths_, links_, profile_, doppler_;
   std::unique_ptr<PathLines> lines_;
   // Absent: not asked for.
@@ -105,6 +114,7 @@ class ResultWriter {
   std::unique_ptr<PlotCollector> plots_;
   std::vector<std::unique_ptr<FrameExport>> exports_;
   std::vector<double> power_dbm_;  // of each transmitter
+  Beside writing_;                 // to the sheets; the first to go
 };
 
 }  // namespace dcem::io

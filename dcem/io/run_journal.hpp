@@ -14,6 +14,9 @@
 #include <string_view>
 #include <vector>
 
+#include "dcem/core/beside.hpp"
+#include "dcem/core/thread_pool.hpp"
+#include "dcem/io/link_lines.hpp"
 #include "dcem/io/summary.hpp"
 #include "dcem/sim/frame_result.hpp"
 
@@ -50,32 +53,41 @@ struct JournalEntry {
 /// Writes a journal.
 class RunJournal {
  public:
-  /// Starts a journal, in place of one that is there. Throws `OutputError`.
-  RunJournal(const std::filesystem::path& folder, const RunIdentity& identity);
+  /// Starts a journal, in place of one that is there. With the threads of `pool` frames are written beside what the
+  /// caller does next. Throws `OutputError`.
+  RunJournal(const std::filesystem::path& folder, const RunIdentity& identity, ThreadPool* pool = nullptr);
   /// Goes on behind the first `bytes` of the one that is there. Throws `OutputError`.
-  RunJournal(const std::filesystem::path& folder, std::uint64_t bytes);
+  RunJournal(const std::filesystem::path& folder, std::uint64_t bytes, ThreadPool* pool = nullptr);
   RunJournal(const RunJournal&) = delete;
   RunJournal& operator=(const RunJournal&) = delete;
   /// Removes a journal that was started here, unless it is kept: a run that fails leaves nothing.
   ~RunJournal();
 
-  /// Appends a frame; it is there, should the program be killed, as soon as this returns. Throws `OutputError`.
+  /// Appends a frame; it is there, should the program be killed, as soon as this returns, with threads as soon as
+  /// `wait` or the next `add` does. Throws `OutputError`, be it of the frame before.
   void add(const FrameResult& frame);
   /// The same with the lines of `links.csv` in place of the links.
-  void add(const FrameResult& frame, const std::string& link_lines);
+  void add(const FrameFigures& figures, std::span<const LinkResult> links, const LinePieces& lines);
+  /// Until all frames are there. Throws `OutputError`.
+  void wait() { writing_.wait(); }
 
   /// For `--resume`: the file stays when this object goes, if a frame is in it.
-  void keep() { is_kept_ = is_kept_ || has_frames_; }
+  void keep();
   /// When the run is whole.
   void remove();
 
  private:
-  void put(char kind, std::string_view bytes);
+  ThreadPool& pool() { return pool_ != nullptr ? *pool_ : alone_; }
+  void settle();
+  void write(std::string_view bytes);
   void end_frame();
 
   std::filesystem::path file_;
   std::ofstream stream_;
   bool is_kept_, has_frames_ = false;
+  ThreadPool* pool_;
+  ThreadPool alone_{1};
+  Beside writing_;
 };
 
 /// What a journal is read for; only what is said where it cannot be depends on it.

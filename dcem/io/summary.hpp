@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/core/work_times.hpp"
 #include "dcem/io/scenario.hpp"
 #include "dcem/io/shard_facts.hpp"
 #include "dcem/scene/scene.hpp"
@@ -65,6 +66,8 @@ class RunSummary {
   void set_sampling(SamplingReport report) { sampling_ = std::move(report); }
   /// Where the run is a part of one.
   void set_shard(ShardFacts shard) { shard_ = std::move(shard); }
+  /// What the frames, and writing them, have taken.
+  void set_work_times(const WorkTimes& times) { work_times_ = times; }
   void set_interruption(Interruption interruption) { interruption_ = std::move(interruption); }
   /// What the run is of, as `RunIdentity::text` has it, and the names of all its files, the summary among them.
   void set_files(std::string identity, std::vector<std::string> names) {
@@ -92,6 +95,7 @@ class RunSummary {
   const Scene& scene_;
   std::vector<FrameFigures> frames_;
   SamplingReport sampling_{};
+  WorkTimes work_times_{};
   std::vector<std::string> late_warnings_{};
   std::optional<Interruption> interruption_;
   std::optional<ShardFacts> shard_;

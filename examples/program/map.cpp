@@ -321,6 +321,7 @@ void map_scenario(const ScenarioOptions& options) {
   const StopRequest stop;
   const std::vector<Device> listed = listed_points(lists);
   io::PlacementWatch watch(options.scenario, simulator, listed, job.scenario.grids);
+  const WorkTimes begun = work_times();
   const std::size_t next_frame =
       map_frames(job, options, orders, simulator, folder.files(), viewer.get(), summary, watch, stop);
   for (const std::string& line : watch.warnings()) summary.add_late_warning(line);
@@ -330,6 +331,7 @@ void map_scenario(const ScenarioOptions& options) {
   {
     const io::ProgressStage stage("writing results", progress_mode(options));
     finish_viewer(viewer.get(), summary);
+    summary.set_work_times(work_times() - begun);
     folder.commit(summary, run_identity(job, options).text());
   }
   print_warnings(summary.late_warnings(), options);

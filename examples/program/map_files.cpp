@@ -1,6 +1,7 @@
 #include "map_files.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "dcem/io/map_distribution.hpp"
@@ -32,11 +33,17 @@ std::optional<io::ValueRange> shared_range_dbm(const std::optional<io::ValueRang
   return io::value_range(std::move(powers_dbm), "dBm");
 }
 
-template <typename Write>
-void MapFiles::put(const std::string& name, Write&& write) {
-  io::AtomicFile& file = folder_.open(name);
-  write(file);
-  file.close();
+void MapFiles::put(const std::string& name, std::function<void(io::AtomicFile&)> write) {
+  jobs_.push_back([&file = folder_.open(name), write = std::move(write)] {
+    write(file);
+    file.close();
+  });
+}
+
+/// Each file by one thread: a picture takes longer than a hundred points of a map.
+void MapFiles::write_all() {
+  pool_.for_each(jobs_.size(), [this](std::size_t number, unsigned) { jobs_[number](); });
+  jobs_.clear();
 }
 
 MapFiles::MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& simulator, const Frame& frame,
@@ -52,7 +59,8 @@ MapFiles::MapFiles(io::OutputFolder& folder, const Job& job, const Simulator& si
       frequency_hz_(simulator.settings().frequency_hz),
       has_noise_(job.scenario.noise.has_value()),
       geo_(job.scenario.geo),
-      notes_(std::move(notes)) {}
+      notes_(std::move(notes)),
+      pool_(simulator.pool()) {}
 
 void MapFiles::write(const std::vector<RadioMap>& maps, const CombinedMap& combined) {
   relief_ = relief_of(combined);
@@ -60,6 +68,7 @@ void MapFiles::write(const std::vector<RadioMap>& maps, const CombinedMap& combi
   write_best_server(combined);
   if (io::has_sinr(combined, has_noise_)) write_sinr(combined);
   draw_distribution(maps, combined);
+  write_all();
 }
 
 /// Pictures are of grids alone, as rasters are.
@@ -76,18 +85,19 @@ io::Relief MapFiles::relief_of(const CombinedMap& combined) const {
 }
 
 template <typename Draw>
-void MapFiles::put_pictures(const std::string& name, io::PictureFormat usual, Draw&& draw) {
+void MapFiles::put_pictures(const std::string& name, io::PictureFormat usual, const Draw& draw) {
   for (const io::PictureFormat format : io::formats_or(wanted_.pictures, usual)) {
-    put(name + "." + std::string(io::word_of(format)), [&](io::AtomicFile& file) { draw(file, format); });
+    put(name + "." + std::string(io::word_of(format)), [=](io::AtomicFile& file) { draw(file, format); });
   }
 }
 
 /// Left out where this build draws no charts.
 void MapFiles::draw_distribution(const std::vector<RadioMap>& maps, const CombinedMap& combined) {
   if (!io::can_draw()) return;
-  const std::vector<io::LineChart> charts = io::map_distribution_charts(maps, combined, time_s_);
+  const auto charts =
+      std::make_shared<const std::vector<io::LineChart>>(io::map_distribution_charts(maps, combined, time_s_));
   put_pictures(name_of(combined, distribution_part), io::PictureFormat::svg,
-               [&](io::AtomicFile& file, io::PictureFormat format) { io::write_line_charts(charts, file, format); });
+               [=](io::AtomicFile& file, io::PictureFormat format) { io::write_line_charts(*charts, file, format); });
 }
 
 std::string MapFiles::name_of(const CombinedMap& map, const char* part) const {
@@ -101,19 +111,22 @@ void MapFiles::draw(const std::string& name, io::HeatMap picture) {
     picture.contour_step = style_.contours_db;
     if (style_.finer_cells > 1) picture = io::refined(picture, style_.finer_cells);
   }
+  const auto shared = std::make_shared<const io::HeatMap>(std::move(picture));
   put_pictures(name, io::PictureFormat::png,
-               [&](io::AtomicFile& file, io::PictureFormat format) { io::write_heat_map(picture, file, format); });
+               [=](io::AtomicFile& file, io::PictureFormat format) { io::write_heat_map(*shared, file, format); });
   if (!wanted_.kml) return;
-  put(name + ".kml", [&](io::AtomicFile& kml) {
-    put(name + "_cells.png", [&](io::AtomicFile& cells) { io::write_ground_overlay(kml, cells, picture, *geo_); });
+  io::AtomicFile& kml = folder_.open(name + ".kml");
+  put(name + "_cells.png", [=, this, &kml](io::AtomicFile& cells) {
+    io::write_ground_overlay(kml, cells, *shared, *geo_);
+    kml.close();
   });
 }
 
 void MapFiles::write_one(const RadioMap& map) {
   const std::string name = io::map_name(map.places.id(), map.transmitter, number_);
-  if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_map_csv(file, map, frequency_hz_); });
-  if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_map_npz(file, map, frequency_hz_); });
-  if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_map_asc(file, map); });
+  if (wanted_.csv) put(name + ".csv", [this, &map](auto& file) { io::write_map_csv(file, map, frequency_hz_); });
+  if (wanted_.npz) put(name + ".npz", [this, &map](auto& file) { io::write_map_npz(file, map, frequency_hz_); });
+  if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&map](auto& file) { io::write_map_asc(file, map); });
   if (!draws(map.places)) return;
   io::HeatMap picture = io::map_picture(map, scene_, frame_, frequency_hz_, time_s_);
   picture.range = range_dbm_;
@@ -122,18 +135,18 @@ void MapFiles::write_one(const RadioMap& map) {
 
 void MapFiles::write_best_server(const CombinedMap& map) {
   const std::string name = name_of(map, best_server_part);
-  if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_best_server_csv(file, map); });
-  if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_best_server_npz(file, map); });
+  if (wanted_.csv) put(name + ".csv", [&map](auto& file) { io::write_best_server_csv(file, map); });
+  if (wanted_.npz) put(name + ".npz", [&map](auto& file) { io::write_best_server_npz(file, map); });
   if (wanted_.asc && map.places.is_grid())
-    put(name + ".asc", [&](auto& file) { io::write_best_server_asc(file, map); });
+    put(name + ".asc", [&map](auto& file) { io::write_best_server_asc(file, map); });
   if (draws(map.places)) draw(name, io::best_server_picture(map, scene_, frame_, frequency_hz_, time_s_));
 }
 
 void MapFiles::write_sinr(const CombinedMap& map) {
   const std::string name = name_of(map, sinr_part);
-  if (wanted_.csv) put(name + ".csv", [&](auto& file) { io::write_sinr_csv(file, map); });
-  if (wanted_.npz) put(name + ".npz", [&](auto& file) { io::write_sinr_npz(file, map); });
-  if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&](auto& file) { io::write_sinr_asc(file, map); });
+  if (wanted_.csv) put(name + ".csv", [&map](auto& file) { io::write_sinr_csv(file, map); });
+  if (wanted_.npz) put(name + ".npz", [&map](auto& file) { io::write_sinr_npz(file, map); });
+  if (wanted_.asc && map.places.is_grid()) put(name + ".asc", [&map](auto& file) { io::write_sinr_asc(file, map); });
   if (draws(map.places)) draw(name, io::sinr_picture(map, scene_, frame_, frequency_hz_, has_noise_, time_s_));
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 /// The files of the maps of one frame.
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/combined_map_writer.hpp"
 #include "job.hpp"
@@ -30,11 +32,12 @@ class MapFiles {
   void write(const std::vector<RadioMap>& maps, const CombinedMap& combined);
 
  private:
-  template <typename Write>
-  void put(const std::string& name, Write&& write);
+  /// Opens a file, for `write(file)` to be called when all are open.
+  void put(const std::string& name, std::function<void(io::AtomicFile&)> write);
+  void write_all();
   std::string name_of(const CombinedMap& map, const char* part) const;
   template <typename Draw>
-  void put_pictures(const std::string& name, io::PictureFormat usual, Draw&& draw);
+  void put_pictures(const std::string& name, io::PictureFormat usual, const Draw& draw);
   void draw(const std::string& name, io::HeatMap picture);
   void draw_distribution(const std::vector<RadioMap>& maps, const CombinedMap& combined);
   bool draws(const MapPlaces& places) const;
@@ -55,7 +58,9 @@ class MapFiles {
   const bool has_noise_;
   const std::optional<io::GeoAnchor> geo_;
   const std::vector<std::string> notes_;
-  io::Relief relief_;  ///< of the grid whose maps are written
+  ThreadPool& pool_;
+  io::Relief relief_;                        ///< of the grid whose maps are written
+  std::vector<std::function<void()>> jobs_;  ///< a file each; what they refer to lasts until all are written
 };
 
 }  // namespace dcem::program

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dcem/io/frame_source.hpp"
+#include "dcem/io/frames_ahead.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/shards.hpp"
 #include "job.hpp"
@@ -57,15 +58,15 @@ TreeUpdateReport follow(Simulator& simulator, const Frame& instant, const WorkCo
 
 void take_all(io::ShardReader& shards, const Job& job, const ScenarioOptions& options, Simulator& simulator,
               RunResults& results) {
-  io::FrameSource frames(job.scenario);
+  io::FrameSource source(job.scenario);
+  io::FramesAhead frames(source, simulator.scene(), job.frames.first, job.frames.last, simulator.pool().size() > 1);
   const StopRequest stop;
   io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
-  std::size_t next = job.frames.first;
   for (auto entry = shards.next(); entry; entry = shards.next()) {
     if (stop.signal() != 0) {
       throw Interrupted(stop.signal(), "interrupted by " + signal_name(stop.signal()) + ": nothing is written");
     }
-    const Frame instant = frames.frame(simulator.scene(), next++);
+    const Frame instant = frames.next();
     entry->figures.tree = follow(simulator, instant, entry->figures.work);
     results.add(instant, std::move(*entry), stop);
     bar.advance();

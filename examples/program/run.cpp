@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "dcem/io/frame_source.hpp"
+#include "dcem/io/frames_ahead.hpp"
 #include "dcem/io/run_journal.hpp"
 #include "job.hpp"
 #include "ranks.hpp"
@@ -49,12 +50,14 @@ class Run {
 
   /// Solves the frames that are left, until a signal comes.
   void solve(io::RunJournal* journal, const StopRequest& stop) {
+    io::FramesAhead frames(frames_, simulator_.scene(), next_, job_.frames.last, simulator_.pool().size() > 1);
     io::ProgressBar bar("frames", job_.frames.last - next_, progress_mode(options_));
     for (; next_ < job_.frames.last && stop.signal() == 0; ++next_) {
-      const Frame instant = frames_.frame(simulator_.scene(), next_);
+      const Frame instant = frames.next();
       results_.add(instant, simulator_.advance(instant), journal, stop);
       bar.advance();
     }
+    if (journal != nullptr) journal->wait();
   }
 
   std::size_t next_frame() const { return next_; }
@@ -83,12 +86,12 @@ class Run {
 /// The journal that the run writes; none where it would be of no use.
 std::optional<io::RunJournal> begin_journal(const Job& job, const io::RunIdentity& identity, const Simulator& simulator,
                                             const std::optional<io::JournalReader>& former) {
-  if (former) return std::optional<io::RunJournal>(std::in_place, job.folder, former->bytes());
+  if (former) return std::optional<io::RunJournal>(std::in_place, job.folder, former->bytes(), &simulator.pool());
   std::error_code ignored;
   std::filesystem::remove(job.folder / io::journal_name, ignored);
   std::filesystem::remove_all(job.folder / parts_folder, ignored);
   if (simulator.cache() == CacheMode::seed || job.frames.count() < 2) return std::nullopt;
-  return std::optional<io::RunJournal>(std::in_place, job.folder, identity);
+  return std::optional<io::RunJournal>(std::in_place, job.folder, identity, &simulator.pool());
 }
 
 /// Writes what is there as the result, where that is a frame at least, and says so where frames are left.

@@ -24,7 +24,8 @@ io::ResultWriter make_writer(io::OutputFolder& folder, const Job& job, const Sim
                               exactly_searched_interactions(simulator.settings().propagation, simulator.plan()),
                               options.memory_limit_bytes.value_or(std::numeric_limits<double>::infinity()),
                               takes_all_links(simulator.scene(), simulator.settings().links),
-                              job.scenario.geo};
+                              job.scenario.geo,
+                              &simulator.pool()};
   try {
     return {folder, simulator.scene(), simulator.scene().receivers(), facts, job.scenario.output};
   } catch (const std::invalid_argument& error) {
@@ -66,21 +67,23 @@ RunResults::RunResults(const Job& job, const ScenarioOptions& options, Simulator
       viewer_(make_viewer(folder.files(), job, simulator)),
       summary_(run_facts(job, simulator, simulator.plan(), simulator.scene().receivers().size()), simulator.scene()),
       watch_(options.scenario, simulator, simulator.scene().receivers().first(devices), job.scenario.grids),
+      begun_(work_times()),
       needs_paths_(io::needs_paths(job.scenario.output)) {}
 
-void RunResults::add(const Frame& instant, const FrameResult& result, io::RunJournal* journal,
-                     const StopRequest& stop) {
+void RunResults::add(const Frame& instant, FrameResult&& result, io::RunJournal* journal, const StopRequest& stop) {
   watch_.look(instant);
+  const io::FrameFigures figures = io::figures_of(result);
   if (needs_paths_) {
     write(instant, result);
     if (journal != nullptr) journal->add(result);
   } else {
-    const std::string lines = writer_.link_lines(result);
+    const io::LinePieces lines = writer_.link_lines(result);
     writer_.write_lines(lines);
-    if (journal != nullptr) journal->add(result, lines);
+    if (journal != nullptr) journal->add(figures, result.links, lines);
   }
-  summary_.add(io::figures_of(result));
+  summary_.add(figures);
   check(instant, &result.links, result.work.sequences_proposed, stop);
+  simulator_.give_back(std::move(result));
 }
 
 void RunResults::add(const Frame& instant, io::JournalEntry&& entry, const StopRequest& stop) {
@@ -100,6 +103,7 @@ io::RunSummary& RunResults::finish(std::size_t frames) {
   for (const std::string& line : watch_.warnings()) summary_.add_late_warning(line);
   writer_.finish();
   finish_viewer(viewer_.get(), summary_);
+  summary_.set_work_times(work_times() - begun_);
   return summary_;
 }
 

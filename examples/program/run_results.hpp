@@ -28,7 +28,7 @@ class RunResults {
              std::size_t devices);
 
   /// A frame that the simulator has solved; the journal, where there is one, gets it, too.
-  void add(const Frame& instant, const FrameResult& result, io::RunJournal* journal, const StopRequest& stop);
+  void add(const Frame& instant, FrameResult&& result, io::RunJournal* journal, const StopRequest& stop);
   /// A frame of a journal; the simulator is where it was then.
   void add(const Frame& instant, io::JournalEntry&& entry, const StopRequest& stop);
 
@@ -48,6 +48,7 @@ class RunResults {
   io::RunSummary summary_;
   io::PlacementWatch watch_;
   SamplingReport sampling_;
+  const WorkTimes begun_;
   const bool needs_paths_;
 };
 

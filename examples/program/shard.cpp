@@ -1,9 +1,14 @@
 /// `dcem run --shard i/N`: the links of some of the receivers, for `dcem merge`.
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "dcem/io/frame_source.hpp"
+#include "dcem/io/frames_ahead.hpp"
 #include "dcem/io/link_lines.hpp"
 #include "dcem/io/result_writer.hpp"
 #include "dcem/io/run_journal.hpp"
@@ -27,6 +32,7 @@ class ShardRun {
         lines_(simulator.scene(), simulator.scene().receivers()),
         summary_(run_facts(job_, simulator, simulator.plan(), simulator.scene().receivers().size()), simulator.scene()),
         next_(job_.frames.first),
+        begun_(work_times()),
         keeps_links_(io::needs_paths(job_.scenario.output) || simulator.discovery() == Discovery::sampled) {}
 
   /// Passes the frames of a journal.
@@ -43,19 +49,30 @@ class ShardRun {
 
   /// Solves the frames that are left, until a signal comes.
   void solve(io::RunJournal& journal, const StopRequest& stop) {
+    ThreadPool& pool = simulator_.pool();
+    io::FramesAhead frames(frames_, simulator_.scene(), next_, job_.frames.last, pool.size() > 1);
     io::ProgressBar bar("frames", job_.frames.last - next_, progress_mode(order_.options));
     for (; next_ < job_.frames.last && stop.signal() == 0; ++next_) {
-      const FrameResult result = simulator_.advance(frames_.frame(simulator_.scene(), next_));
-      keeps_links_ ? journal.add(result) : journal.add(result, job_.scenario.output.links ? lines_.text(result) : "");
-      summary_.add(io::figures_of(result));
+      FrameResult result = simulator_.advance(frames.next());
+      const io::FrameFigures figures = io::figures_of(result);
+      keeps_links_ ? journal.add(result) : journal.add(figures, result.links, lines_of(result));
+      summary_.add(figures);
+      simulator_.give_back(std::move(result));
       bar.advance();
     }
+    journal.wait();
+    summary_.set_work_times(work_times() - begun_);
   }
 
   std::size_t next_frame() const { return next_; }
   io::RunSummary& summary() { return summary_; }
 
  private:
+  io::LinePieces lines_of(const FrameResult& result) const {
+    if (job_.scenario.output.links) return lines_.pieces(result, simulator_.pool());
+    return std::make_shared<std::vector<std::string>>();
+  }
+
   const PartOrder& order_;
   const Job& job_;
   Simulator& simulator_;
@@ -63,6 +80,7 @@ class ShardRun {
   io::LinkLines lines_;
   io::RunSummary summary_;
   std::size_t next_;
+  const WorkTimes begun_;
   const bool keeps_links_;  ///< where lines of links do not say all that is to be written or checked
 };
 
@@ -80,10 +98,10 @@ bool is_there(const PartOrder& order, const ResultFolder& results, const io::Run
 
 /// The journal that the part writes. What the folder said of a former part holds no more.
 io::RunJournal begin_journal(const std::filesystem::path& folder, const io::RunIdentity& identity,
-                             const std::optional<io::JournalReader>& former) {
-  if (former) return {folder, former->bytes()};
+                             const std::optional<io::JournalReader>& former, ThreadPool& pool) {
+  if (former) return {folder, former->bytes(), &pool};
   if (std::filesystem::exists(folder / io::journal_name)) std::filesystem::remove(folder / "summary.json");
-  return {folder, identity};
+  return {folder, identity, &pool};
 }
 
 [[noreturn]] void end_interrupted(const PartOrder& order, std::size_t frames, int signal) {
@@ -105,7 +123,7 @@ void solve_part(const PartOrder& order, Simulator& simulator, const StopRequest&
   std::optional<io::JournalReader> former = open_journal(order.folder, order.job, order.options, identity, simulator);
   ShardRun run(order, simulator);
   if (former) run.replay(*former);
-  io::RunJournal journal = begin_journal(order.folder, identity, former);
+  io::RunJournal journal = begin_journal(order.folder, identity, former, simulator.pool());
   try {
     run.solve(journal, stop);
   } catch (const io::OutputError&) {

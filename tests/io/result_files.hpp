@@ -17,7 +17,7 @@ namespace dcem::test {
 /// was: who goes on remembers nothing.
 inline std::map<std::string, std::string> files_of(const std::filesystem::path& folder) {
   static const std::regex clocked(
-      R"re("(update_time_s|solve_time_s|real_time_factor|frame_time_[a-z0-9]+_s)": ?(null|[-+.e0-9]+))re");
+      R"re("((update|solve|serial|parallel|beside|longest_tasks)_time_s|real_time_factor|frame_time_[a-z0-9]+_s)": ?(null|[-+.e0-9]+))re");
   static const std::regex worked(R"re("(tree|cache|work)": ?\{[^{}]*\})re");
   std::map<std::string, std::string> files;
   if (!std::filesystem::exists(folder)) return files;

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "dcem/io/frames_ahead.hpp"
 #include "tests/io/traffic_case.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -453,6 +455,30 @@ TEST_CASE("the reference trace drives: slots for those at a time, boxes where th
                Vec3(6216.30 - 6.5 * std::sin(293.06 * degree_rad), 8235.58 - 6.5 * std::cos(293.06 * degree_rad), 0));
   }
   CHECK(rows == 114'086);
+}
+
+TEST_CASE("frames read ahead are the frames, and what is wrong with one is told when it is asked for") {
+  TrafficCase files;
+  for (int index = 0; index < 6; ++index) {
+    const std::string time = std::to_string(index);
+    files.trace_lines += step(time, car_at("a", index) + (index % 2 == 0 ? car_at("b", 20.0 + index) : ""));
+  }
+  const std::vector<Frame> expected = all_frames(files);
+  for (const bool has_thread : {false, true}) {
+    io::Scenario scenario = files.load();
+    io::FrameSource source(scenario);
+    io::FramesAhead ahead(source, scenario.scene, 1, 5, has_thread);
+    for (std::size_t index = 1; index < 5; ++index) {
+      const Frame frame = ahead.next();
+      CHECK(frame.index == index);
+      CHECK((frame.bodies == expected[index].bodies));
+      scenario.scene.apply(frame);
+    }
+    io::FrameSource again(scenario);
+    io::FramesAhead beyond(again, scenario.scene, 5, 7, has_thread);
+    CHECK(beyond.next().index == 5);
+    CHECK_THROWS_AS(beyond.next(), std::invalid_argument);
+  }
 }
 
 }  // namespace test_frame_source

@@ -128,6 +128,35 @@ TEST_CASE("frames come back as they were, to the last bit") {
   CHECK_FALSE(frame.links[0].statistics.power_dbm.has_value());
 }
 
+TEST_CASE("the number of threads changes no byte") {
+  FrameResult frame = frame_of(3);
+  for (std::size_t link = 0; link < 2000; ++link) {
+    frame.links.push_back(frame.links[link % 2]);
+    frame.links.back().transmitter = link;
+  }
+  const io::LinePieces lines =
+      std::make_shared<const std::vector<std::string>>(std::vector<std::string>{"one\n", "two\n", "", "three\n"});
+  const auto journal_of = [&](ThreadPool* pool) {
+    const TemporaryFolder folder;
+    RunJournal journal(folder.path(), identity, pool);
+    journal.add(frame);
+    journal.add(io::figures_of(frame_of(4)), frame_of(4).links, lines);
+    journal.add(frame_of(5));
+    journal.wait();
+    journal.keep();
+    JournalReader reader(folder.path(), identity, "drive.json");
+    CHECK((bytes_of(reader.next()->take_result()) == bytes_of(frame)));
+    CHECK(reader.next()->link_lines == "one\ntwo\nthree\n");
+    CHECK((bytes_of(reader.next()->take_result()) == bytes_of(frame_of(5))));
+    return file_bytes(folder / "run.journal");
+  };
+  const std::string alone = journal_of(nullptr);
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    ThreadPool pool(threads);
+    CHECK((journal_of(&pool) == alone));
+  }
+}
+
 TEST_CASE("wherever a journal was cut off, the whole frames before are read, and it goes on behind them") {
   const TemporaryFolder folder;
   write_journal(folder, 2);
@@ -174,7 +203,9 @@ TEST_CASE("lines in place of links take the room of lines") {
   const TemporaryFolder folder;
   {
     RunJournal journal(folder.path(), identity);
-    journal.add(frame_of(0), "0,0,mast,ue\n");
+    const std::vector<std::string> lines{"0,0,mast,", "ue\n"};
+    journal.add(io::figures_of(frame_of(0)), frame_of(0).links,
+                std::make_shared<const std::vector<std::string>>(lines));
     journal.keep();
   }
   CHECK(std::filesystem::file_size(folder / "run.journal") < 700);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dcem/accel/wide_index.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/src/checks/frame_ranges.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 #include "dcem/io/text_table.hpp"
@@ -21,6 +22,7 @@ constexpr double room_m = 200.0;            ///< so far away the walls of a room
 constexpr double moving_mps = 0.1;
 constexpr std::size_t most_named = 5;       ///< of each kind of misplacement
 constexpr std::size_t most_watched = 1000;  ///< receivers that are looked at in each frame; of more, the first ones
+constexpr std::size_t at_once = 32;         ///< devices or objects that a thread looks at
 constexpr std::size_t most_asked = 200;     ///< receivers, and points of each grid, that are asked where they are
 
 double outside_m(const Aabb<double>& box, const Vec3& point_m, int axis) {
@@ -60,103 +62,120 @@ void PlacementWatch::look(const Frame& frame) {
   if (box_.empty()) return;
   frame_ = &frame;
   note_rooms();
-  for (const Device& device : simulator_.scene().transmitters()) look_at_transmitter(device);
-  for (const Device& device : receivers_.first(std::min(receivers_.size(), most_watched))) look_at_receiver(device);
-  for (const ReceiverGrid& grid : grids_) look_at_grid(grid);
-  for (std::uint32_t body = 1; body < simulator_.scene().bodies().size(); ++body) look_at_object(BodyId(body));
+  look_at_each(rooms_.size(), [&](std::size_t number, Notes& notes) { look_at_transmitter(number, notes); });
+  look_at_each(std::min(receivers_.size(), most_watched),
+               [&](std::size_t number, Notes& notes) { look_at_receiver(receivers_[number], notes); });
+  look_at_each(grids_.size(), [&](std::size_t number, Notes& notes) { look_at_grid(grids_[number], notes); });
+  look_at_each(simulator_.scene().bodies().size() - 1,
+               [&](std::size_t number, Notes& notes) { look_at_object(BodyId(number + 1), notes); });
+}
+
+template <typename Look>
+void PlacementWatch::look_at_each(std::size_t count, Look&& look) {
+  std::vector<Notes> notes((count + at_once - 1) / at_once);
+  simulator_.pool().for_each(notes.size(), [&](std::size_t block, unsigned) {
+    for (std::size_t number = block * at_once; number < std::min(count, (block + 1) * at_once); ++number) {
+      look(number, notes[block]);
+    }
+  });
+  for (Notes& of_block : notes) {
+    for (Note& note : of_block) take(std::move(note));
+  }
 }
 
 void PlacementWatch::note_rooms() {
-  rooms_.clear();
-  for (const Device& device : simulator_.scene().transmitters()) {
-    const DeviceState state = simulator_.scene().device_state(device, *frame_);
-    std::set<Shell>& own = rooms_.emplace_back();
-    if (!state.present) continue;
-    for (const ShellAtPoint& shell : simulator_.shells_at(state.position_m)) own.emplace(shell.body, shell.number);
-  }
+  const std::span<const Device> transmitters = simulator_.scene().transmitters();
+  rooms_.assign(transmitters.size(), {});
+  look_at_each(transmitters.size(), [&](std::size_t number, Notes&) {
+    const DeviceState state = simulator_.scene().device_state(transmitters[number], *frame_);
+    if (!state.present) return;
+    for (const ShellAtPoint& at : simulator_.shells_at(state.position_m))
+      rooms_[number].emplace_back(at.body, at.number);
+  });
+  all_rooms_.clear();
+  for (const std::vector<Shell>& own : rooms_) all_rooms_.insert(own.begin(), own.end());
 }
 
-bool PlacementWatch::is_far(const Vec3& position_m, const std::string& subject) {
+bool PlacementWatch::is_far(const Vec3& position_m, const std::string& subject, Notes& notes) const {
   const double away_m = far_away_m(box_, position_m);
   if (away_m == 0.0) return false;
-  note(Problem::far_outside, subject,
+  notes.push_back(
+      {Problem::far_outside, subject,
        "is up to " + metres(away_m) + " outside the box of the scenery; is it in other coordinates or another unit?",
-       away_m);
+       away_m});
   return true;
 }
 
-void PlacementWatch::look_at_place(const Vec3& position_m, const std::string& subject) {
-  if (is_far(position_m, subject) || !is_under_ground(position_m)) return;
+void PlacementWatch::look_at_place(const Vec3& position_m, const std::string& subject, Notes& notes) const {
+  if (is_far(position_m, subject, notes) || !is_under_ground(position_m)) return;
   const double depth_m = box_.min.z - position_m.z;
-  note(Problem::under_ground, subject,
-       depth_m > below_m ? "is up to " + metres(depth_m) + " below everything in the scenery; is its height meant?"
-                         : "has a broad surface above and nothing below and beside it; is it under the ground?",
-       depth_m);
+  notes.push_back({Problem::under_ground, subject,
+                   depth_m > below_m
+                       ? "is up to " + metres(depth_m) + " below everything in the scenery; is its height meant?"
+                       : "has a broad surface above and nothing below and beside it; is it under the ground?",
+                   depth_m});
 }
 
-void PlacementWatch::look_at_transmitter(const Device& device) {
+void PlacementWatch::look_at_transmitter(std::size_t number, Notes& notes) const {
+  const Device& device = simulator_.scene().transmitters()[number];
   const DeviceState state = simulator_.scene().device_state(device, *frame_);
   if (!state.present) return;
   const std::string subject = "transmitter " + in_quotes(device.id);
-  look_at_place(state.position_m, subject);
-  const std::vector<Shell> shells = closed_shells(state);
-  if (shells.empty()) return;  // before all others are asked: they may be ten thousand
-  const auto number = static_cast<std::size_t>(&device - simulator_.scene().transmitters().data());
-  std::set<Shell> elsewhere;  // rooms of the other transmitters: who is there has one of those
-  for (std::size_t other = 0; other < rooms_.size(); ++other) {
-    if (other != number) elsewhere.insert(rooms_[other].begin(), rooms_[other].end());
-  }
-  for (const Shell& own : rooms_[number]) elsewhere.erase(own);
-  for (const Shell& shell : shells) {
-    const double share = share_of_receivers_in(shell, elsewhere);
+  look_at_place(state.position_m, subject, notes);
+  for (const Shell& shell : closed_shells(state)) {
+    const double share = share_of_receivers_in(shell, {rooms_[number].begin(), rooms_[number].end()});
     if (share >= 0.5) continue;
-    note(Problem::shut_in_alone, subject,
+    notes.push_back(
+        {Problem::shut_in_alone, subject,
          "is inside " + name_of(shell) + ", and " +
              (share > 0.0 ? "only " + format_fixed(100.0 * share, 0) + " % of the receivers are" : "no receiver is") +
-             " in there");
+             " in there"});
   }
 }
 
-void PlacementWatch::look_at_receiver(const Device& device) {
+void PlacementWatch::look_at_receiver(const Device& device, Notes& notes) const {
   const DeviceState state = simulator_.scene().device_state(device, *frame_);
   if (!state.present) return;
   const std::string subject = "receiver " + in_quotes(device.id);
-  look_at_place(state.position_m, subject);
+  look_at_place(state.position_m, subject, notes);
   for (const Shell& shell : closed_shells(state)) {
-    const bool is_room = std::ranges::any_of(rooms_, [&](const auto& own) { return own.contains(shell); });
-    if (is_room) continue;
-    note(Problem::shut_in, subject, "is inside " + name_of(shell) + ", and no transmitter is in there");
+    if (all_rooms_.contains(shell)) continue;
+    notes.push_back({Problem::shut_in, subject, "is inside " + name_of(shell) + ", and no transmitter is in there"});
   }
 }
 
 /// Points of a grid may lie in houses; a grid that lies nowhere near anything is a mistake.
-void PlacementWatch::look_at_grid(const ReceiverGrid& grid) {
+void PlacementWatch::look_at_grid(const ReceiverGrid& grid, Notes& notes) const {
   const Vec3 first_m = grid_point_m(grid, 0, 0), last_m = grid_point_m(grid, grid.rows() - 1, grid.columns() - 1);
   const Vec3 nearest_m = glm::clamp(0.5 * (box_.min + box_.max), glm::min(first_m, last_m), glm::max(first_m, last_m));
-  look_at_place(nearest_m, "grid " + in_quotes(grid.id));
+  look_at_place(nearest_m, "grid " + in_quotes(grid.id), notes);
 }
 
-void PlacementWatch::look_at_object(BodyId body) {
+void PlacementWatch::look_at_object(BodyId body, Notes& notes) const {
   const Scene& scene = simulator_.scene();
   const BodyState& state = scene.body_state(body);
   if (!state.present || !middles_m_[body.value]) return;
   const Pose& pose = state.placement.pose;
   const Vec3 middle_m = pose.position_m + rotation_matrix(pose) * *middles_m_[body.value];
   const std::string subject = (scene.body(body).is_slot ? "vehicle " : "object ") + in_quotes(scene.body_name(body));
-  if (is_far(middle_m, subject) || glm::length(state.placement.velocity.linear_mps) < moving_mps) return;
+  if (is_far(middle_m, subject, notes) || glm::length(state.placement.velocity.linear_mps) < moving_mps) return;
   for (const ShellAtPoint& at : simulator_.shells_at(middle_m)) {
     const Shell shell{at.body, at.number};
-    if (at.body == body || at.is_on_it || lets_through(shell) || moves_along(body, at.body)) continue;
-    if (std::ranges::any_of(rooms_, [&](const auto& own) { return own.contains(shell); })) continue;
-    note(Problem::drives_through, subject, "is with its middle inside " + name_of(shell) + "; is its way meant?");
+    const bool is_room = all_rooms_.contains(shell);
+    if (at.body == body || at.is_on_it || is_room || lets_through(shell) || moves_along(body, at.body)) continue;
+    notes.push_back(
+        {Problem::drives_through, subject, "is with its middle inside " + name_of(shell) + "; is its way meant?"});
   }
 }
 
-void PlacementWatch::note(Problem problem, const std::string& subject, const std::string& detail, double extent_m) {
-  const auto [number, is_new] = numbers_.try_emplace({problem, subject}, sightings_.size());
-  if (is_new) sightings_.push_back({problem, subject, detail, extent_m, {}});
+void PlacementWatch::take(Note&& note) {
+  const auto [number, is_new] = numbers_.try_emplace({note.problem, note.subject}, sightings_.size());
+  if (is_new) sightings_.push_back({note.problem, note.subject, note.detail, note.extent_m, {}});
   Sighting& sighting = sightings_[number->second];
-  if (extent_m > sighting.extent_m) sighting.detail = detail, sighting.extent_m = extent_m;
+  if (note.extent_m > sighting.extent_m) {
+    sighting.detail = std::move(note.detail);
+    sighting.extent_m = note.extent_m;
+  }
   if (sighting.frames.empty() || sighting.frames.back() != frame_->index) sighting.frames.push_back(frame_->index);
 }
 
@@ -195,6 +214,7 @@ std::vector<PlacementWatch::Shell> PlacementWatch::closed_shells(const DeviceSta
 
 bool PlacementWatch::lets_through(const Shell& shell) const {
   if (simulator_.settings().propagation.max_transmissions == 0) return false;
+  const std::lock_guard lock(mutex_);
   const auto known = transmits_.find(shell);
   if (known != transmits_.end()) return known->second;
   const Scene& scene = simulator_.scene();
@@ -214,14 +234,15 @@ bool PlacementWatch::moves_along(BodyId one, BodyId other) const {
   return glm::length(first_mps - scene.body_state(other).placement.velocity.linear_mps) < moving_mps;
 }
 
-/// Of the receivers that are in none of the shells `elsewhere`; 1 where there are none.
-double PlacementWatch::share_of_receivers_in(const Shell& shell, const std::set<Shell>& elsewhere) const {
+/// Of the receivers that are in no room but those of the transmitter, its `own`; 1 where there are none.
+double PlacementWatch::share_of_receivers_in(const Shell& shell, const std::set<Shell>& own) const {
   std::size_t asked = 0, inside = 0;
   const auto ask = [&](const Vec3& point_m) {
     bool is_inside = false, is_elsewhere = false;
     for (const ShellAtPoint& at : simulator_.shells_at(point_m)) {
       is_inside = is_inside || Shell(at.body, at.number) == shell;
-      is_elsewhere = is_elsewhere || elsewhere.contains({at.body, at.number});
+      const Shell other(at.body, at.number);
+      is_elsewhere = is_elsewhere || (all_rooms_.contains(other) && !own.contains(other));
     }
     if (is_elsewhere && !is_inside) return;
     ++asked;

@@ -1,6 +1,10 @@
 #include "dcem/io/link_lines.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "dcem/channel/coherence.hpp"
+#include "dcem/io/src/results/link_pieces.hpp"
 #include "dcem/io/src/text/number_text.hpp"
 
 namespace dcem::io {
@@ -10,9 +14,16 @@ LinkLines::LinkLines(const Scene& scene, std::span<const Device> receivers) {
   for (const Device& device : receivers) receivers_.push_back(csv_field(device.id));
 }
 
-std::string LinkLines::text(const FrameResult& frame) const {
-  std::string lines;
-  for (const LinkResult& link : frame.links) append(lines, frame, link);
+LinePieces LinkLines::pieces(const FrameResult& frame, ThreadPool& pool) const {
+  auto lines = std::make_shared<std::vector<std::string>>();
+  const auto make = [&](std::span<const LinkResult> links) {
+    std::string text;
+    for (const LinkResult& link : links) append(text, frame, link);
+    return text;
+  };
+  in_pieces<std::string>(pool, frame.links, make, [&](std::vector<std::string>&& texts) {
+    std::ranges::move(texts, std::back_inserter(*lines));
+  });
   return lines;
 }
 

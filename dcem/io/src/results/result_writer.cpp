@@ -1,16 +1,18 @@
 #include "dcem/io/result_writer.hpp"
+#include <utility>
+
 #include "dcem/core/naming.hpp"
 
 #include "dcem/channel/doppler_spectrum.hpp"
 #include "dcem/core/units.hpp"
 #include "dcem/io/src/exchange/frame_export.hpp"
 #include "dcem/io/src/pictures/plot_collector.hpp"
+#include "dcem/io/src/results/link_pieces.hpp"
 #include "dcem/io/src/results/path_collector.hpp"
 #include "dcem/io/src/results/path_lines.hpp"
 #include "dcem/io/src/results/response_collector.hpp"
 #include "dcem/io/src/text/gzip_encoder.hpp"
 #include "dcem/io/src/text/number_text.hpp"
-#include "dcem/io/src/text/sheet.hpp"
 
 namespace dcem::io {
 namespace {
@@ -30,10 +32,9 @@ ResultWriter::Sheet::Sheet() = default;
 
 ResultWriter::Sheet::~Sheet() = default;
 
-void ResultWriter::Sheet::flush(std::size_t limit) {
-  if (file == nullptr || text.size() < limit) return;
+void ResultWriter::Sheet::write(std::string_view text) {
+  if (file == nullptr || text.empty()) return;
   gzip != nullptr ? gzip->write(text) : file->write(text);
-  text.clear();
 }
 
 ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<const Device> receivers,
@@ -42,15 +43,16 @@ ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<c
       facts_(facts),
       scene_(scene),
       link_lines_(scene, receivers),
-      lines_(std::make_unique<PathLines>(scene, receivers, facts, output.paths_top)) {
+      lines_(std::make_unique<PathLines>(scene, receivers, facts, output.paths_top)),
+      writing_(pool().size() > 1) {
   paths_.file = open_sheet(folder, output.paths, output.paths_gzip ? "paths.jsonl.gz" : "paths.jsonl");
   if (output.paths && output.paths_gzip) paths_.gzip = std::make_unique<GzipEncoder>(*paths_.file);
   links_.file = open_sheet(folder, output.links, "links.csv");
   profile_.file = open_sheet(folder, output.pdp, "pdp.csv");
   doppler_.file = open_sheet(folder, output.doppler, "doppler.csv");
-  links_.text = std::string(links_csv_header) + '\n';
-  profile_.text = std::string(facts.diffuse ? diffuse_pdp_csv_header : pdp_csv_header) + '\n';
-  doppler_.text = std::string(doppler_csv_header) + '\n';
+  links_.write(std::string(links_csv_header) + '\n');
+  profile_.write(std::string(facts.diffuse ? diffuse_pdp_csv_header : pdp_csv_header) + '\n');
+  doppler_.write(std::string(doppler_csv_header) + '\n');
   if (output.cfr) responses_ = std::make_unique<ResponseCollector>(folder, scene, receivers, facts, output);
   if (output.npz || output.exchange.mat)
     arrays_ = std::make_unique<PathCollector>(folder, scene, receivers, facts, output);
@@ -61,18 +63,30 @@ ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<c
 
 ResultWriter::~ResultWriter() = default;
 
-void ResultWriter::write(const FrameResult& frame) {
-  const auto flush_all = [this](std::size_t limit) {
-    for (Sheet* sheet : {&paths_, &links_, &profile_, &doppler_}) sheet->flush(limit);
-  };
-  for (const LinkResult& link : frame.links) {
-    if (output_.paths) lines_->append(paths_.text, frame, link);
-    if (output_.links) link_lines_.append(links_.text, frame, link);
-    if (output_.pdp) dcem::detail::naming("output.pdp.bin_s", [&] { append_profile(frame, link); });
-    if (output_.doppler) dcem::detail::naming("output.doppler.bin_hz", [&] { append_doppler(frame, link); });
-    flush_all(sheet_bytes);
+ResultWriter::Lines ResultWriter::lines_of(const FrameResult& frame, std::span<const LinkResult> links) const {
+  Lines lines;
+  for (const LinkResult& link : links) {
+    if (output_.paths) lines_->append(lines.paths, frame, link);
+    if (output_.links) link_lines_.append(lines.links, frame, link);
+    if (output_.pdp) dcem::detail::naming("output.pdp.bin_s", [&] { append_profile(lines.profile, frame, link); });
+    if (output_.doppler)
+      dcem::detail::naming("output.doppler.bin_hz", [&] { append_doppler(lines.doppler, frame, link); });
   }
-  flush_all(1);
+  return lines;
+}
+
+void ResultWriter::write(const FrameResult& frame) {
+  const auto make = [&](std::span<const LinkResult> links) { return lines_of(frame, links); };
+  in_pieces<Lines>(pool(), frame.links, make, [this](std::vector<Lines>&& pieces) {
+    writing_.start([this, pieces = std::move(pieces)] {
+      for (const Lines& lines : pieces) {
+        paths_.write(lines.paths);
+        links_.write(lines.links);
+        profile_.write(lines.profile);
+        doppler_.write(lines.doppler);
+      }
+    });
+  });
   if (responses_) responses_->add(frame);
   if (arrays_) arrays_->add(frame);
   if (plots_) plots_->add(frame);
@@ -81,16 +95,23 @@ void ResultWriter::write(const FrameResult& frame) {
   for (const auto& file : exports_) file->add(frame, instant);
 }
 
-std::string ResultWriter::link_lines(const FrameResult& frame) const {
-  return output_.links ? link_lines_.text(frame) : std::string();
+LinePieces ResultWriter::link_lines(const FrameResult& frame) {
+  return output_.links ? link_lines_.pieces(frame, pool()) : std::make_shared<std::vector<std::string>>();
 }
 
-void ResultWriter::write_lines(std::string_view link_lines) {
-  links_.text += link_lines;
-  links_.flush(1);
+void ResultWriter::write_lines(LinePieces lines) {
+  writing_.start([this, lines = std::move(lines)] {
+    for (const std::string& text : *lines) links_.write(text);
+  });
+}
+
+void ResultWriter::write_lines(std::string_view lines) {
+  writing_.wait();
+  links_.write(lines);
 }
 
 void ResultWriter::finish() {
+  writing_.wait();
   if (paths_.gzip != nullptr) paths_.gzip->finish();
   if (responses_) responses_->write();
   if (arrays_) arrays_->write();
@@ -98,28 +119,28 @@ void ResultWriter::finish() {
   for (const auto& file : exports_) file->finish();
 }
 
-CsvLine ResultWriter::begin_line(Sheet& sheet, const FrameResult& frame, const LinkResult& link) const {
-  CsvLine line(sheet.text);
+CsvLine ResultWriter::begin_line(std::string& text, const FrameResult& frame, const LinkResult& link) const {
+  CsvLine line(text);
   line.count(frame.index).prepared(link_lines_.transmitter(link)).prepared(link_lines_.receiver(link));
   return line;
 }
 
-void ResultWriter::append_profile(const FrameResult& frame, const LinkResult& link) {
+void ResultWriter::append_profile(std::string& text, const FrameResult& frame, const LinkResult& link) const {
   const std::vector<PowerSample> diffuse = power_samples(link.diffuse);
   const double power_dbm = power_dbm_[link.transmitter];
   for (const PdpTap& tap : power_delay_profile(link.paths, diffuse, output_.pdp_bin_s, output_.pdp_mode)) {
     if (!(tap.power_ratio > 0.0)) continue;
-    CsvLine line = begin_line(profile_, frame, link);
+    CsvLine line = begin_line(text, frame, link);
     line.number(tap.delay_s).number(power_dbm + power_ratio_to_db(tap.power_ratio));
     if (facts_.diffuse) line.number(dcem::detail::ratio_to_dbm(tap.diffuse_power_ratio, power_dbm));
     line.end();
   }
 }
 
-void ResultWriter::append_doppler(const FrameResult& frame, const LinkResult& link) {
+void ResultWriter::append_doppler(std::string& text, const FrameResult& frame, const LinkResult& link) const {
   const std::vector<PowerSample> samples = power_samples(link.paths, link.diffuse);
   for (const DopplerBin& bin : doppler_spectrum(samples, output_.doppler_bin_hz)) {
-    CsvLine line = begin_line(doppler_, frame, link);
+    CsvLine line = begin_line(text, frame, link);
     line.number(bin.doppler_hz).number(power_dbm_[link.transmitter] + power_ratio_to_db(bin.power_ratio)).end();
   }
 }

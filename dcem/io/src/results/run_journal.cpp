@@ -10,14 +10,15 @@
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/results/frame_archive.hpp"
+#include "dcem/io/src/results/link_pieces.hpp"
 
 namespace dcem::io {
 namespace {
 
 namespace fs = std::filesystem;
 
-// The pieces of a frame, in this order: its figures, its links one by one, its end.
-constexpr char figures_piece = 'F', link_piece = 'L', end_piece = 'E';
+// The pieces of a frame, in this order: its figures, its links one by one or its lines, its end.
+constexpr char figures_piece = 'F', link_piece = 'L', lines_piece = 'T', end_piece = 'E';
 
 /// Eight bytes at a time: a trace may have gigabytes.
 std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t hash) {
@@ -35,6 +36,26 @@ std::uint64_t hash_piece(char kind, std::string_view bytes) {
   return hash_bytes(bytes, hash_values(bytes.size(), static_cast<unsigned char>(kind)));
 }
 
+/// What stands before the bytes of a piece.
+std::string piece_head(char kind, std::string_view bytes) {
+  const std::array<std::uint64_t, 2> numbers{bytes.size(), hash_piece(kind, bytes)};
+  std::string head(1, kind);
+  head.append(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
+  return head;
+}
+
+std::string piece(char kind, const std::string& bytes) {
+  return piece_head(kind, bytes) + bytes;
+}
+
+/// The first piece of a frame: which link each line is of, and how many links or pieces of lines follow, too.
+std::string first_piece(const FrameFigures& figures, const std::vector<LinkRequest>& of_lines, std::size_t links,
+                        std::size_t lines) {
+  ByteWriter writer;
+  writer(figures, of_lines, links, lines);
+  return piece(figures_piece, writer.bytes());
+}
+
 std::string hexadecimal(std::uint64_t number) {
   std::string digits;
   for (int shift = 60; shift >= 0; shift -= 4) digits.push_back("0123456789abcdef"[number >> shift & 15U]);
@@ -43,7 +64,7 @@ std::string hexadecimal(std::uint64_t number) {
 
 /// The first lines of a journal.
 std::array<std::string, 4> head_lines(const RunIdentity& identity) {
-  return {"dcem-journal/1", "version " + identity.version, "inputs " + hexadecimal(identity.inputs),
+  return {"dcem-journal/2", "version " + identity.version, "inputs " + hexadecimal(identity.inputs),
           "options " + identity.options};
 }
 
@@ -76,13 +97,18 @@ FrameResult JournalEntry::take_result() {
           figures.tree,  figures.cache,  figures.update_time_s, figures.solve_time_s};
 }
 
-RunJournal::RunJournal(const fs::path& folder, const RunIdentity& identity)
-    : file_(folder / journal_name), stream_(file_, std::ios::binary | std::ios::trunc), is_kept_(false) {
+RunJournal::RunJournal(const fs::path& folder, const RunIdentity& identity, ThreadPool* pool)
+    : file_(folder / journal_name),
+      stream_(file_, std::ios::binary | std::ios::trunc),
+      is_kept_(false),
+      pool_(pool),
+      writing_(pool != nullptr && pool->size() > 1) {
   for (const std::string& line : head_lines(identity)) stream_ << line << '\n';
   if (!stream_.flush()) throw OutputError(file_, "cannot be written", "a folder that can be written, with space left");
 }
 
-RunJournal::RunJournal(const fs::path& folder, std::uint64_t bytes) : file_(folder / journal_name), is_kept_(true) {
+RunJournal::RunJournal(const fs::path& folder, std::uint64_t bytes, ThreadPool* pool)
+    : file_(folder / journal_name), is_kept_(true), pool_(pool), writing_(pool != nullptr && pool->size() > 1) {
   std::error_code error;
   fs::resize_file(file_, bytes, error);
   if (!error) stream_.open(file_, std::ios::binary | std::ios::app);
@@ -90,46 +116,76 @@ RunJournal::RunJournal(const fs::path& folder, std::uint64_t bytes) : file_(fold
 }
 
 RunJournal::~RunJournal() {
+  settle();
   if (!is_kept_) remove();
 }
 
 void RunJournal::add(const FrameResult& frame) {
-  ByteWriter figures;
-  figures(figures_of(frame), std::string(), std::vector<LinkRequest>(), frame.links.size());
-  put(figures_piece, figures.bytes());
-  for (const LinkResult& link : frame.links) {
-    ByteWriter writer;
-    writer(link);
-    put(link_piece, writer.bytes());
-  }
-  end_frame();
+  std::string first = first_piece(figures_of(frame), {}, frame.links.size(), 0);
+  const auto make = [](std::span<const LinkResult> links) {
+    std::string pieces;
+    for (const LinkResult& link : links) {
+      ByteWriter writer;
+      writer(link);
+      pieces += piece(link_piece, writer.bytes());
+    }
+    return pieces;
+  };
+  in_pieces<std::string>(pool(), frame.links, make, [&](std::vector<std::string>&& pieces) {
+    writing_.start([this, first = std::exchange(first, {}), pieces = std::move(pieces)] {
+      write(first);
+      for (const std::string& one : pieces) write(one);
+    });
+  });
+  writing_.start([this, first = std::move(first)] {
+    write(first);
+    end_frame();
+  });
 }
 
-void RunJournal::add(const FrameResult& frame, const std::string& link_lines) {
-  ByteWriter figures;
-  std::vector<LinkRequest> line_links;
-  for (const LinkResult& link : frame.links) line_links.push_back({link.transmitter, link.receiver});
-  figures(figures_of(frame), link_lines, line_links, std::size_t{0});
-  put(figures_piece, figures.bytes());
-  end_frame();
+void RunJournal::add(const FrameFigures& figures, std::span<const LinkResult> links, const LinePieces& lines) {
+  std::vector<LinkRequest> of_lines;
+  of_lines.reserve(links.size());
+  for (const LinkResult& link : links) of_lines.push_back({link.transmitter, link.receiver});
+  std::vector<std::string> heads(lines->size());
+  pool().for_each(heads.size(),
+                  [&](std::size_t index, unsigned) { heads[index] = piece_head(lines_piece, (*lines)[index]); });
+  writing_.start([this, first = first_piece(figures, of_lines, 0, heads.size()), heads = std::move(heads), lines] {
+    write(first);
+    for (std::size_t index = 0; index < heads.size(); ++index) {
+      write(heads[index]);
+      write((*lines)[index]);
+    }
+    end_frame();
+  });
 }
 
-void RunJournal::put(char kind, std::string_view bytes) {
-  const std::uint64_t size = bytes.size(), hash = hash_piece(kind, bytes);
-  stream_.put(kind);
-  for (const std::uint64_t number : {size, hash}) {
-    stream_.write(reinterpret_cast<const char*>(&number), sizeof number);
-  }
+void RunJournal::write(std::string_view bytes) {
   stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
 void RunJournal::end_frame() {
-  put(end_piece, {});
+  write(piece(end_piece, {}));
   if (!stream_.flush()) throw OutputError(file_, "cannot be written to its end", "a disk with space left");
   has_frames_ = true;
 }
 
+/// Where an error has been told already, or nobody asks.
+void RunJournal::settle() {
+  try {
+    wait();
+  } catch (const std::exception&) {
+    // What is not whole is left out by who reads it.
+  }
+}
+
+void RunJournal::keep() {
+  settle();
+  is_kept_ = is_kept_ || has_frames_;
+}
+
 void RunJournal::remove() {
+  settle();
   stream_.close();
   std::error_code ignored;
   fs::remove(file_, ignored);
@@ -196,12 +252,13 @@ std::optional<JournalEntry> JournalReader::next() {
   ++read_;
   try {
     JournalEntry entry;
-    std::size_t links = 0;
+    std::size_t links = 0, lines = 0, lines_read = 0;
     for (auto piece = next_piece(); piece; piece = next_piece()) {
       ByteReader reader(piece->bytes);
-      if (piece->kind == figures_piece) reader(entry.figures, entry.link_lines, entry.line_links, links);
+      if (piece->kind == figures_piece) reader(entry.figures, entry.line_links, links, lines);
       if (piece->kind == link_piece) reader(entry.links.emplace_back());
-      if (piece->kind == end_piece && links == entry.links.size()) return entry;
+      if (piece->kind == lines_piece) entry.link_lines += piece->bytes, ++lines_read;
+      if (piece->kind == end_piece && links == entry.links.size() && lines == lines_read) return entry;
     }
   } catch (const std::runtime_error&) {
     // As where the file ends too early.

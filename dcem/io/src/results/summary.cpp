@@ -156,7 +156,7 @@ std::vector<double> times_of(const std::vector<FrameFigures>& frames) {
   return times_s;
 }
 
-Json totals_json(const std::vector<FrameFigures>& frames, double step_s) {
+Json totals_json(const std::vector<FrameFigures>& frames, double step_s, const WorkTimes& work) {
   const FrameFigures sum = sum_of(frames);
   const std::vector<double> times_s = times_of(frames);
   const double covered_s = step_s * static_cast<double>(frames.size());
@@ -166,6 +166,10 @@ Json totals_json(const std::vector<FrameFigures>& frames, double step_s) {
           {"paths", sum.paths},
           {"update_time_s", sum.update_time_s},
           {"solve_time_s", sum.solve_time_s},
+          {"serial_time_s", work.serial_s},
+          {"parallel_time_s", work.parallel_s},
+          {"beside_time_s", work.beside_s},
+          {"longest_tasks_time_s", work.longest_tasks_s},
           {"frame_time_median_s", median(times_s)},
           {"frame_time_p95_s", quantile(times_s, 0.95)},
           {"frame_time_max_s", quantile(times_s, 1.0)},
@@ -251,7 +255,7 @@ std::string RunSummary::json() const {
   head["settings"] = settings_json(facts_);
   head["warnings"] = warnings();
   head["sampling"] = sampling_.is_sampled ? sampling_json(sampling_) : Json(nullptr);
-  head["totals"] = totals_json(frames_, facts_.time.step_s);
+  head["totals"] = totals_json(frames_, facts_.time.step_s, work_times_);
   std::string text = json_text(head);
   text.resize(text.rfind('}'));
   while (text.back() == '\n') text.pop_back();
