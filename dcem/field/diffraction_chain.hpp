@@ -12,6 +12,7 @@
 #include "dcem/em/diffraction/diffraction_cascade.hpp"
 #include "dcem/em/diffraction/wedge_diffraction.hpp"
 #include "dcem/em/surface/material_table.hpp"
+#include "dcem/field/edge_angles.hpp"
 #include "dcem/field/field_carrier.hpp"
 #include "dcem/paths/path.hpp"
 #include "dcem/scene/scene.hpp"
@@ -41,6 +42,7 @@ class DiffractionChain {
         directions_(directions),
         from_m_(from_m),
         to_m_(to_m),
+        angles_(scene, path, from_m, to_m),
         carrier_(scene, surface, path, directions),
         wave_number_rad_per_m_(wave_number_rad_per_m) {
     measure_legs();
@@ -79,68 +81,25 @@ class DiffractionChain {
 
   void add_edge(std::size_t place) {
     const WorldWedge& wedge = scene_.wedge(path_.interactions[place].wedge);
-    const Vec3 along = edge_direction(wedge.edge);
     Edge edge;
-    edge.bases = edge_bases(along, directions_[place], directions_[place + 1]);
-    edge.angles =
-        settled(place, wedge_angles({along, wedge.edge.tangent, wedge.edge.normal}, wedge.edge.exterior_angle_rad / pi,
-                                    directions_[place], directions_[place + 1]));
-    edge.matrices = wedge_matrices(edge.angles, reflection_of(wedge.facets[0]), reflection_of(wedge.facets[1]),
-                                   model_.lossy_wedge, transmission_of(wedge, edge.angles));
+    edge.bases = edge_bases(edge_direction(wedge.edge), directions_[place], directions_[place + 1]);
+    edge.angles = angles_.at(place, directions_);
+    edge.matrices = matrices_at(place, wedge, edge.angles);
     edge.arrival = edges_.empty() ? diagonal_matrix(1.0, 1.0) : arrival_at(edge.bases, place);
     edge.alignment = edges_.empty() ? 1.0 : alignment_at(edge.bases, place);
     edges_.push_back(edge);
   }
 
-  /// Within rounding of a boundary of the direct or of a reflected field, the observer is put on the side on which the
-  /// paths take it to be: the path itself says whether the direct one is hidden; a mirror does not reflect within
-  /// in_plane_guard_m of its rim.
-  WedgeAngles settled(std::size_t place, const WedgeAngles& angles) const {
-    const double turn_rad = angles.diffracted_azimuth_rad - angles.incident_azimuth_rad;
-    if (std::abs(std::abs(turn_rad) - pi) < shadow_boundary_rad) {
-      const double side = path_.interactions[place].in_shadow ? 1.0 : -1.0;
-      return moved_to(angles, angles.incident_azimuth_rad + std::copysign(pi + side * beside_rad, turn_rad));
-    }
-    const double opening_rad = angles.exterior_angle_over_pi * pi;
-    const double from_0_rad = angles.incident_azimuth_rad, from_n_rad = opening_rad - from_0_rad;
-    if (reflects_at_rim(place, from_0_rad, angles.diffracted_azimuth_rad)) {
-      return moved_to(angles, pi + beside_rad - from_0_rad);
-    }
-    if (reflects_at_rim(place, from_n_rad, opening_rad - angles.diffracted_azimuth_rad)) {
-      return moved_to(angles, opening_rad - (pi + beside_rad - from_n_rad));
-    }
-    return angles;
-  }
-
-  /// Whether the point of reflection at a face, from which both azimuths count, lies on its rim.
-  bool reflects_at_rim(std::size_t place, double incident_rad, double diffracted_rad) const {
-    if (std::abs(incident_rad + diffracted_rad - pi) > rim_search_rad) return false;
-    const double incident_m = across_m(place, stop_beside_m(place, -1)),
-                 diffracted_m = across_m(place, stop_beside_m(place, 1));
-    const double offset_m = incident_m * diffracted_m * std::sin(incident_rad + diffracted_rad) /
-                            (diffracted_m * std::sin(diffracted_rad) + incident_m * std::sin(incident_rad));
-    return std::abs(offset_m) <= in_plane_guard_m;
-  }
-
-  static WedgeAngles moved_to(WedgeAngles angles, double diffracted_azimuth_rad) {
-    angles.diffracted_azimuth_rad = diffracted_azimuth_rad;
-    return angles;
-  }
-
-  /// The point before (−1) or after (1) an interaction at which the path turns, or its end.
-  Vec3 stop_beside_m(std::size_t place, int step) const {
-    const std::size_t count = path_.interactions.size();
-    for (std::size_t index = place + static_cast<std::size_t>(step); index < count;
-         index += static_cast<std::size_t>(step)) {
-      if (path_.interactions[index].kind != InteractionKind::transmission) return path_.interactions[index].point_m;
-    }
-    return step < 0 ? from_m_ : to_m_;
-  }
-
-  double across_m(std::size_t place, const Vec3& point_m) const {
-    const Wedge& edge = scene_.wedge(path_.interactions[place].wedge).edge;
-    const Vec3 away_m = point_m - path_.interactions[place].point_m;
-    return std::hypot(glm::dot(away_m, edge.tangent), glm::dot(away_m, edge.normal));
+  /// What arrives along a face holds the wave and its reflection: the terms with that reflection would count it twice.
+  /// Only in holm_reciprocal every term has its image in each face, whatever the face is of.
+  WedgeMatrices matrices_at(std::size_t place, const WorldWedge& wedge, const WedgeAngles& angles) const {
+    const std::optional<FacetId> before = angles_.face_beside(place, -1);
+    const bool along_face = before || angles_.face_beside(place, 1);
+    const WedgeMatrices all =
+        wedge_matrices(angles, reflection_of(wedge.facets[0]), reflection_of(wedge.facets[1]),
+                       along_face ? LossyWedge::holm_reciprocal : model_.lossy_wedge, transmission_of(wedge, angles));
+    if (!before) return all;
+    return all.without_reflection_at(*before == wedge.facets[0] ? WedgeFace::zero : WedgeFace::n);
   }
 
   auto reflection_of(FacetId facet) const {
@@ -220,15 +179,13 @@ class DiffractionChain {
     return matrix;
   }
 
-  static constexpr double beside_rad = 1e-13;  ///< a thousand roundings of an azimuth; of the field it is 1e-13·√(kL)
-  static constexpr double rim_search_rad = 1e-3;  ///< farther from a boundary no point of reflection is on the rim
-
   const Scene& scene_;
   const Surface& surface_;
   const DiffractionModel& model_;
   const Path& path_;
   const std::vector<Vec3>& directions_;
   Vec3 from_m_, to_m_;
+  EdgeAngles angles_;
   FieldCarrier<Surface> carrier_;
   double wave_number_rad_per_m_;
   std::vector<std::size_t> places_;  ///< of the diffractions among the interactions

@@ -132,6 +132,13 @@ struct WedgeMatrices {
   /// As D1…D4.
   std::array<ComplexMatrix2, 4> in_order() const { return {incident_plus, incident_minus, reflected_n, reflected_0}; }
 
+  /// For a wave that comes in along a face, holm_reciprocal: what is left without the terms that a reflection at this
+  /// face comes first in. They are the images of the others, and as large.
+  WedgeMatrices without_reflection_at(WedgeFace face) const {
+    if (face == WedgeFace::zero) return {ComplexMatrix2{}, incident_minus, reflected_n, ComplexMatrix2{}};
+    return {incident_plus, ComplexMatrix2{}, ComplexMatrix2{}, reflected_0};
+  }
+
   ComplexMatrix2 combine(const UtdTerms& terms) const {
     return terms.incident_plus * incident_plus + terms.incident_minus * incident_minus +
            terms.reflected_n * reflected_n + terms.reflected_0 * reflected_0;

@@ -15,6 +15,7 @@
 #include "dcem/paths/sequence.hpp"
 #include "dcem/paths/solve/chain_points.hpp"
 #include "dcem/paths/solve/edge_rules.hpp"
+#include "dcem/paths/solve/face_leg.hpp"
 #include "dcem/paths/solve/image_method.hpp"
 #include "dcem/paths/solve/leg_walker.hpp"
 #include "dcem/paths/solve/solver_counters.hpp"
@@ -71,7 +72,7 @@ class PathSolver {
     in_shadow_.assign(sequence.size(), false);
     for (std::size_t index = 0; index < sequence.size(); ++index) {
       const SequenceElement element = sequence[sequence.size() - 1 - index];  // points run from the transmitter
-      const bool holds = element.is_edge() ? touches_edge(element.edge(), index, transmitter, receiver, ignored)
+      const bool holds = element.is_edge() ? touches_edge(index, transmitter, receiver, sequence, ignored)
                                            : touches_mirror(element.mirror(), index, sequence, ignored);
       if (!holds) return std::nullopt;
     }
@@ -81,7 +82,8 @@ class PathSolver {
     std::optional<Path> path = legs_.follow(transmitter, receiver, sequence, points_m, in_shadow_, counters_);
     for (std::size_t index = 0; index < sequence.size() && path; ++index) {
       const SequenceElement element = sequence[sequence.size() - 1 - index];
-      if (element.is_edge() && touches_third(element.edge(), index, ignored)) return std::nullopt;
+      if (!element.is_edge()) continue;
+      if (touches_third(element.edge(), index, ignored) || leaves_face(index, sequence)) return std::nullopt;
     }
     return path;
   }
@@ -118,18 +120,43 @@ class PathSolver {
     return true;
   }
 
-  /// Whether the wedge diffracts at the path's point `index`: both neighbours in its exterior.
-  bool touches_edge(WedgeId id, std::size_t index, const LinkEnd& transmitter, const LinkEnd& receiver,
+  /// Whether the wedge diffracts at the path's point `index`: both neighbours in its exterior, or on an edge of one of
+  /// its faces.
+  bool touches_edge(std::size_t index, const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
                     const IgnoredBodies& ignored) {
-    const WorldWedge& wedge = scene().wedge(id);
+    const WorldWedge& wedge = scene().wedge(sequence[sequence.size() - 1 - index].edge());
     if (!diffracts(wedge, rules_) || tracer_.is_ignored(wedge.body, ignored)) return false;
     const std::vector<Vec3>& points_m = points_.points_m();
     const Vec3& here_m = points_m[index];
     const Vec3& before_m = index == 0 ? transmitter.position_m : points_m[index - 1];
     const Vec3& after_m = index + 1 == points_m.size() ? receiver.position_m : points_m[index + 1];
-    if (!clear_of_faces(wedge.edge, before_m - here_m) || !clear_of_faces(wedge.edge, after_m - here_m)) return false;
-    in_shadow_[index] = hides(wedge, before_m, here_m, after_m);
+    const std::optional<FacetId> from = index > 0 ? face_between(index - 1, sequence) : std::nullopt;
+    const std::optional<FacetId> to = index + 1 < sequence.size() ? face_between(index, sequence) : std::nullopt;
+    if (from && to) return false;  // the terms of such an edge cancel down to rounding
+    if (!from && !clear_of_faces(wedge.edge, before_m - here_m)) return false;
+    if (!to && !clear_of_faces(wedge.edge, after_m - here_m)) return false;
+    const double turn_rad = azimuth_rad(wedge, before_m - here_m, from) - azimuth_rad(wedge, after_m - here_m, to);
+    in_shadow_[index] = from || to ? std::abs(turn_rad) > pi : hides(wedge, before_m, after_m, std::abs(turn_rad));
     return !rules_.shadow_only || in_shadow_[index];
+  }
+
+  /// The face along which the leg from point `index` to the next one leads: both are on edges of it.
+  std::optional<FacetId> face_between(std::size_t index, const Sequence& sequence) const {
+    const SequenceElement here = sequence[sequence.size() - 1 - index], next = sequence[sequence.size() - 2 - index];
+    if (!here.is_edge() || !next.is_edge()) return std::nullopt;
+    return common_face(scene().wedge(here.edge()), scene().wedge(next.edge()));
+  }
+
+  /// Whether the leg from point `index` leads along a face and beyond its rim in between.
+  bool leaves_face(std::size_t index, const Sequence& sequence) const {
+    if (index + 1 >= sequence.size()) return false;
+    const std::optional<FacetId> face = face_between(index, sequence);
+    if (!face) return false;
+    const auto stray_m = [&](std::size_t at) {
+      return scene().wedge(sequence[sequence.size() - 1 - at].edge()).edge.stray_m;
+    };
+    const double tolerance_m = scene().settings().weld_tolerance_m + std::max(stray_m(index), stray_m(index + 1));
+    return !lies_on_facet(scene(), *face, points_.points_m()[index], points_.points_m()[index + 1], tolerance_m);
   }
 
   /// Whether a third facet is at the path's point `index`, on an edge: then nothing diffracts there.
@@ -142,12 +169,10 @@ class PathSolver {
                        [&](FacetId facet) { return facet != wedge.facets[0] && facet != wedge.facets[1]; });
   }
 
-  /// Whether the wedge stands between two points that diffract at `here_m`. Within rounding of the shadow boundary the
-  /// azimuths cannot say; there the test decides that decides of the straight leg between the two, so that exactly one
-  /// of the direct and the shadowed field is taken.
-  bool hides(const WorldWedge& wedge, const Vec3& before_m, const Vec3& here_m, const Vec3& after_m) const {
-    const double turn_rad =
-        std::abs(azimuth_rad(wedge.edge, before_m - here_m) - azimuth_rad(wedge.edge, after_m - here_m));
+  /// Whether the wedge stands between two points that it turns into each other. Within rounding of the shadow boundary
+  /// the azimuths cannot say; there the test decides that decides of the straight leg between the two, so that exactly
+  /// one of the direct and the shadowed field is taken.
+  bool hides(const WorldWedge& wedge, const Vec3& before_m, const Vec3& after_m, double turn_rad) const {
     if (std::abs(turn_rad - pi) > shadow_boundary_rad) return turn_rad > pi;
     return tracer_.meets(wedge.facets[0], before_m, after_m) || tracer_.meets(wedge.facets[1], before_m, after_m);
   }

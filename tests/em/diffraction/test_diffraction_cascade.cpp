@@ -341,6 +341,29 @@ TEST_CASE("an alley between two roofs: no path over both rims is above the line 
       }
 }
 
+TEST_CASE("a metal house across the way that becomes thin is a half plane: its roof reflects once") {
+  const double k = wave_number_rad_per_m(3e9), leg = 50.0, width = 1e-3;
+  const std::vector<std::array<double, 2>> below{{0.02, 0.02}, {0.1, 0.3}, {0.5, 0.5}, {1.2, 0.2}};
+  for (const auto& [first_rad, second_rad] : below)
+    for (const bool is_hard : {false, true}) {
+      const auto& signs = is_hard ? hard_signs : soft_signs;
+      const std::array<Complex, 4> factors{signs[0], signs[1], signs[2], signs[3]};
+      // Out along face n of the first edge, in along face 0 of the second, whose reflection is there already.
+      const std::array<Complex, 4> without{0.0, signs[1], signs[2], 0.0};
+      const std::array<CascadeEdge<Complex>, 2> roof{
+          {{{1.5, 0.5 * pi - first_rad, 1.5 * pi, 0.5 * pi}, factors, width, 1.0, 1.0},
+           {{1.5, 0.0, pi + second_rad, 0.5 * pi}, without, leg, 1.0, -1.0}}};
+      const std::array<CascadeEdge<Complex>, 1> rim{
+          {{{2.0, 0.5 * pi - first_rad, 1.5 * pi + second_rad, 0.5 * pi}, factors, leg, 1.0, 1.0}}};
+      const double difference =
+          loss_db(cascade_transfer<Complex>(k, leg, roof)) - loss_db(cascade_transfer<Complex>(k, leg, rim));
+      CAPTURE(first_rad);
+      CAPTURE(second_rad);
+      CAPTURE(is_hard);
+      CHECK(std::abs(difference) <= (first_rad + second_rad < 0.1 ? 0.05 : 0.8));
+    }
+}
+
 TEST_CASE("three screens: within 0.5 dB of Kirchhoff's integral") {
   REQUIRE(three_rows.size() == 32);
   double worst = 0.0;
