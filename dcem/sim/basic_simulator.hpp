@@ -57,7 +57,6 @@ class BasicSimulator {
   FrameResult advance(const Frame& frame);
   /// The same for the instant `time_s`, by the motions of the scene.
   FrameResult advance_to(double time_s, std::size_t index = 0) { return advance(scene_.frame_at(time_s, index)); }
-
   /// Takes the room of a frame that nobody needs any more: where links are many, the next frame begins with it.
   void give_back(FrameResult&& spent) { room_ = detail::room_of(std::move(spent.links), *pool_); }
 
@@ -77,14 +76,11 @@ class BasicSimulator {
 
   /// Closed shells that hold a point in the current frame or on which it lies, ascending.
   std::vector<ShellAtPoint> shells_at(const Vec3& point_m) const;
-
   /// Whether a device is there in the current frame.
   bool is_present(const Device& device) const { return state_of(device).present; }
-
   /// Moves scene and index to a frame without solving anything.
   TreeUpdateReport move_to(const Frame& frame);
-  /// About how many chains over edges a link of the first transmitter takes where discovery is sampled, by
-  /// `max_interactions`; as `Simulator` has it.
+  /// As `Simulator` has it.
   std::vector<double> estimated_chains(const Device& receiver) const;
   /// One path on its own, in the current frame: over `sequence`, counted from the receiver, between a transmitter and a
   /// receiver of the scene. Nothing where there is no such path or an end is absent.
@@ -207,7 +203,6 @@ class BasicSimulator {
   /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
   void trace_elements(std::span<PathContribution> paths, const DeviceEnd& from, const DeviceEnd& to,
                       const Evaluator& evaluator) const;
-  static RadioMapPoint map_point(const LinkResult& link, const Vec3& position_m);
 
   Scene scene_;
   SimulationSettings settings_;
@@ -217,6 +212,7 @@ class BasicSimulator {
   SearchPlan plan_;
   CacheMode cache_;
   LinkChoice choice_;
+  std::shared_ptr<const detail::DeviceNumbers> numbers_;  ///< of the scene's transmitters
   std::vector<std::vector<std::uint32_t>> chosen_;  ///< by receiver of the scene, where not all have links with all …
   std::vector<std::size_t> links_of_;               ///< … and how many links each transmitter has
   std::vector<std::uint32_t> moved_;                ///< triangles that the index has still to hear of
@@ -226,9 +222,8 @@ class BasicSimulator {
   std::unique_ptr<LaneScene> lanes_;                ///< where the plan has halves; those that are kept point to it
   std::vector<KeptHalf> halves_;                    ///< one per transmitter, where the plan has them …
   bool halves_are_current_ = false;                 ///< … and whether they are those of the current frame
-  // Where the cache is exact.
-  std::optional<detail::FrameChange> change_;      ///< since the frame before
-  std::vector<detail::ReceiverMemory> receivers_;  ///< one per receiver of the scene
+  std::optional<detail::FrameChange> change_;       ///< since the frame before, where the cache is exact; so the next
+  std::vector<detail::ReceiverMemory> receivers_;   ///< one per receiver of the scene
   std::vector<std::optional<LinkEnd>> transmitters_before_;
   std::vector<std::optional<DeviceState>> transmitter_states_before_;
   std::optional<FacetRims> rims_;                              ///< where lifetimes are asked for

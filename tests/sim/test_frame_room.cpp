@@ -2,10 +2,12 @@
 #include <doctest/doctest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "dcem/sim/detail/busiest_first.hpp"
 #include "dcem/sim/detail/gather_links.hpp"
 #include "dcem/sim/simulator.hpp"
 #include "tests/support/memory_trial.hpp"
@@ -89,6 +91,15 @@ TEST_CASE("links are gathered by transmitter, then receiver; those of a smaller 
     room = detail::room_of(std::move(all), pool);
     for (const LinkResult& link : room) REQUIRE(link.paths.empty());
   }
+}
+
+TEST_CASE("each receiver is taken once, those with most links first") {
+  const std::vector<std::vector<std::uint32_t>> chosen{{1}, {}, {1, 2, 3}, {4, 5}, {7}};
+  CHECK(detail::busiest_first(5, chosen) == std::vector<std::size_t>{2, 3, 0, 4, 1});
+  CHECK(detail::busiest_first(3, {}) == std::vector<std::size_t>{0, 1, 2});
+  CHECK(detail::busiest_first(0, {}).empty());
+  const std::vector<std::size_t> many = detail::busiest_first(5000, std::vector<std::vector<std::uint32_t>>(5000));
+  for (std::size_t place = 0; place < many.size(); ++place) REQUIRE(many[place] == place);
 }
 
 }  // namespace test_frame_room

@@ -1,5 +1,6 @@
 #pragma once
 /// What an end may see of bodies, body by body: few mirrors and edges each.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -7,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/paths/halves/edge_parts.hpp"
 #include "dcem/paths/halves/sight.hpp"
 
@@ -76,20 +78,22 @@ class BodyElements {
 /// Which mirrors of the scenery may light which bodies.
 class BodyReach {
  public:
-  /// Of `count` cones that count from the middle of the outlines, and of the mirrors that they belong to.
-  void find(const FacetOutlines& outlines, std::size_t count, auto&& cone_of, auto&& mirror_of) {
-    found_.clear();
-    first_.assign(outlines.bodies().size() + 2, 0);
-    for (std::size_t cone = 0; cone < count; ++cone) {
-      outlines.for_each_body_in(cone_of(cone), [&](BodyId body) {
-        found_.push_back({body.value, mirror_of(cone)});
-        ++first_[body.value + 1];
-      });
-    }
-    for (std::size_t body = 1; body < first_.size(); ++body) first_[body] += first_[body - 1];
-    mirrors_.resize(found_.size());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (const auto& [body, mirror] : found_) mirrors_[next[body]++] = mirror;
+  /// Of `count` cones that count from the middle of the outlines, and of the mirrors that they belong to. Many are
+  /// looked at by the threads of `pool`, where there is one.
+  void find(const FacetOutlines& outlines, std::size_t count, auto&& cone_of, auto&& mirror_of, ThreadPool* pool) {
+    constexpr std::size_t block = 128;
+    found_.resize((count + block - 1) / block);
+    const auto look = [&](std::size_t number, unsigned) {
+      found_[number].clear();
+      for (std::size_t cone = number * block; cone < std::min(count, (number + 1) * block); ++cone) {
+        outlines.for_each_body_in(cone_of(cone), [&](BodyId body) {
+          found_[number].push_back({body.value, mirror_of(cone)});
+        });
+      }
+    };
+    for (std::size_t number = 0; pool == nullptr && number < found_.size(); ++number) look(number, 0);
+    if (pool != nullptr) pool->for_each(found_.size(), look);
+    list(outlines.bodies().size());
   }
 
   /// The places of the mirrors that may light a body.
@@ -98,7 +102,23 @@ class BodyReach {
   }
 
  private:
-  std::vector<std::array<std::uint32_t, 2>> found_;
+  /// Counted body by body first, so that each list has its place.
+  void list(std::size_t bodies) {
+    first_.assign(bodies + 2, 0);
+    std::size_t count = 0;
+    for (const auto& of_block : found_) {
+      for (const auto& [body, mirror] : of_block) ++first_[body + 1];
+      count += of_block.size();
+    }
+    for (std::size_t body = 1; body < first_.size(); ++body) first_[body] += first_[body - 1];
+    mirrors_.resize(count);
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (const auto& of_block : found_) {
+      for (const auto& [body, mirror] : of_block) mirrors_[next[body]++] = mirror;
+    }
+  }
+
+  std::vector<std::vector<std::array<std::uint32_t, 2>>> found_;  ///< body and mirror, block by block
   std::vector<std::uint32_t> first_, mirrors_;
 };
 

@@ -19,7 +19,7 @@ struct HalfLists {
   bool over_mirrors = false;         ///< what is reached over mirrors, too
   bool at_once = false;              ///< all of it, now; otherwise of the scenery, when it has become worth while
   std::size_t receivers = 0;         ///< that join the half every time
-  ThreadPool* pool = nullptr;        ///< for lists: as in `BeamSource`
+  ThreadPool* pool = nullptr;        ///< for lists and bodies: as in `BeamSource`
   int most_pieces = BeamFinder::many_pieces;  ///< the same
 };
 
@@ -57,7 +57,7 @@ class KeptHalf {
     const bool makes_lists =
         wanted.lanes != nullptr && !has_lists_ && (wanted.at_once || (!keeps_places_ && pay(joins_)));
     if (makes_lists && !is_closer_) find_scenery(scene, outlines, end, settings, true);
-    if (!is_known) half_.find_bodies(scene, outlines, settings, moved);
+    if (!is_known) half_.find_bodies(scene, outlines, settings, moved, wanted.pool);
     has_bodies_ = true;
     has_listed_bodies_ = has_listed_bodies_ && is_known;
     if (wanted.lanes == nullptr) return;

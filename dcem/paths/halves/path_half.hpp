@@ -51,9 +51,9 @@ class PathHalf {
     has_images_ = true;
   }
   /// The same of all other bodies, where they are now. The scenery must be known. `moved`, by body: which of them have
-  /// moved since the frame before; empty: all.
+  /// moved since the frame before; empty: all. `pool`: as in `BodyReach::find`.
   void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                   std::span<const char> moved = {}) {
+                   std::span<const char> moved = {}, ThreadPool* pool = nullptr) {
     for (const bool have_moved : {true, false}) {
       HalfLayer& layer = layers_[have_moved ? 1 : 2];
       sight().find_bodies(scene, outlines, settings, {ignored_body_, moved, have_moved}, layer);
@@ -63,11 +63,11 @@ class PathHalf {
     if (place_ != nullptr) {
       reach_.find(
           outlines, place_->mirrors().size(), [&](std::size_t at) { return place_->mirrors()[at].cone; },
-          [&](std::size_t at) { return place_->mirrors()[at].number; });
+          [&](std::size_t at) { return place_->mirrors()[at].number; }, pool);
     } else {
       reach_.find(
           outlines, layers_[0].mirrors.size(), [&](std::size_t at) { return layers_[0].cones[at]; },
-          [](std::size_t at) { return static_cast<std::uint32_t>(at); });
+          [](std::size_t at) { return static_cast<std::uint32_t>(at); }, pool);
     }
   }
 

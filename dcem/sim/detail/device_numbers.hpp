@@ -10,9 +10,11 @@
 
 namespace dcem::detail {
 
+using DeviceNumbers = std::unordered_map<std::string, std::uint32_t>;
+
 /// Their places in a list, by id.
-inline std::unordered_map<std::string, std::uint32_t> numbers_by_id(std::span<const Device> devices) {
-  std::unordered_map<std::string, std::uint32_t> numbers;
+inline DeviceNumbers numbers_by_id(std::span<const Device> devices) {
+  DeviceNumbers numbers;
   for (std::size_t index = 0; index < devices.size(); ++index) {
     numbers.emplace(devices[index].id, static_cast<std::uint32_t>(index));
   }

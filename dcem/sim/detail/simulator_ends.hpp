@@ -1,6 +1,7 @@
 #pragma once
 /// What the transmitters of a `BasicSimulator` reach in a frame; included by basic_simulator.hpp.
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "dcem/field/diffuse/facets_in_view.hpp"
@@ -16,7 +17,8 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
     std::vector<char> embedded, bool fine) const {
   TransmitterEnds ends;
   ends.devices = devices;
-  ends.by_id = detail::numbers_by_id(devices);
+  const bool are_of_scene = devices.data() == scene_.transmitters().data();
+  ends.by_id = are_of_scene ? numbers_ : std::make_shared<const detail::DeviceNumbers>(detail::numbers_by_id(devices));
   ends.embedded = std::move(embedded);
   ends.link.resize(devices.size());
   ends.radio.resize(devices.size());
@@ -38,9 +40,9 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
 template <SurfaceModel Surface, SpatialIndex Index>
 std::span<const std::optional<LinkEnd>> BasicSimulator<Surface, Index>::ends_beside(
     const Device& receiver, const TransmitterEnds& transmitters, std::vector<std::optional<LinkEnd>>& others) const {
-  if (!transmitters.numbers.empty()) return transmitters.link;  // the choice has left it out
-  const auto same = transmitters.by_id.find(receiver.id);
-  if (same == transmitters.by_id.end()) return transmitters.link;
+  if (transmitters.by_id == nullptr) return transmitters.link;  // the choice has left it out
+  const auto same = transmitters.by_id->find(receiver.id);
+  if (same == transmitters.by_id->end()) return transmitters.link;
   others = transmitters.link;
   others[same->second].reset();
   return others;

@@ -13,8 +13,9 @@
 
 namespace dcem {
 
-template <SurfaceModel Surface, SpatialIndex Index>
-RadioMapPoint BasicSimulator<Surface, Index>::map_point(const LinkResult& link, const Vec3& position_m) {
+namespace detail {
+
+inline RadioMapPoint map_point(const LinkResult& link, const Vec3& position_m) {
   RadioMapPoint point{position_m, false, link.statistics, {}};
   const auto strongest = std::max_element(
       link.paths.begin(), link.paths.end(),
@@ -22,6 +23,8 @@ RadioMapPoint BasicSimulator<Surface, Index>::map_point(const LinkResult& link, 
   if (strongest != link.paths.end()) point.strongest_kinds = kinds(strongest->path);
   return point;
 }
+
+}  // namespace detail
 
 /// What all points of some maps share where the plan has halves, and what each thread needs.
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -158,7 +161,8 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
       const Solved solved = solve_receiver(
           order.receiver(point), point, transmitters, nullptr,
           {rooms.empty() ? nullptr : &rooms[worker], joined.empty() ? std::span<const SequenceList>{} : joined[at]});
-      for (const LinkResult& link : solved.links) maps[link.transmitter].points[point] = map_point(link, points_m[at]);
+      for (const LinkResult& link : solved.links)
+        maps[link.transmitter].points[point] = detail::map_point(link, points_m[at]);
       spent[number] += solved.work;
     }
     told.add(group.size());

@@ -6,6 +6,7 @@
 
 #include "dcem/paths/memory/standing_link.hpp"
 #include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/detail/busiest_first.hpp"
 #include "dcem/sim/detail/link_work.hpp"
 #include "dcem/sim/verify/same_bits.hpp"
 
@@ -58,7 +59,9 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const std::span<const Device> receivers = scene_.receivers();
   std::vector<Solved> by_receiver(receivers.size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
-  pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
+  const std::vector<std::size_t> order = detail::busiest_first(receivers.size(), chosen_);
+  pool_->for_each(receivers.size(), [&](std::size_t place, unsigned worker) {
+    const std::size_t index = order[place];
     ReceiverRoom* const room = rooms.empty() ? nullptr : &rooms[worker];
     by_receiver[index] = choice_.takes_all()
                              ? follow_receiver(receivers[index], index, transmitters, room)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/detail/device_numbers.hpp"
 
 namespace dcem {
 
@@ -16,6 +17,7 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
       surface_(std::move(surface)),
       index_(settings_.tree),
       choice_(scene_, settings_.links),
+      numbers_(std::make_shared<const detail::DeviceNumbers>(detail::numbers_by_id(scene_.transmitters()))),
       pool_(std::make_unique<ThreadPool>(settings_.threads)) {
   validate(settings_);
   check_surface_model();

@@ -2,16 +2,17 @@
 /// The transmitters of a frame, as the paths and the fields of links need them.
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "dcem/field/radio_end.hpp"
 #include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/scene/scene.hpp"
+#include "dcem/sim/detail/device_numbers.hpp"
 #include "dcem/sim/detail/receiver_memory.hpp"
 #include "dcem/sim/frame_result.hpp"
 
@@ -22,16 +23,16 @@ struct TransmitterEnds {
   std::span<const Device> devices;  ///< all of them
   std::vector<std::optional<LinkEnd>> link;
   std::vector<RadioEnd> radio;
-  std::vector<ReachedEdges> reached;          ///< the edges within reach; empty lists where no diffraction is wanted
-  std::vector<EdgeReach> own_reach;           ///< holds them where nothing is remembered
-  HalfRefs halves;                            ///< none where the plan has none
-  std::vector<KeptHalf> own_halves;           ///< holds them where nothing is kept
-  std::vector<char> embedded;                 ///< edges that no path can use; empty where nobody has looked
-  std::vector<std::vector<FacetId>> in_view;  ///< the facets that each may see, where diffuse power is asked for
-  WorkCounters work;                          ///< what finding them took
-  std::vector<std::uint32_t> numbers;         ///< of those that were chosen; empty: as they stand in the scene
-  const TransmitterEnds* all = nullptr;       ///< those that they were chosen from
-  std::unordered_map<std::string, std::uint32_t> by_id{};  ///< numbers; empty where some were chosen
+  std::vector<ReachedEdges> reached;             ///< the edges within reach; empty lists where no diffraction is wanted
+  std::vector<EdgeReach> own_reach;              ///< holds them where nothing is remembered
+  HalfRefs halves;                               ///< none where the plan has none
+  std::vector<KeptHalf> own_halves;              ///< holds them where nothing is kept
+  std::vector<char> embedded;                    ///< edges that no path can use; empty where nobody has looked
+  std::vector<std::vector<FacetId>> in_view;     ///< the facets that each may see, where diffuse power is asked for
+  WorkCounters work;                             ///< what finding them took
+  std::vector<std::uint32_t> numbers;            ///< of those that were chosen; empty: as they stand in the scene
+  const TransmitterEnds* all = nullptr;          ///< those that they were chosen from
+  std::shared_ptr<const DeviceNumbers> by_id{};  ///< none where some were chosen
 
   /// The number among all devices.
   std::size_t number(std::size_t index) const { return numbers.empty() ? index : numbers[index]; }
@@ -73,8 +74,9 @@ inline TransmitterEnds TransmitterEnds::only(std::vector<std::uint32_t> chosen) 
 }
 
 inline std::optional<std::uint32_t> TransmitterEnds::same_as(const std::string& receiver, const LinkEnd& end) const {
-  const auto found = by_id.find(receiver);
-  if (found == by_id.end() || !link[found->second] || !same_bits(link[found->second], end)) return std::nullopt;
+  if (by_id == nullptr) return std::nullopt;
+  const auto found = by_id->find(receiver);
+  if (found == by_id->end() || !link[found->second] || !same_bits(link[found->second], end)) return std::nullopt;
   return found->second;
 }
 
