@@ -6,9 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "dcem/core/thread_pool.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
+
+namespace dcem {
+
+class ThreadPool;
+
+}  // namespace dcem
 
 namespace dcem::io {
 

@@ -12,14 +12,19 @@
 #include <string_view>
 #include <vector>
 
-#include "dcem/core/beside.hpp"
-#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/link_lines.hpp"
 #include "dcem/io/scenario.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/settings.hpp"
+
+namespace dcem {
+
+class Beside;
+class ThreadPool;
+
+}  // namespace dcem
 
 namespace dcem::io {
 
@@ -95,7 +100,7 @@ class ResultWriter {
     std::string paths, links, profile, doppler;
   };
 
-  ThreadPool& pool() { return facts_.pool != nullptr ? *facts_.pool : alone_; }
+  ThreadPool& pool() { return facts_.pool != nullptr ? *facts_.pool : *alone_; }
   Lines lines_of(const FrameResult& frame, std::span<const LinkResult> links) const;
   CsvLine begin_line(std::string& text, const FrameResult& frame, const LinkResult& link) const;
   void append_profile(std::string& text, const FrameResult& frame, const LinkResult& link) const;
@@ -105,7 +110,7 @@ class ResultWriter {
   ResultFacts facts_;
   const Scene& scene_;
   LinkLines link_lines_;
-  ThreadPool alone_{1};
+  std::unique_ptr<ThreadPool> alone_;
   Sheet paths_, links_, profile_, doppler_;
   std::unique_ptr<PathLines> lines_;
   // Absent: not asked for.
@@ -113,8 +118,8 @@ class ResultWriter {
   std::unique_ptr<PathCollector> arrays_;
   std::unique_ptr<PlotCollector> plots_;
   std::vector<std::unique_ptr<FrameExport>> exports_;
-  std::vector<double> power_dbm_;  // of each transmitter
-  Beside writing_;                 // to the sheets; the first to go
+  std::vector<double> power_dbm_;    // of each transmitter
+  std::unique_ptr<Beside> writing_;  // to the sheets; the first to go
 };
 
 }  // namespace dcem::io

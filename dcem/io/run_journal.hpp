@@ -8,17 +8,23 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "dcem/core/beside.hpp"
-#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/link_lines.hpp"
 #include "dcem/io/summary.hpp"
 #include "dcem/sim/frame_result.hpp"
+
+namespace dcem {
+
+class Beside;
+class ThreadPool;
+
+}  // namespace dcem
 
 namespace dcem::io {
 
@@ -69,7 +75,7 @@ class RunJournal {
   /// The same with the lines of `links.csv` in place of the links.
   void add(const FrameFigures& figures, std::span<const LinkResult> links, const LinePieces& lines);
   /// Until all frames are there. Throws `OutputError`.
-  void wait() { writing_.wait(); }
+  void wait();
 
   /// For `--resume`: the file stays when this object goes, if a frame is in it.
   void keep();
@@ -77,7 +83,7 @@ class RunJournal {
   void remove();
 
  private:
-  ThreadPool& pool() { return pool_ != nullptr ? *pool_ : alone_; }
+  ThreadPool& pool() { return pool_ != nullptr ? *pool_ : *alone_; }
   void settle();
   void write(std::string_view bytes);
   void end_frame();
@@ -86,8 +92,8 @@ class RunJournal {
   std::ofstream stream_;
   bool is_kept_, has_frames_ = false;
   ThreadPool* pool_;
-  ThreadPool alone_{1};
-  Beside writing_;
+  std::unique_ptr<ThreadPool> alone_;
+  std::unique_ptr<Beside> writing_;
 };
 
 /// What a journal is read for; only what is said where it cannot be depends on it.

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/frames_ahead.hpp"
 #include "dcem/io/run_journal.hpp"

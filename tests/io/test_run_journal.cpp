@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/results/frame_archive.hpp"

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "dcem/channel/coherence.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/src/results/link_pieces.hpp"
 #include "dcem/io/src/text/number_text.hpp"
 

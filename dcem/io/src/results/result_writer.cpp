@@ -1,7 +1,9 @@
 #include "dcem/io/result_writer.hpp"
 #include <utility>
 
+#include "dcem/core/beside.hpp"
 #include "dcem/core/naming.hpp"
+#include "dcem/core/thread_pool.hpp"
 
 #include "dcem/channel/doppler_spectrum.hpp"
 #include "dcem/core/units.hpp"
@@ -43,8 +45,9 @@ ResultWriter::ResultWriter(OutputFolder& folder, const Scene& scene, std::span<c
       facts_(facts),
       scene_(scene),
       link_lines_(scene, receivers),
+      alone_(std::make_unique<ThreadPool>(1)),
       lines_(std::make_unique<PathLines>(scene, receivers, facts, output.paths_top)),
-      writing_(pool().size() > 1) {
+      writing_(std::make_unique<Beside>(pool().size() > 1)) {
   paths_.file = open_sheet(folder, output.paths, output.paths_gzip ? "paths.jsonl.gz" : "paths.jsonl");
   if (output.paths && output.paths_gzip) paths_.gzip = std::make_unique<GzipEncoder>(*paths_.file);
   links_.file = open_sheet(folder, output.links, "links.csv");
@@ -78,7 +81,7 @@ ResultWriter::Lines ResultWriter::lines_of(const FrameResult& frame, std::span<c
 void ResultWriter::write(const FrameResult& frame) {
   const auto make = [&](std::span<const LinkResult> links) { return lines_of(frame, links); };
   in_pieces<Lines>(pool(), frame.links, make, [this](std::vector<Lines>&& pieces) {
-    writing_.start([this, pieces = std::move(pieces)] {
+    writing_->start([this, pieces = std::move(pieces)] {
       for (const Lines& lines : pieces) {
         paths_.write(lines.paths);
         links_.write(lines.links);
@@ -100,18 +103,18 @@ LinePieces ResultWriter::link_lines(const FrameResult& frame) {
 }
 
 void ResultWriter::write_lines(LinePieces lines) {
-  writing_.start([this, lines = std::move(lines)] {
+  writing_->start([this, lines = std::move(lines)] {
     for (const std::string& text : *lines) links_.write(text);
   });
 }
 
 void ResultWriter::write_lines(std::string_view lines) {
-  writing_.wait();
+  writing_->wait();
   links_.write(lines);
 }
 
 void ResultWriter::finish() {
-  writing_.wait();
+  writing_->wait();
   if (paths_.gzip != nullptr) paths_.gzip->finish();
   if (responses_) responses_->write();
   if (arrays_) arrays_->write();

@@ -6,7 +6,9 @@
 #include <system_error>
 #include <utility>
 
+#include "dcem/core/beside.hpp"
 #include "dcem/core/random.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/results/frame_archive.hpp"
@@ -102,13 +104,18 @@ RunJournal::RunJournal(const fs::path& folder, const RunIdentity& identity, Thre
       stream_(file_, std::ios::binary | std::ios::trunc),
       is_kept_(false),
       pool_(pool),
-      writing_(pool != nullptr && pool->size() > 1) {
+      alone_(std::make_unique<ThreadPool>(1)),
+      writing_(std::make_unique<Beside>(pool != nullptr && pool->size() > 1)) {
   for (const std::string& line : head_lines(identity)) stream_ << line << '\n';
   if (!stream_.flush()) throw OutputError(file_, "cannot be written", "a folder that can be written, with space left");
 }
 
 RunJournal::RunJournal(const fs::path& folder, std::uint64_t bytes, ThreadPool* pool)
-    : file_(folder / journal_name), is_kept_(true), pool_(pool), writing_(pool != nullptr && pool->size() > 1) {
+    : file_(folder / journal_name),
+      is_kept_(true),
+      pool_(pool),
+      alone_(std::make_unique<ThreadPool>(1)),
+      writing_(std::make_unique<Beside>(pool != nullptr && pool->size() > 1)) {
   std::error_code error;
   fs::resize_file(file_, bytes, error);
   if (!error) stream_.open(file_, std::ios::binary | std::ios::app);
@@ -132,12 +139,12 @@ void RunJournal::add(const FrameResult& frame) {
     return pieces;
   };
   in_pieces<std::string>(pool(), frame.links, make, [&](std::vector<std::string>&& pieces) {
-    writing_.start([this, first = std::exchange(first, {}), pieces = std::move(pieces)] {
+    writing_->start([this, first = std::exchange(first, {}), pieces = std::move(pieces)] {
       write(first);
       for (const std::string& one : pieces) write(one);
     });
   });
-  writing_.start([this, first = std::move(first)] {
+  writing_->start([this, first = std::move(first)] {
     write(first);
     end_frame();
   });
@@ -150,7 +157,7 @@ void RunJournal::add(const FrameFigures& figures, std::span<const LinkResult> li
   std::vector<std::string> heads(lines->size());
   pool().for_each(heads.size(),
                   [&](std::size_t index, unsigned) { heads[index] = piece_head(lines_piece, (*lines)[index]); });
-  writing_.start([this, first = first_piece(figures, of_lines, 0, heads.size()), heads = std::move(heads), lines] {
+  writing_->start([this, first = first_piece(figures, of_lines, 0, heads.size()), heads = std::move(heads), lines] {
     write(first);
     for (std::size_t index = 0; index < heads.size(); ++index) {
       write(heads[index]);
@@ -158,6 +165,10 @@ void RunJournal::add(const FrameFigures& figures, std::span<const LinkResult> li
     }
     end_frame();
   });
+}
+
+void RunJournal::wait() {
+  writing_->wait();
 }
 
 void RunJournal::write(std::string_view bytes) {
