@@ -75,6 +75,8 @@ TEST_CASE("damaged tables: one line, nothing written") {
   refused("town_buildings_xy.csv:2");
   write(folder / "run/town_buildings_xy.csv", "building_id,x_m,y_m\n-1,0,1\n-1,3,3\n");
   refused("holds no building with an area");
+  write(folder / "run/town_buildings_xy.csv", "building_id,x_m,y_m\n1,0,0\n\xc3(,9,0\n");
+  refused("town_buildings_xy.csv:3: a name that is no UTF-8; expected text in UTF-8");
   std::filesystem::remove(folder / "run/town_buildings_xy.csv");
   refused("holds no *buildings_xy.csv");
 }

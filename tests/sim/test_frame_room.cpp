@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/sim/detail/busiest_first.hpp"
 #include "dcem/sim/detail/gather_links.hpp"
 #include "dcem/sim/simulator.hpp"
 #include "tests/support/memory_trial.hpp"

@@ -44,18 +44,7 @@ class EdgeReach {
   std::size_t size() const { return halves_.size(); }
 
   /// All edges, ascending. Valid until the reach changes.
-  std::vector<Edge> edges() const {
-    std::vector<std::pair<WedgeId, std::span<const SequenceElement>>> halves;
-    halves_.for_each(
-        [&](const Sequence& half) { halves.emplace_back(half.back().edge(), std::span(half).first(half.size() - 1)); });
-    std::stable_sort(halves.begin(), halves.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<Edge> edges;
-    for (const auto& [id, mirrors] : halves) {
-      if (edges.empty() || edges.back().id != id) edges.push_back({id, {}});
-      edges.back().mirrors.push_back(mirrors);
-    }
-    return edges;
-  }
+  std::vector<Edge> edges() const;
 
  private:
   ProposalMemory halves_;
@@ -145,3 +134,7 @@ class ChainJoiner {
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/discover/edge_reach_bodies.hpp"
+#endif

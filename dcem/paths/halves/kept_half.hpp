@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "dcem/paths/halves/beam_lists.hpp"
 #include "dcem/paths/halves/path_half.hpp"
@@ -217,4 +218,11 @@ class KeptHalf {
   double step_m_ = 0.0;  ///< from the frame before
 };
 
+/// So many, each with maps of this many pixels a side.
+std::vector<KeptHalf> kept_halves(std::size_t count, int map_pixels);
+
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/halves/kept_half_bodies.hpp"
+#endif

@@ -1,10 +1,8 @@
 #pragma once
 /// The rims of facets, holes included: what a point on a facet has to pass before it is off it.
-#include <algorithm>
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "dcem/geometry/segment_distance.hpp"
@@ -19,22 +17,7 @@ struct RimSide {
 
 class FacetRims {
  public:
-  explicit FacetRims(const Scene& scene) {
-    std::vector<RimSide> own;
-    for (const WorldFacet& facet : scene.facets()) {
-      own.clear();
-      for (std::uint32_t index = 0; index < facet.triangle_count; ++index) {
-        const auto& corners = scene.triangles()[facet.first_triangle + index];
-        for (std::size_t side = 0; side < 3; ++side) {
-          const auto [low, high] = std::minmax(corners[side], corners[(side + 1) % 3]);
-          own.push_back({low, high});
-        }
-      }
-      keep_single(own);
-      sides_.insert(sides_.end(), own.begin(), own.end());
-      ends_.push_back(sides_.size());
-    }
-  }
+  explicit FacetRims(const Scene& scene);
 
   std::span<const RimSide> of(FacetId facet) const {
     const std::size_t first = facet.value == 0 ? 0 : ends_[facet.value - 1];
@@ -45,23 +28,14 @@ class FacetRims {
   }
 
  private:
-  static void keep_single(std::vector<RimSide>& sides) {
-    std::ranges::sort(sides, {}, [](const RimSide& side) { return std::pair(side.from, side.to); });
-    const auto same = [](const RimSide& one, const RimSide& other) {
-      return one.from == other.from && one.to == other.to;
-    };
-    std::size_t kept = 0;
-    for (std::size_t first = 0; first < sides.size();) {
-      std::size_t next = first + 1;
-      while (next < sides.size() && same(sides[first], sides[next])) ++next;
-      if (next == first + 1) sides[kept++] = sides[first];
-      first = next;
-    }
-    sides.resize(kept);
-  }
+  static void keep_single(std::vector<RimSide>& sides);
 
   std::vector<RimSide> sides_;
   std::vector<std::size_t> ends_;
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/lifetime/facet_rims_bodies.hpp"
+#endif

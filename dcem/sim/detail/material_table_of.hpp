@@ -7,8 +7,10 @@
 namespace dcem::detail {
 
 /// Throws std::invalid_argument where a material is not tabled at the frequency.
-inline MaterialTable material_table_of(const Scene& scene, const SimulationSettings& settings) {
-  return MaterialTable({scene.materials().begin(), scene.materials().end()}, settings.frequency_hz, settings.itu);
-}
+MaterialTable material_table_of(const Scene& scene, const SimulationSettings& settings);
 
 }  // namespace dcem::detail
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/sim/detail/material_table_of_bodies.hpp"
+#endif

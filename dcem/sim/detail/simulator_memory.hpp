@@ -6,7 +6,7 @@
 
 #include "dcem/paths/memory/standing_link.hpp"
 #include "dcem/sim/basic_simulator.hpp"
-#include "dcem/sim/detail/busiest_first.hpp"
+#include "dcem/sim/detail/gather_links.hpp"
 #include "dcem/sim/detail/link_work.hpp"
 #include "dcem/sim/verify/same_bits.hpp"
 

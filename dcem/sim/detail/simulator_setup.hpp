@@ -47,7 +47,7 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   if (plan_.joined == 0) return;
   lanes_ = std::make_unique<LaneScene>(scene_, *outlines_);
   const std::size_t transmitters = scene_.transmitters().size();
-  halves_.assign(transmitters, KeptHalf(detail::view_pixels_for(transmitters)));
+  halves_ = kept_halves(transmitters, detail::view_pixels_for(transmitters));
   if (cache_ != CacheMode::exact) return;
   for (KeptHalf& half : halves_) half.keep_places(detail::longest_step_in_place_m, true);
 }

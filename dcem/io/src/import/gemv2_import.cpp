@@ -2,11 +2,13 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
 #include "dcem/io/import.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/import/import_draft.hpp"
 #include "dcem/io/src/text/csv_reader.hpp"
+#include "dcem/io/src/text/unicode.hpp"
 
 namespace dcem::io {
 
@@ -34,6 +36,17 @@ struct LinkTable {
   double frequency_hz = 0.0;
 };
 
+/// What stands in a column of names, which JSON is to hold.
+std::string name_in(const CsvReader& table, std::size_t column) {
+  const std::string name = printable(table.text(column));
+  try {
+    decoded(name);
+  } catch (const std::invalid_argument&) {
+    table.fail("a name that is no UTF-8; expected text in UTF-8");
+  }
+  return name;
+}
+
 /// Rows with the same id, one below the other, are the corners of an outline.
 std::vector<NamedRing> read_rings(const std::filesystem::path& file, const std::string& id_column) {
   const std::string expectation = "a header " + id_column + ",x_m,y_m";
@@ -42,7 +55,7 @@ std::vector<NamedRing> read_rings(const std::filesystem::path& file, const std::
                   CsvReader::EmptyLines::anywhere);
   std::vector<NamedRing> rings;
   while (table.next()) {
-    const std::string name = printable(table.text(0));
+    const std::string name = name_in(table, 0);
     if (name.empty()) table.fail(id_column + ": found nothing; expected the outline's id");
     if (rings.empty() || rings.back().name != name) rings.push_back({name, {}});
     rings.back().ring.emplace_back(table.number(1, any_place_m), table.number(2, any_place_m));
@@ -138,7 +151,7 @@ class Gemv2Import {
   }
 
   std::string add_end(const CsvReader& table, std::size_t name_column, std::size_t first_column) {
-    const std::string name = printable(table.text(name_column));
+    const std::string name = name_in(table, name_column);
     if (name.empty() || name.find('/') != std::string::npos) {
       table.fail("found " + in_quotes(name) + " for a vehicle; expected its number");
     }

@@ -1,0 +1,68 @@
+#pragma once
+/// Bodies of gather_links.hpp.
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "dcem/core/build_mode.hpp"
+#include "dcem/sim/detail/gather_links.hpp"
+
+namespace dcem::detail {
+
+DCEM_INLINE std::vector<std::size_t> busiest_first(std::size_t receivers,
+                                                   const std::vector<std::vector<std::uint32_t>>& transmitters_of) {
+  constexpr std::size_t very_many = 1024;
+  std::vector<std::size_t> order(receivers);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (transmitters_of.size() != receivers || receivers > very_many) return order;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
+    return transmitters_of[one].size() > transmitters_of[other].size();
+  });
+  return order;
+}
+
+/// Where each link of each receiver stands among all: by transmitter, then receiver.
+inline std::vector<std::vector<std::size_t>> places_of(std::span<const std::vector<LinkResult>> by_receiver,
+                                                       ThreadPool& pool) {
+  std::vector<std::vector<std::size_t>> places(by_receiver.size());
+  pool.for_each(by_receiver.size(), [&](std::size_t receiver, unsigned) {
+    for (const LinkResult& link : by_receiver[receiver]) places[receiver].push_back(link.transmitter);
+  });
+  std::vector<std::size_t> next{0};  // by transmitter
+  for (const std::vector<std::size_t>& of_one : places) {
+    for (const std::size_t transmitter : of_one) {
+      if (next.size() < transmitter + 2) next.resize(transmitter + 2);
+      ++next[transmitter + 1];
+    }
+  }
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::vector<std::size_t>& of_one : places) {
+    for (std::size_t& place : of_one) place = next[place]++;
+  }
+  return places;
+}
+
+DCEM_INLINE std::vector<LinkResult> gather_links(std::vector<std::vector<LinkResult>>&& by_receiver,
+                                                 std::vector<LinkResult>&& room, ThreadPool& pool) {
+  std::size_t count = 0;
+  for (const std::vector<LinkResult>& links : by_receiver) count += links.size();
+  ThreadPool alone(1);
+  ThreadPool& threads = count < many_links ? alone : pool;
+  const std::vector<std::vector<std::size_t>> places = places_of(by_receiver, threads);
+  std::vector<LinkResult> all = std::move(room);
+  all.resize(count);
+  threads.for_each(by_receiver.size(), [&](std::size_t receiver, unsigned) {
+    std::vector<LinkResult> links = std::move(by_receiver[receiver]);
+    for (std::size_t link = 0; link < links.size(); ++link) all[places[receiver][link]] = std::move(links[link]);
+  });
+  return all;
+}
+
+DCEM_INLINE std::vector<LinkResult> room_of(std::vector<LinkResult>&& links, ThreadPool& pool) {
+  if (links.size() < many_links) return {};
+  pool.for_each_quick(links.size(), [&](std::size_t link) { links[link] = {}; });
+  return std::move(links);
+}
+
+}  // namespace dcem::detail
