@@ -42,16 +42,15 @@ FrameRange parse_frames(const std::string& text, std::size_t available) {
   return {*first, *last};
 }
 
-/// "0-of-4".
-std::string part_name(const ReceiverPart& part) {
-  return std::to_string(part.part) + "-of-" + std::to_string(part.of);
-}
-
 double memory_of_machine_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 }  // namespace
+
+std::string part_name(const ReceiverPart& part) {
+  return std::to_string(part.part) + "-of-" + std::to_string(part.of);
+}
 
 std::string points_text(const std::string& kind, const std::string& id, std::size_t points) {
   return kind + " '" + id + "': " + std::to_string(points) + " points";
@@ -73,9 +72,13 @@ Job prepare_job(const ScenarioOptions& options) {
 }
 
 Simulator make_simulator(Job& job, const ScenarioOptions& options) {
+  return make_simulator(std::move(job.scenario.scene), job.scenario.settings, options);
+}
+
+Simulator make_simulator(Scene scene, const SimulationSettings& settings, const ScenarioOptions& options) {
   const io::ProgressStage stage("building tree", progress_mode(options));
   try {
-    return {std::move(job.scenario.scene), job.scenario.settings};
+    return {std::move(scene), settings};
   } catch (const std::invalid_argument& error) {
     throw io::InputError(options.scenario, error.what());
   }

@@ -36,6 +36,8 @@ void expand_grids(io::Scenario& scenario, const ScenarioOptions& options);
 
 /// Takes the scene out of the job. What the simulator refuses is an InputError that names the scenario file.
 Simulator make_simulator(Job& job, const ScenarioOptions& options);
+/// The same of a scene that is handed over.
+Simulator make_simulator(Scene scene, const SimulationSettings& settings, const ScenarioOptions& options);
 
 io::RunFacts run_facts(const Job& job, const Simulator& simulator, const SearchPlan& plan, std::size_t receivers);
 
@@ -58,6 +60,9 @@ io::ProgressMode progress_mode(const ScenarioOptions& options);
 
 /// What a run goes on with has to be of the same; of a part that of the whole run.
 io::RunIdentity run_identity(const Job& job, const ScenarioOptions& options);
+
+/// As part of the name of a folder: "0-of-4".
+std::string part_name(const ReceiverPart& part);
 
 /// That of a part of the run.
 io::RunIdentity part_identity(io::RunIdentity whole, const ReceiverPart& part);

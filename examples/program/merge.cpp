@@ -1,7 +1,6 @@
 /// `dcem merge`: the parts of a run as one, with the bytes that the run has as a whole.
 #include <filesystem>
 #include <iostream>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -73,16 +72,6 @@ void take_all(io::ShardReader& shards, const Job& job, const ScenarioOptions& op
   }
 }
 
-/// One for this simulator, while the job keeps its scene.
-Simulator simulator_of(const Job& job, const ScenarioOptions& options) {
-  const io::ProgressStage stage("building tree", progress_mode(options));
-  try {
-    return {job.scenario.scene, job.scenario.settings};
-  } catch (const std::invalid_argument& error) {
-    throw io::InputError(options.scenario, error.what());
-  }
-}
-
 }  // namespace
 
 Merger::Merger(Job& job, const ScenarioOptions& options, std::size_t devices, io::RunIdentity identity)
@@ -90,7 +79,7 @@ Merger::Merger(Job& job, const ScenarioOptions& options, std::size_t devices, io
       options_(options),
       devices_(devices),
       identity_(std::move(identity)),
-      simulator_(simulator_of(job, options)),
+      simulator_(make_simulator(job.scenario.scene, job.scenario.settings, options)),  // the job keeps its scene
       results_(job.folder, "summary.json", "map_summary.json") {
   require_effect(options, simulator_);
   prepare_results(job, simulator_, results_);

@@ -87,9 +87,7 @@ class JobOnRanks {
     parts_ = std::min(receivers, parts_per_process * ranks_.count());
   }
 
-  fs::path folder_of(const ReceiverPart& part) const {
-    return job_.folder / parts_folder / (std::to_string(part.part) + "-of-" + std::to_string(part.of));
-  }
+  fs::path folder_of(const ReceiverPart& part) const { return job_.folder / parts_folder / part_name(part); }
 
   void solve(std::uint32_t parts) {
     ScenarioOptions quiet = options_;
