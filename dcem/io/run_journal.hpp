@@ -84,6 +84,7 @@ class RunJournal {
 
  private:
   ThreadPool& pool() { return pool_ != nullptr ? *pool_ : *alone_; }
+  void begin(std::span<const std::string> head);
   void settle();
   void write(std::string_view bytes);
   void end_frame();

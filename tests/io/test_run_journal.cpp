@@ -285,6 +285,17 @@ TEST_CASE("the hash of files tells every byte, and where one file ends") {
         "nothing was thrown");
 }
 
+TEST_CASE("a journal has its head from the moment it has its name: one that cannot begin leaves the one before whole") {
+  const TemporaryFolder folder;
+  write_journal(folder, 2);
+  std::filesystem::create_directories(folder / "run.journal.new/in the way");
+  CHECK_THROWS_AS(RunJournal(folder.path(), identity), io::OutputError);
+  CHECK(frames_in(folder) == 2);
+  std::filesystem::remove_all(folder / "run.journal.new");
+  RunJournal(folder.path(), identity).keep();
+  CHECK(folder.names().empty());
+}
+
 TEST_CASE("a folder that takes no journal is an error") {
   CHECK_THROWS_AS(RunJournal("/proc", identity), io::OutputError);
   const TemporaryFolder folder;

@@ -101,13 +101,23 @@ FrameResult JournalEntry::take_result() {
 
 RunJournal::RunJournal(const fs::path& folder, const RunIdentity& identity, ThreadPool* pool)
     : file_(folder / journal_name),
-      stream_(file_, std::ios::binary | std::ios::trunc),
       is_kept_(false),
       pool_(pool),
       alone_(std::make_unique<ThreadPool>(1)),
       writing_(std::make_unique<Beside>(pool != nullptr && pool->size() > 1)) {
-  for (const std::string& line : head_lines(identity)) stream_ << line << '\n';
-  if (!stream_.flush()) throw OutputError(file_, "cannot be written", "a folder that can be written, with space left");
+  begin(head_lines(identity));
+}
+
+/// Under its name there is never less than the head, wherever the program is killed.
+void RunJournal::begin(std::span<const std::string> head) {
+  const fs::path unnamed = fs::path(file_) += ".new";
+  stream_.open(unnamed, std::ios::binary | std::ios::trunc);
+  for (const std::string& line : head) stream_ << line << '\n';
+  std::error_code error;
+  if (stream_.flush()) fs::rename(unnamed, file_, error);
+  if (stream_ && !error) return;
+  fs::remove(unnamed, error);
+  throw OutputError(file_, "cannot be written", "a folder that can be written, with space left");
 }
 
 RunJournal::RunJournal(const fs::path& folder, std::uint64_t bytes, ThreadPool* pool)
