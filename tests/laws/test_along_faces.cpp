@@ -61,6 +61,32 @@ Patches house_with_courtyard() {
   return patches;
 }
 
+/// A car of metal 1.8 m wide along x, by its outline from the side: bonnet, windscreen, roof, rear window and boot.
+Patches car() {
+  const std::vector<Vec2> outline{{0, 0.2},    {0, 0.9},   {1, 0.9},   {1.7, 1.45},
+                                  {3.2, 1.45}, {3.7, 1.0}, {4.5, 1.0}, {4.5, 0.2}};
+  Patches patches;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec2 from = outline[i], to = outline[(i + 1) % outline.size()];
+    patches.push_back(
+        {{Vec3(from.x, -0.9, from.y), Vec3(from.x, 0.9, from.y), Vec3(to.x, 0.9, to.y), Vec3(to.x, -0.9, to.y)},
+         "pec"});
+  }
+  // The sides, in pieces that share their corners with the outline.
+  for (const double y : {-0.9, 0.9}) {
+    const auto piece = [&](const std::vector<std::size_t>& corners) {
+      Patch patch{{}, "pec"};
+      for (const std::size_t corner : corners) patch.corners_m.emplace_back(outline[corner].x, y, outline[corner].y);
+      patches.push_back(patch);
+    };
+    piece({0, 1, 2});
+    piece({0, 2, 5, 7});
+    piece({2, 3, 4, 5});
+    piece({5, 6, 7});
+  }
+  return patches;
+}
+
 /// A long house across the way, without floor: its roof is 10 m deep, at z = 0.
 Scene long_house(const MaterialModel& model) {
   TriangleMesh mesh;
@@ -148,6 +174,28 @@ TEST_CASE("the field behind a flat roof has no step where an end rises through t
           CHECK(across <= 2.0 * steps[9] + 1e-13);
         }
     }
+}
+
+TEST_CASE("over a car the ways lead along bonnet, roof and boot, from rim to rim") {
+  const auto ways = [](const Vec3& transmitter_m, const Vec3& receiver_m, double length_m, Discovery discovery) {
+    const auto found = lengths_over_two_edges(car(), transmitter_m, receiver_m, discovery);
+    return std::count_if(found.begin(), found.end(), [&](double one_m) { return std::abs(one_m - length_m) < 1e-9; });
+  };
+  const auto way_m = [](const std::vector<Vec3>& points_m) {
+    double length_m = 0.0;
+    for (std::size_t i = 1; i < points_m.size(); ++i) length_m += glm::distance(points_m[i - 1], points_m[i]);
+    return length_m;
+  };
+  const Vec3 ahead_m(-7, 0, 0.7), behind_m(12, 0, 0.6), beside_m(0.6, 6, 0.5), behind_beside_m(4.1, 6, 0.4);
+  const double over_roof_m = way_m({ahead_m, Vec3(1.7, 0, 1.45), Vec3(3.2, 0, 1.45), behind_m});
+  for (const Discovery discovery : {Discovery::exact, Discovery::sampled})
+    CHECK(ways(ahead_m, behind_m, over_roof_m, discovery) == 1);
+  // Across bonnet and boot, from one side to the other: in the plane through both ends, which is upright.
+  const auto across_m = [&](const Vec3& from_m, double height_m) {
+    return 2.0 * std::hypot(from_m.y - 0.9, height_m - from_m.z) + 1.8;
+  };
+  CHECK(ways(beside_m, Vec3(0.6, -6, 0.5), across_m(beside_m, 0.9), Discovery::exact) == 1);
+  CHECK(ways(behind_beside_m, Vec3(4.1, -6, 0.4), across_m(behind_beside_m, 1.0), Discovery::exact) == 1);
 }
 
 TEST_CASE("the transfer over a roof is transposed when the ends are swapped") {
