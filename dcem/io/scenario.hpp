@@ -91,6 +91,7 @@ struct ScenarioOverrides {
   std::optional<long long> rays;
   std::optional<long long> seed;
   std::optional<std::string> output;  ///< KEY[,KEY…] in place of the file's `output` keys
+  std::optional<double> frequency_hz;
 };
 
 /// An entry of `receivers` with a list of points: so many of the scene's receivers, one after the other.

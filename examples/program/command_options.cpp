@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 
 #include "dcem/core/instruction_set.hpp"
@@ -78,6 +79,28 @@ ReceiverPart parse_shard(const std::string& text) {
   throw UsageError("--shard " + text + ": no part of a run", "i/N with 0 <= i < N <= " + std::to_string(most));
 }
 
+/// HZ[,HZ…]; none twice.
+std::vector<double> parse_frequencies(const std::string& text) {
+  std::vector<double> all_hz;
+  for (const std::string& word : words_of(text)) {
+    double frequency_hz = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), frequency_hz);
+    const bool is_number = error == std::errc{} && end == word.data() + word.size() && std::isfinite(frequency_hz);
+    if (!is_number || std::ranges::count(all_hz, frequency_hz) > 0) {
+      throw UsageError("--frequency " + text + ": no frequencies", "numbers in Hz, none twice, as in 5.89e9,30e9");
+    }
+    all_hz.push_back(frequency_hz);
+  }
+  return all_hz;
+}
+
+void choose_frequencies(const std::string& text, ScenarioOptions& options) {
+  options.frequencies_hz = parse_frequencies(text);
+  if (options.frequencies_hz.size() > 1) return;
+  options.overrides.frequency_hz = options.frequencies_hz.at(0);
+  options.frequencies_hz.clear();
+}
+
 void add_resources(CLI::App& command, std::optional<unsigned>& threads, std::optional<double>& memory_limit_bytes) {
   command.add_option("--threads", threads, "Number of threads (default: all cores); never changes a result")
       ->check(CLI::Range(1U, 4096U))
@@ -106,6 +129,11 @@ void add_common_options(CLI::App& command, ScenarioOptions& options) {
   command.add_option("scenario", options.scenario, "The scenario file (JSON)")->required()->type_name("SCENARIO.json");
   add_resources(command, options.threads, options.memory_limit_bytes);
   command.add_option("--frames", options.frames, "Only the frames A to B - 1")->type_name("A:B");
+  command
+      .add_option_function<std::string>(
+          "--frequency", [&](const std::string& text) { choose_frequencies(text, options); },
+          "Carrier frequency in place of the scenario's; of several, results in a folder for each (5.89GHz, 30GHz)")
+      ->type_name("HZ[,HZ...]");
   command.add_option("--discovery", options.overrides.discovery, "How paths are found: exact or sampled")
       ->check(CLI::IsMember({"exact", "sampled"}))
       ->type_name("MODE");

@@ -15,6 +15,7 @@
 #include "dcem/io/text_table.hpp"
 #include "dcem/sim/discovery.hpp"
 #include "dcem/sim/link_choice.hpp"
+#include "frequencies.hpp"
 
 #ifndef DCEM_VERSION
 #define DCEM_VERSION "unknown"
@@ -172,6 +173,7 @@ io::RunIdentity run_identity(const Job& job, const ScenarioOptions& options) {
       if (value) text += ' ' + (option + (' ' + std::to_string(*value)));
     }
   };
+  if (given.frequency_hz) text += " --frequency " + frequency_text(*given.frequency_hz);
   add("--discovery", given.discovery);
   add("--cache", given.cache);
   add("--rays", given.rays);

@@ -13,6 +13,7 @@
 #include "dcem/io/sampling_text.hpp"
 #include "dcem/io/shelter.hpp"
 #include "dcem/io/slow_map.hpp"
+#include "frequencies.hpp"
 #include "job.hpp"
 #include "map_files.hpp"
 #include "stop_signal.hpp"
@@ -291,9 +292,8 @@ void warn_of_plain_pictures(Job& job) {
                                 std::to_string(job.frames.first) + " to " + std::to_string(job.frames.last - 1));
 }
 
-}  // namespace
-
-void map_scenario(const ScenarioOptions& options) {
+/// Of one frequency.
+void map_one(const ScenarioOptions& options) {
   Job job = prepare_job(options);
   if (options.map_output) choose_outputs(*options.map_output, job.scenario.output);
   if (job.scenario.output.map.kml && !job.scenario.geo) {
@@ -337,6 +337,12 @@ void map_scenario(const ScenarioOptions& options) {
   print_warnings(summary.late_warnings(), options);
   if (!options.quiet) std::cout << summary.table(job.folder) << std::flush;
   if (is_cut) end_interrupted(stop.signal(), job, next_frame);
+}
+
+}  // namespace
+
+void map_scenario(const ScenarioOptions& options) {
+  for (const ScenarioOptions& one : by_frequency(options)) map_one(one);
 }
 
 }  // namespace dcem::program

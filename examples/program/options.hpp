@@ -45,6 +45,8 @@ struct ScenarioOptions {
   std::optional<double> memory_limit_bytes;
   std::string frames;  ///< "A:B"; empty: all
   io::ScenarioOverrides overrides;
+  /// More than one, in place of the scenario's: as many runs, one after the other (`frequencies.hpp`).
+  std::vector<double> frequencies_hz;
   std::optional<std::string> map_output;  ///< "csv,png,…": of `dcem map`, in place of the file's `output`
   std::optional<ReceiverPart> shard;      ///< of `dcem run`: a part alone
   bool resume = false;

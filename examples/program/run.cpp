@@ -7,6 +7,7 @@
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/frames_ahead.hpp"
 #include "dcem/io/run_journal.hpp"
+#include "frequencies.hpp"
 #include "job.hpp"
 #include "ranks.hpp"
 #include "resume.hpp"
@@ -121,11 +122,8 @@ void go_on(Run& run, RunResults& results, const Job& job, const ScenarioOptions&
   }
 }
 
-}  // namespace
-
-void run_scenario(const ScenarioOptions& options) {
-  if (options.shard) return run_shard(options);
-  if (job_size() > 1) return run_on_ranks(options);
+/// A run of one frequency, by this process alone.
+void run_alone(const ScenarioOptions& options) {
   Job job = prepare_job(options);
   const std::size_t devices = job.scenario.scene.receivers().size();
   expand_grids(job.scenario, options);
@@ -146,6 +144,14 @@ void run_scenario(const ScenarioOptions& options) {
   if (former) run.replay(*former, stop);
   std::optional<io::RunJournal> journal = begin_journal(job, identity, simulator, former);
   go_on(run, results, job, options, folder, identity, journal ? &*journal : nullptr, stop);
+}
+
+}  // namespace
+
+void run_scenario(const ScenarioOptions& options) {
+  if (options.shard) return run_shard(options);
+  if (job_size() > 1) return run_on_ranks(options);
+  for (const ScenarioOptions& one : by_frequency(options)) run_alone(one);
 }
 
 }  // namespace dcem::program

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "failure.hpp"
+#include "frequencies.hpp"
 #include "job.hpp"
 #include "merge.hpp"
 #include "ranks.hpp"
@@ -65,6 +66,7 @@ class JobOnRanks {
 
  private:
   void prepare() {
+    require_one_frequency(options_, "a run of several processes");
     job_ = prepare_job(options_);
     devices_ = job_.scenario.scene.receivers().size();
     expand_grids(job_.scenario, options_);

@@ -13,6 +13,7 @@
 #include "dcem/io/result_writer.hpp"
 #include "dcem/io/run_journal.hpp"
 #include "dcem/io/shard_facts.hpp"
+#include "frequencies.hpp"
 #include "job.hpp"
 #include "resume.hpp"
 #include "shard.hpp"
@@ -139,6 +140,7 @@ void solve_part(const PartOrder& order, Simulator& simulator, const StopRequest&
 }
 
 void run_shard(const ScenarioOptions& options) {
+  require_one_frequency(options, "a part of a run");
   Job job = prepare_job(options);
   expand_grids(job.scenario, options);
   Simulator simulator = make_simulator(job, options);

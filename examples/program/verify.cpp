@@ -4,6 +4,7 @@
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/text_table.hpp"
 #include "dcem/sim/verify/verifier.hpp"
+#include "frequencies.hpp"
 #include "job.hpp"
 #include "stop_signal.hpp"
 
@@ -57,9 +58,8 @@ std::string table_of(const VerificationReport& report, const Simulator& simulato
   return table.str();
 }
 
-}  // namespace
-
-void verify_scenario(const ScenarioOptions& options) {
+/// Of one frequency.
+void verify_one(const ScenarioOptions& options) {
   Job job = prepare_job(options);
   expand_grids(job.scenario, options);
   io::FrameSource frames(job.scenario);
@@ -90,6 +90,12 @@ void verify_scenario(const ScenarioOptions& options) {
                         std::to_string(report.frames_with_other_links) + " lists of links are not as reported";
   for (const std::string& difference : report.differences) problem += "; " + difference;
   throw CheckFailed(problem);
+}
+
+}  // namespace
+
+void verify_scenario(const ScenarioOptions& options) {
+  for (const ScenarioOptions& one : by_frequency(options)) verify_one(one);
 }
 
 }  // namespace dcem::program

@@ -161,6 +161,11 @@ TEST_CASE("PBF: the same town; damaged: one line, nothing written") {
   refused(pbf.substr(0, pbf.size() / 2), "damaged PBF");
   refused(pbf.substr(0, 3), "damaged PBF");
   refused("no PBF at all, but long enough to look for a header", "damaged PBF");
+  // However often one is refused, no file stays open.
+  const auto open_files = [] { return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}); };
+  const auto before = open_files();
+  for (int again = 0; again < 3; ++again) refused(std::string(pbf.size(), '\0'), "damaged PBF");
+  CHECK(open_files() == before);
   std::string changed = pbf;
   for (std::size_t byte = pbf.size() / 2; byte < pbf.size() / 2 + 40; ++byte) changed[byte] = '\xff';
   refused(changed, "damaged PBF");

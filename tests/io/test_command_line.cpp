@@ -42,8 +42,8 @@ Words operator+(Words words, const Words& more) {
   return words;
 }
 
-const Words common{"-h",     "--help", "--threads",      "--memory-limit", "--frames", "--discovery",
-                   "--rays", "--seed", "--instructions", "--progress",     "--quiet"};
+const Words common{"-h",     "--help", "--threads",   "--memory-limit", "--frames",   "--discovery",
+                   "--rays", "--seed", "--frequency", "--instructions", "--progress", "--quiet"};
 
 std::string script_of(const TemporaryFolder& folder, const std::string& shell) {
   const Outcome outcome = dcem_program(folder, "completion " + shell);

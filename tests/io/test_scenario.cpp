@@ -358,7 +358,7 @@ TEST_CASE("the command line overrides the file and is checked like it") {
   files.more =
       R"(, "propagation": {"cache": "exactly", "rays": 100}, "output": {"paths": true, "pdp": {"bin_s": 1e-8}})";
   CHECK(contains(files.error(), "propagation.cache: found '\"exactly\"'"));
-  const io::Scenario scenario = files.load({"exact", "off", 7, 9, "pdp"});
+  const io::Scenario scenario = files.load({"exact", "off", 7, 9, "pdp", {}});
   CHECK(scenario.settings.propagation.discovery == Discovery::exact);
   CHECK(scenario.settings.propagation.rays == 7);
   CHECK(scenario.settings.propagation.seed == 9);

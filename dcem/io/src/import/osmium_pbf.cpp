@@ -6,7 +6,6 @@
 
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/import/osm_pbf.hpp"
-#include "dcem/io/src/text/read_log.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
 namespace dcem::io {
@@ -58,14 +57,11 @@ std::string pbf_library() {
 }
 
 OsmData read_osm_pbf(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    throw InputError(file.string(), "is no file that can be read; expected OpenStreetMap's PBF");
-  }
-  ReadLog::note(file);
+  // Of a file that it opens itself libosmium leaves the descriptor open where the PBF is damaged.
+  const std::string bytes = read_text_file(file, "expected OpenStreetMap's PBF");
   OsmData data;
   try {
-    osmium::io::Reader reader(osmium::io::File(file.string(), "pbf"));
+    osmium::io::Reader reader(osmium::io::File(bytes.data(), bytes.size(), "pbf"));
     while (const osmium::memory::Buffer buffer = reader.read()) {
       for (const auto& entity : buffer.select<osmium::OSMEntity>()) add_entity(entity, data);
     }

@@ -23,7 +23,8 @@ Json shard_json(const ShardFacts& facts) {
           {"scenario", facts.scenario},
           {"frames", facts.frames},
           {"options",
-           {{"discovery", optional_json(given.discovery)},
+           {{"frequency_hz", optional_json(given.frequency_hz)},
+            {"discovery", optional_json(given.discovery)},
             {"cache", optional_json(given.cache)},
             {"rays", optional_json(given.rays)},
             {"seed", optional_json(given.seed)},
@@ -36,6 +37,7 @@ ShardFacts shard_facts(const Json& shard) {
                    shard.at("frames").get<std::string>(),
                    {}};
   const Json& options = shard.at("options");
+  read_option(options, "frequency_hz", facts.overrides.frequency_hz);
   read_option(options, "discovery", facts.overrides.discovery);
   read_option(options, "cache", facts.overrides.cache);
   read_option(options, "rays", facts.overrides.rays);

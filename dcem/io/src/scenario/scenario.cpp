@@ -30,6 +30,7 @@ nlohmann::json output_block(std::string_view list, const nlohmann::json& file_ou
 
 nlohmann::json command_line_values(const ScenarioOverrides& overrides, const nlohmann::json& file) {
   nlohmann::json values = nlohmann::json::object();
+  if (overrides.frequency_hz) values["--frequency"] = *overrides.frequency_hz;
   if (overrides.discovery) values["--discovery"] = *overrides.discovery;
   if (overrides.cache) values["--cache"] = *overrides.cache;
   if (overrides.rays) values["--rays"] = *overrides.rays;
@@ -47,6 +48,12 @@ void check_exact_discovery(const Scenario& scenario, const JsonObject& file, con
   const auto option = command_line.find("--discovery");
   const JsonValue place = option ? *option : file.at("propagation").member("discovery");
   reported_at(place, [&] { plan_search(scenario.settings.propagation, scenario.scene); });
+}
+
+/// Where the frequency is: on the command line, or in the file.
+JsonValue frequency_in(const JsonObject& file, const JsonObject& command_line) {
+  const auto option = command_line.find("--frequency");
+  return option ? *option : file.at("frequency_hz");
 }
 
 /// Air, foliage and the band of a frequency response must fit the frequency.
@@ -84,7 +91,9 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   if (const auto schema = root.find("$schema")) schema->text();
   Scenario result;
   result.name = file.stem().string();
-  result.settings.frequency_hz = root.at("frequency_hz").number();
+  root.at("frequency_hz").number();
+  const JsonValue frequency = frequency_in(root, command_line);
+  result.settings.frequency_hz = frequency.number();
   result.settings.itu = read_itu(root);
   result.settings.tree = read_tree(root);
   result.settings.propagation = read_propagation(root, command_line);
@@ -101,7 +110,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   result.settings.links = read_links(root, result.scene);
   reported_at(root.value(), [&] { validate(result.settings); });
   check_exact_discovery(result, root, command_line);
-  check_frequency(result, root.at("frequency_hz"));
+  check_frequency(result, frequency);
   warn_of_lost_scattering(file, result);
   return result;
 }

@@ -252,6 +252,9 @@ const BlockRule& command_line_block() {
       options.keys.push_back(*find_key(propagation_block(), key));
     }
     options.keys.push_back(*find_key(scenario_block(), "output"));
+    options.keys.push_back(*find_key(scenario_block(), "frequency_hz"));
+    options.keys.back().name = "frequency";
+    options.keys.back().absence = told("that of the scenario");
     for (KeyRule& key : options.keys) key.name = "--" + key.name;
     return options;
   }();
