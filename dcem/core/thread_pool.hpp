@@ -2,10 +2,8 @@
 /// Threads that wait for loops. Each iteration of a loop writes only its own slot of a result array, so the outcome
 /// does not depend on the number of threads or on which thread took which index.
 #include <algorithm>
-#include <atomic>
 #include <condition_variable>
 #include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -13,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "dcem/core/pool_loop.hpp"
 #include "dcem/core/work_times.hpp"
 
 namespace dcem {
@@ -36,8 +35,9 @@ class ThreadPool {
 
   /// Calls `body(index, worker)` for index = 0 … count−1; `worker` in 0 … size()−1 names the calling thread, for
   /// scratch space. The first exception of any iteration stops the loop and is thrown here. Loops of several threads
-  /// take turns; a loop within a loop runs on the thread that asks for it. `work_times` of the calling thread has what
-  /// they took; a loop of one iteration, or within a loop, is like any other code.
+  /// take turns. A loop within a loop of the same pool begins on the thread that asks for it, and those that have
+  /// nothing else to do help; of another pool it stays on that thread. `work_times` of the calling thread has what they
+  /// took; a loop of one iteration, or of another pool within a loop, is like any other code.
   template <typename Body>
   void for_each(std::size_t count, Body&& body);
   /// `body(index)` for each index, in blocks: for iterations so quick that a few are not worth waking anybody.
@@ -45,35 +45,24 @@ class ThreadPool {
   void for_each_quick(std::size_t count, Body&& body);
 
  private:
-  struct Loop {
-    std::size_t count;
-    void* body;
-    void (*call)(void* body, std::size_t index, unsigned worker);
-    std::atomic<std::size_t> next{0};
-    std::exception_ptr failure{};
-    std::mutex mutex{};  ///< of what stands below and above it
-    detail::LoopTimes all{}, of_caller{};
+  using Loop = detail::PoolLoop;
 
-    void work(unsigned worker);
-    void note(const detail::LoopTimes& times, unsigned worker);
-  };
-
-  void start(unsigned workers);
-  void run(Loop& loop, unsigned workers);
-  void share(Loop& loop, unsigned workers);
-  void wait_for_loops(unsigned worker, std::uint64_t begun);
-
-  static inline thread_local bool is_within_loop_ = false;
+  void run(Loop& loop);
+  void open(Loop& loop);
+  void close(Loop& loop);
+  void start(std::size_t workers);
+  detail::LoopTimes help(std::unique_lock<std::mutex>& lock, unsigned worker);
+  void wait_for_loops(unsigned worker);
+  bool is_within() const { return detail::loop_place.pool == this; }
 
   unsigned size_;
-  std::mutex turn_;  ///< one loop at a time
+  std::mutex turn_;  ///< one loop at a time, beside those within it
   std::mutex mutex_;
   std::condition_variable wake_, done_;
   std::vector<std::thread> threads_;
-  Loop* loop_ = nullptr;
-  unsigned workers_ = 0;        ///< that take part in the loop, the caller among them
-  unsigned still_working_ = 0;  ///< of the threads of this pool
-  std::uint64_t loops_begun_ = 0;
+  std::vector<Loop*> open_;       ///< that have iterations left, or had when somebody looked
+  std::size_t idle_ = 0;          ///< threads that wait for a loop
+  bool caller_may_help_ = false;  ///< it waits for the others to end the loop that it has asked for
   bool ends_ = false;
 };
 
@@ -87,15 +76,18 @@ void parallel_for(std::size_t count, unsigned threads, Body&& body) {
 
 template <typename Body>
 void ThreadPool::for_each(std::size_t count, Body&& body) {
-  const auto workers = static_cast<unsigned>(std::min<std::size_t>(size_, count));
-  if (count <= 1 || is_within_loop_) {
-    for (std::size_t index = 0; index < count; ++index) body(index, 0U);
+  const detail::LoopPlace& place = detail::loop_place;
+  const unsigned worker = is_within() ? place.worker : 0;
+  if (count <= 1 || (place.pool != nullptr && !is_within())) {
+    for (std::size_t index = 0; index < count; ++index) body(index, worker);
     return;
   }
   using Called = std::remove_reference_t<Body>;
   Loop loop{count, const_cast<void*>(static_cast<const void*>(&body)),
-            [](void* called, std::size_t index, unsigned worker) { (*static_cast<Called*>(called))(index, worker); }};
-  run(loop, workers);
+            [](void* called, std::size_t index, unsigned by) { (*static_cast<Called*>(called))(index, by); }, worker};
+  std::unique_lock turn(turn_, std::defer_lock);
+  if (!is_within()) turn.lock();
+  run(loop);
 }
 
 template <typename Body>
@@ -106,76 +98,70 @@ void ThreadPool::for_each_quick(std::size_t count, Body&& body) {
   });
 }
 
-inline void ThreadPool::Loop::work(unsigned worker) {
-  is_within_loop_ = true;
-  detail::LoopWatch watch;
-  try {
-    for (std::size_t index = next++; index < count; index = next++) {
-      call(body, index, worker);
-      watch.lap();
-    }
-  } catch (...) {
-    const std::lock_guard lock(mutex);
-    if (!failure) failure = std::current_exception();
-    next = count;
-  }
-  note(watch.times(), worker);
-  is_within_loop_ = false;
-}
-
-inline void ThreadPool::Loop::note(const detail::LoopTimes& times, unsigned worker) {
-  const std::lock_guard lock(mutex);
-  all.busy_s += times.busy_s;
-  all.longest_task_s = std::max(all.longest_task_s, times.longest_task_s);
-  if (worker == 0) of_caller = times;
-}
-
-inline void ThreadPool::run(Loop& loop, unsigned workers) {
-  workers == 1 ? loop.work(0) : share(loop, workers);
-  detail::asked_work.add(loop.of_caller, loop.all);
+inline void ThreadPool::run(Loop& loop) {
+  if (size_ > 1) open(loop);
+  loop.work({this, loop.owner});
+  if (size_ > 1) close(loop);
+  detail::asked_work.add(loop.of_owner, loop.all);
   if (loop.failure) std::rethrow_exception(loop.failure);
 }
 
-inline void ThreadPool::share(Loop& loop, unsigned workers) {
-  const std::lock_guard turn(turn_);
-  start(workers);
+/// Lets others know of a loop: as many of those that wait as it has use for.
+inline void ThreadPool::open(Loop& loop) {
+  std::size_t wanted = std::min<std::size_t>(size_, loop.count) - 1;
   {
     const std::lock_guard lock(mutex_);
-    loop_ = &loop;
-    workers_ = workers;
-    still_working_ = static_cast<unsigned>(threads_.size());
-    ++loops_begun_;
+    start(is_within() ? size_ : wanted + 1);
+    open_.push_back(&loop);
+    if (caller_may_help_) done_.notify_all();
+    wanted = std::min(wanted, idle_);
   }
-  wake_.notify_all();
-  loop.work(0);
-  std::unique_lock lock(mutex_);
-  done_.wait(lock, [&] { return still_working_ == 0; });
+  for (; wanted > 0; --wanted) wake_.notify_one();
 }
 
-inline void ThreadPool::start(unsigned workers) {
+/// Waits until nobody is within a loop any more; who has asked for the outermost one helps with others meanwhile.
+inline void ThreadPool::close(Loop& loop) {
+  std::unique_lock lock(mutex_);
+  std::erase(open_, &loop);
+  while (loop.helpers > 0) {
+    caller_may_help_ = caller_may_help_ || !is_within();
+    done_.wait(lock, [&] { return loop.helpers == 0 || (!is_within() && !open_.empty()); });
+    if (loop.helpers > 0) detail::asked_work.own_s += help(lock, loop.owner).busy_s;
+  }
+  if (!is_within()) caller_may_help_ = false;
+}
+
+inline void ThreadPool::start(std::size_t workers) {
   try {
     while (threads_.size() + 1 < workers) {
       const auto worker = static_cast<unsigned>(threads_.size() + 1);
-      threads_.emplace_back([this, worker, begun = loops_begun_] { wait_for_loops(worker, begun); });
+      threads_.emplace_back([this, worker] { wait_for_loops(worker); });
     }
   } catch (const std::system_error&) {
     // The system gives no more threads: those that are there, and this one, do the work.
   }
 }
 
-inline void ThreadPool::wait_for_loops(unsigned worker, std::uint64_t begun) {
+/// Works on the loop that is open for the longest time.
+inline detail::LoopTimes ThreadPool::help(std::unique_lock<std::mutex>& lock, unsigned worker) {
+  Loop& loop = *open_.front();
+  ++loop.helpers;
+  lock.unlock();
+  const detail::LoopTimes times = loop.work({this, worker});
+  lock.lock();
+  std::erase(open_, &loop);  // it has no iterations left
+  if (--loop.helpers == 0) done_.notify_all();
+  return times;
+}
+
+inline void ThreadPool::wait_for_loops(unsigned worker) {
   std::unique_lock lock(mutex_);
   while (true) {
-    wake_.wait(lock, [&] { return ends_ || loops_begun_ != begun; });
+    ++idle_;
+    wake_.wait(lock, [&] { return ends_ || !open_.empty(); });
+    --idle_;
     if (ends_) return;
-    begun = loops_begun_;
-    Loop& loop = *loop_;
-    if (worker < workers_) {
-      lock.unlock();
-      loop.work(worker);
-      lock.lock();
-    }
-    if (--still_working_ == 0) done_.notify_one();
+    help(lock, worker);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -140,6 +141,100 @@ TEST_CASE("a loop within a loop of the same pool ends, and so do loops that seve
   }
   for (std::thread& asker : askers) asker.join();
   CHECK(calls == 4 * 50 * 13);
+}
+
+namespace {
+
+/// Waits until so many have come here; whether they have, within a minute.
+bool all_meet(std::atomic<int>& here, int expected) {
+  ++here;
+  const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (here < expected && std::chrono::steady_clock::now() < until) std::this_thread::yield();
+  return here >= expected;
+}
+
+}  // namespace
+
+TEST_CASE("threads that have nothing else to do help with a loop within a loop, whoever asks for it") {
+  for (const std::size_t asker : {std::size_t{0}, std::size_t{1}}) {
+    for (int repeat = 0; repeat < 50; ++repeat) {
+      ThreadPool pool(2);
+      std::atomic<int> outside{0}, inside{0};
+      std::atomic<bool> helped{true};
+      pool.for_each(2, [&](std::size_t, unsigned worker) {
+        if (!all_meet(outside, 2)) helped = false;  // each thread has one
+        if (worker != asker) return;
+        pool.for_each(2, [&](std::size_t, unsigned) {
+          if (!all_meet(inside, 2)) helped = false;  // no thread alone gets past it
+        });
+      });
+      CHECK(helped);
+    }
+  }
+}
+
+TEST_CASE("a loop within a loop gets more threads than the outer one has iterations for") {
+  ThreadPool pool(4);
+  std::atomic<int> inside{0};
+  std::atomic<bool> helped{true};
+  pool.for_each(2, [&](std::size_t index, unsigned) {
+    if (index == 0) return;
+    pool.for_each(4, [&](std::size_t, unsigned) {
+      if (!all_meet(inside, 4)) helped = false;
+    });
+  });
+  CHECK(helped);
+}
+
+TEST_CASE("loops within loops within loops are done once each, by workers that are one thread each") {
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    ThreadPool pool(threads);
+    for (int repeat = 0; repeat < 20; ++repeat) {
+      std::vector<std::atomic<int>> calls(7 * 5 * 11);
+      std::vector<std::atomic<std::size_t>> thread_of(threads);
+      std::atomic<bool> is_one_thread{true};
+      const auto note = [&](unsigned worker) {
+        const std::size_t own = std::hash<std::thread::id>()(std::this_thread::get_id()) | 1U;
+        std::size_t before = 0;
+        if (!thread_of.at(worker).compare_exchange_strong(before, own) && before != own) is_one_thread = false;
+      };
+      pool.for_each(7, [&](std::size_t one, unsigned worker) {
+        note(worker);
+        pool.for_each(5, [&](std::size_t two, unsigned within) {
+          note(within);
+          pool.for_each(11, [&](std::size_t three, unsigned innermost) {
+            note(innermost);
+            ++calls[(one * 5 + two) * 11 + three];
+          });
+        });
+        pool.for_each(1, [&](std::size_t, unsigned alone) { is_one_thread = is_one_thread && alone == worker; });
+      });
+      for (const auto& times : calls) REQUIRE(times == 1);
+      CHECK(is_one_thread);
+    }
+  }
+}
+
+TEST_CASE("an exception of a loop within a loop comes out of both") {
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    ThreadPool pool(threads);
+    for (int repeat = 0; repeat < 20; ++repeat) {
+      std::atomic<int> caught{0};
+      const auto within = [&](std::size_t) {
+        try {
+          pool.for_each(9, [](std::size_t index, unsigned) {
+            if (index == 4) throw std::out_of_range("index four");
+          });
+        } catch (const std::out_of_range&) {
+          ++caught;
+          throw;
+        }
+      };
+      CHECK_THROWS_WITH_AS(pool.for_each(3, [&](std::size_t index, unsigned) { within(index); }), "index four",
+                           std::out_of_range);
+      CHECK(caught >= 1);
+    }
+  }
 }
 
 }  // namespace test_thread_pool
