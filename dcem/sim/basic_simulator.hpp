@@ -104,6 +104,13 @@ class BasicSimulator {
   using DeviceEnd = detail::DeviceEnd;
   using Solved = detail::Solved;
   struct Following;
+  struct FollowedLink;
+  /// A link that is to be solved: its transmitter among those of the receiver, its place among the results, whether
+  /// both ends are where they were, and whether its fields are then what they were, too.
+  struct LinkToFollow {
+    std::size_t transmitter, place;
+    bool rests, fields_stay;
+  };
   struct MapShare;
   struct MapOrder;
   std::vector<RadioMap> solve_map(const MapOrder& order, const std::function<void(std::size_t)>& progress,
@@ -177,25 +184,22 @@ class BasicSimulator {
   /// … and those of one; `transmitters` are those that it has links with.
   Solved follow_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                          ReceiverRoom* room);
-  LinkResult follow_link(Following& following, detail::ReceiverMemory& memory, std::size_t transmitter, bool rests,
-                         bool fields_stay, WorkCounters& work) const;
+  void follow_links(const Following& following, detail::ReceiverMemory& memory, std::span<const LinkToFollow> links,
+                    Solved& solved) const;
+  LinkResult follow_link(FollowedLink& link, const KeptHalf& half, bool fields_stay) const;
   void check_some(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                   std::span<const LinkResult> links, ReceiverRoom* room) const;
   Solved solve_again(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                      ReceiverRoom* room);
   void look_from_receiver(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;
   void look_for_triples(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;
-  std::vector<PathContribution> paths_of_moving(Following& following, detail::ReceiverMemory& memory,
-                                                std::size_t transmitter, bool rests) const;
-  bool may_pool(const Following& following, const detail::ReceiverMemory& memory, std::size_t transmitter,
-                bool rests) const;
-  void prepare_pool(const Following& following, detail::ReceiverMemory& memory, std::size_t transmitter) const;
-  std::vector<PathContribution> paths_in_place(Following& following, detail::ReceiverMemory& memory,
-                                               std::size_t transmitter) const;
-  std::vector<PathContribution> paths_of_standing(Following& following, detail::ReceiverMemory& memory,
-                                                  std::size_t transmitter, bool fields_stay) const;
-  std::optional<PathContribution> note_standing(Following& following, StandingLink<PathContribution>& standing,
-                                                std::size_t transmitter, const Sequence& sequence) const;
+  std::vector<PathContribution> paths_of_moving(FollowedLink& link, const KeptHalf& half) const;
+  bool joins_anew(const Following& following, const detail::ReceiverMemory& memory, const LinkToFollow& link) const;
+  bool may_pool(const Following& following, const KeptHalf& half, std::size_t transmitter, bool rests) const;
+  void prepare_pool(FollowedLink& link, const KeptHalf& half) const;
+  std::vector<PathContribution> paths_in_place(FollowedLink& link, const KeptHalf& half) const;
+  std::vector<PathContribution> paths_of_standing(FollowedLink& link, bool fields_stay) const;
+  std::optional<PathContribution> note_standing(FollowedLink& link, const Sequence& sequence) const;
   bool finds_lifetimes() const;
   void find_lifetimes(std::vector<LinkResult>& links, const TransmitterEnds& transmitters);
   void note_transmitters(const TransmitterEnds& ends);

@@ -87,12 +87,7 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
     halves[index].update(scene_, *outlines_, *ends.link[index], half_settings(search), lists,
                          change_ && &halves[index] == &halves_[index] ? change_->moved() : std::span<const char>{});
   };
-  // A few transmitters one after another, with all threads for each: lists are most of the work.
-  if (ends.link.size() >= pool_->size()) {
-    pool_->for_each(ends.link.size(), update);
-  } else {
-    for (std::size_t index = 0; index < ends.link.size(); ++index) update(index, 0);
-  }
+  pool_->for_each(ends.link.size(), update);  // of a few, all threads share the lists
   ends.halves = HalfRefs(halves);
 }
 

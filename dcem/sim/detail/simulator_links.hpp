@@ -87,33 +87,64 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const PathSearchSettings search = search_settings(transmitters.embedded);
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
-  std::span<const SequenceList> joined = proposals.joined;
-  std::vector<SequenceList> own;
-  if (plan_.joined > 0 && joined.empty()) {
-    ReceiverRoom& room = *proposals.room;
-    const KeptHalf* const known = transmitters.half_of(receiver.id, end, joins_triples(search));
-    if (known == nullptr) look_from(scene_, search, *outlines_, *lanes_, end, room);
-    own = join_halves(scene_, search,
-                      {*outlines_, *lanes_, transmitters.halves, known ? known->half() : room.half,
-                       known && known->lists() ? *known->lists() : room.lists},
-                      ends);
-    joined = own;
+  const KeptHalf* known = nullptr;
+  if (plan_.joined > 0 && proposals.joined.empty()) {
+    known = transmitters.half_of(receiver.id, end, joins_triples(search));
+    if (known == nullptr) look_from(scene_, search, *outlines_, *lanes_, end, *proposals.room);
   }
-  std::vector<LinkPaths> found =
-      find_paths(tracer, search, end, {receiver.id, frame_.index}, ends, counters, cache, transmitters.reached, joined);
+  const auto halves = [&] {
+    const ReceiverRoom& room = *proposals.room;
+    return LinkHalves{*outlines_, *lanes_, transmitters.halves, known ? known->half() : room.half,
+                      known && known->lists() ? *known->lists() : room.lists};
+  };
+  const SphereKey key{receiver.id, frame_.index};
+  // Rays, and all sequences there are, are tried on all links in one go; sequences of halves link by link.
+  const bool goes_apart = plan_.joined > 0 && !needs_rays(search) && cache == nullptr;
+  std::vector<LinkPaths> found;
+  if (!goes_apart) {
+    std::vector<SequenceList> own;
+    if (plan_.joined > 0 && proposals.joined.empty()) own = join_halves(scene_, search, halves(), ends);
+    found = find_paths(tracer, search, end, key, ends, counters, cache, transmitters.reached,
+                       own.empty() ? proposals.joined : std::span<const SequenceList>(own));
+  }
+  const auto find_apart = [&](std::size_t transmitter, WorkCounters& work) {
+    SearchCounters of_link;
+    SequenceList own;
+    if (proposals.joined.empty()) own = join_link(scene_, search, halves(), transmitter);
+    const SequenceList& sequences = proposals.joined.empty() ? own : proposals.joined[transmitter];
+    std::vector<LinkPaths> paths =
+        find_paths(tracer, search, end, key, ends.subspan(transmitter, 1), of_link, nullptr,
+                   std::span(transmitters.reached).subspan(transmitter, 1), std::span(&sequences, 1));
+    detail::add_search_work(of_link, work);
+    return std::move(paths.front());
+  };
   const Evaluator field = evaluator();
   const RadioEnd to = detail::radio_end(receiver, state);
   const std::vector<FacetId> seen = facets_seen_from(receiver, end, transmitters, proposals.room);
-  for (std::size_t transmitter = 0; transmitter < found.size(); ++transmitter) {
-    if (!ends[transmitter]) continue;
-    DiffusePower diffuse = diffuse_power(receiver, {end, to}, seen, transmitters, transmitter, solved.work);
-    LinkResult& link = solved.links.emplace_back(
-        make_link(std::move(found[transmitter]), std::move(diffuse), transmitters.number(transmitter),
-                  {*ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field));
+  std::vector<std::size_t> present;
+  for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
+    if (ends[transmitter]) present.push_back(transmitter);
+  }
+  solved.links.resize(present.size());
+  std::vector<WorkCounters> spent(present.size());
+  const auto solve_link = [&](std::size_t place, unsigned) {
+    const std::size_t transmitter = present[place];
+    WorkCounters& work = spent[place];
+    LinkPaths paths = goes_apart ? find_apart(transmitter, work) : std::move(found[transmitter]);
+    DiffusePower diffuse = diffuse_power(receiver, {end, to}, seen, transmitters, transmitter, work);
+    LinkResult& link = solved.links[place];
+    link = make_link(std::move(paths), std::move(diffuse), transmitters.number(transmitter),
+                     {*ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field);
     link.receiver = index;
     link.complete = !needs_rays(search) || search.max_interactions == 0;
-    solved.work.paths += link.paths.size();
+    work.paths += link.paths.size();
+  };
+  if (goes_apart || settings_.propagation.diffuse.enabled) {
+    pool_->for_each(present.size(), solve_link);  // threads that have nothing else to do help
+  } else {
+    for (std::size_t place = 0; place < present.size(); ++place) solve_link(place, 0);  // 2 µs each
   }
+  for (const WorkCounters& one : spent) solved.work += one;
   detail::add_search_work(counters, solved.work);
   solved.cache = counters.cache;
   return solved;

@@ -12,34 +12,23 @@
 
 namespace dcem {
 
-/// One receiver in one frame: what its links are solved with.
+/// One receiver in one frame: what all its links are solved with.
 template <SurfaceModel Surface, SpatialIndex Index>
 struct BasicSimulator<Surface, Index>::Following {
-  Following(const BasicSimulator& simulator, const TransmitterEnds& ends, const Tracer& of, const Device& at_end,
-            const LinkEnd& at, const RadioEnd& at_receiver)
+  Following(const BasicSimulator& simulator, const TransmitterEnds& ends, const Device& at_end, const LinkEnd& at,
+            const RadioEnd& at_receiver)
       : transmitters(ends),
         search(simulator.search_settings(ends.embedded)),
-        tracer(of),
-        solver(tracer, search.max_transmissions, search.edges),
-        ways(tracer, search.max_transmissions),
+        tracer(simulator.scene_, simulator.index_),
         field(simulator.evaluator()),
         receiver(at_end),
         end(at),
         radio(at_receiver),
         as_transmitter(ends.half_of(at_end.id, at, joins_triples(search))) {}
 
-  /// What a sequence brings between a transmitter and the receiver.
-  std::optional<PathContribution> solve(std::size_t transmitter, const Sequence& sequence) {
-    std::optional<Path> path = solver.solve(*transmitters.link[transmitter], end, sequence);
-    if (!path) return std::nullopt;
-    return field.evaluate(std::move(*path), transmitters.radio[transmitter], radio);
-  }
-
   const TransmitterEnds& transmitters;
   PathSearchSettings search;
-  const Tracer& tracer;
-  PathSolver<Index> solver;
-  WayFinder<Index> ways;
+  Tracer tracer;
   Evaluator field;
   const Device& receiver;
   const LinkEnd& end;
@@ -49,8 +38,36 @@ struct BasicSimulator<Surface, Index>::Following {
   const PathHalf* half = nullptr;
   const BeamLists* lists = nullptr;
   std::vector<FacetId> in_view{};  ///< where diffuse power is asked for
-  SearchCounters counters;
-  CacheCounters cache;
+};
+
+/// One link of a receiver in one frame: what is its own, so that another thread may solve the next one.
+template <SurfaceModel Surface, SpatialIndex Index>
+struct BasicSimulator<Surface, Index>::FollowedLink {
+  FollowedLink(const Following& of_receiver, detail::LinkMemory& before, std::size_t number, bool both_rest)
+      : of(of_receiver),
+        memory(before),
+        transmitter(number),
+        rests(both_rest),
+        solver(of.tracer, of.search.max_transmissions, of.search.edges),
+        ways(of.tracer, of.search.max_transmissions) {}
+
+  const LinkEnd& from() const { return *of.transmitters.link[transmitter]; }
+  /// What a sequence brings between the transmitter and the receiver.
+  std::optional<PathContribution> solve(const Sequence& sequence) {
+    std::optional<Path> path = solver.solve(from(), of.end, sequence);
+    if (!path) return std::nullopt;
+    return of.field.evaluate(std::move(*path), of.transmitters.radio[transmitter], of.radio);
+  }
+
+  const Following& of;
+  detail::LinkMemory& memory;
+  std::size_t transmitter;  ///< among those of `of`
+  bool rests;               ///< both ends are where they were
+  PathSolver<Index> solver;
+  WayFinder<Index> ways;
+  SearchCounters counters{};
+  CacheCounters cache{};
+  WorkCounters work{};
 };
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -74,7 +91,6 @@ template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::follow_receiver(
     const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room) {
   detail::ReceiverMemory& memory = receivers_[index];
-  const Tracer tracer(scene_, index_);
   const DeviceState state = state_of(receiver);
   Solved solved;
   if (!state.present) {
@@ -102,62 +118,90 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     all_stay = all_stay && stays(transmitter);
   }
   if (plan_.joined == 0 && !all_stay) return solve_again(receiver, index, transmitters, room);
-  std::optional<Following> following;  // made where something is to be solved
+  std::vector<LinkToFollow> to_follow;
   for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
-    const std::size_t number = transmitters.number(transmitter);
     detail::LinkMemory& link = memory.links[transmitter];
     if (!ends[transmitter]) {
       solved.cache.died += link.result ? link.result->paths.size() : 0;
       link.forget();
       continue;
     }
+    const std::size_t number = transmitters.number(transmitter);
     const bool rests = stands && link.result && transmitter_rests_[number] != 0;
     if (transmitter_rests_[number] == 0) link.pooled.forget();
     if (stays(transmitter)) {
       solved.cache.taken_over += link.result->paths.size();
       solved.links.push_back(*link.result);
-      continue;
+    } else {
+      to_follow.push_back(
+          {transmitter, solved.links.size(), rests, rests && is_same && transmitter_is_same_[number] != 0});
+      solved.links.emplace_back().receiver = index;
     }
-    if (!following) {
-      following.emplace(*this, transmitters, tracer, receiver, end, radio);
-      look_from_receiver(*following, memory, *room, stands);
-      following->in_view = facets_seen_from(receiver, end, transmitters, room);
-    }
-    const bool fields_stay = rests && is_same && transmitter_is_same_[number] != 0;
-    LinkResult result = follow_link(*following, memory, transmitter, rests, fields_stay, solved.work);
-    result.receiver = index;
-    detail::count_births(link.result, result, solved.cache);
-    link.result = result;
-    solved.links.push_back(std::move(result));
   }
-  if (!following && change_->any_moved()) memory.half.forget_bodies();
+  if (!to_follow.empty()) {
+    Following following(*this, transmitters, receiver, end, radio);
+    look_from_receiver(following, memory, *room, stands);
+    following.in_view = facets_seen_from(receiver, end, transmitters, room);
+    SearchCounters counters;
+    counters.solver.traversal += traversal;
+    detail::add_search_work(counters, solved.work);
+    follow_links(following, memory, to_follow, solved);
+  } else if (change_->any_moved()) {
+    memory.half.forget_bodies();
+  }
   for (const LinkResult& link : solved.links) solved.work.paths += link.paths.size();
 #if !defined(NDEBUG)
   check_some(receiver, index, transmitters, solved.links, room);
 #endif
-  if (following) {
-    following->counters.solver += following->solver.counters();
-    following->counters.solver.traversal += traversal;
-    detail::add_search_work(following->counters, solved.work);
-    solved.cache += following->cache;
-  }
   return solved;
 }
 
-/// One link, from what is known of it. `rests`: both ends are where they were.
+/// Solves links of a receiver, from what is known of each; threads that have nothing else to do help.
 template <SurfaceModel Surface, SpatialIndex Index>
-LinkResult BasicSimulator<Surface, Index>::follow_link(Following& following, detail::ReceiverMemory& memory,
-                                                       std::size_t transmitter, bool rests, bool fields_stay,
-                                                       WorkCounters& work) const {
-  const TransmitterEnds& transmitters = following.transmitters;
-  std::vector<PathContribution> paths = rests && memory.links[transmitter].standing.is_known()
-                                            ? paths_of_standing(following, memory, transmitter, fields_stay)
-                                            : paths_of_moving(following, memory, transmitter, rests);
-  const DeviceEnd to{following.end, following.radio};
-  DiffusePower diffuse = diffuse_power(following.receiver, to, following.in_view, transmitters, transmitter, work);
-  LinkResult result =
-      finish_link(std::move(paths), std::move(diffuse), transmitters.number(transmitter),
-                  {*transmitters.link[transmitter], transmitters.radio[transmitter]}, to, following.field);
+void BasicSimulator<Surface, Index>::follow_links(const Following& following, detail::ReceiverMemory& memory,
+                                                  std::span<const LinkToFollow> links, Solved& solved) const {
+  // What the links share is only read from here on.
+  if (following.half == &memory.half.half() &&
+      std::ranges::any_of(links, [&](const LinkToFollow& link) { return joins_anew(following, memory, link); })) {
+    memory.half.lay_out_images(scene_, *outlines_);
+  }
+  struct Spent {
+    WorkCounters work;
+    CacheCounters cache;
+  };
+  std::vector<Spent> spent(links.size());
+  pool_->for_each(links.size(), [&](std::size_t number, unsigned) {
+    const LinkToFollow& wanted = links[number];
+    FollowedLink link(following, memory.links[wanted.transmitter], wanted.transmitter, wanted.rests);
+    LinkResult& result = solved.links[wanted.place];
+    const std::size_t receiver = result.receiver;
+    result = follow_link(link, memory.half, wanted.fields_stay);
+    result.receiver = receiver;
+    detail::count_births(link.memory.result, result, link.cache);
+    link.memory.result = result;
+    link.counters.solver += link.solver.counters();
+    detail::add_search_work(link.counters, link.work);
+    spent[number] = {link.work, link.cache};
+  });
+  for (const Spent& one : spent) {
+    solved.work += one.work;
+    solved.cache += one.cache;
+  }
+}
+
+/// One link, from what is known of it.
+template <SurfaceModel Surface, SpatialIndex Index>
+LinkResult BasicSimulator<Surface, Index>::follow_link(FollowedLink& link, const KeptHalf& half,
+                                                       bool fields_stay) const {
+  const TransmitterEnds& transmitters = link.of.transmitters;
+  std::vector<PathContribution> paths = link.rests && link.memory.standing.is_known()
+                                            ? paths_of_standing(link, fields_stay)
+                                            : paths_of_moving(link, half);
+  const DeviceEnd to{link.of.end, link.of.radio};
+  DiffusePower diffuse =
+      diffuse_power(link.of.receiver, to, link.of.in_view, transmitters, link.transmitter, link.work);
+  LinkResult result = finish_link(std::move(paths), std::move(diffuse), transmitters.number(link.transmitter),
+                                  {link.from(), transmitters.radio[link.transmitter]}, to, link.of.field);
   result.complete = true;
   return result;
 }

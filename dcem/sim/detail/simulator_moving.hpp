@@ -51,81 +51,84 @@ void BasicSimulator<Surface, Index>::look_for_triples(Following& following, deta
 /// All paths of a link, from sequences found from both ends. Where the ends stand, all that may carry a path later is
 /// noted.
 template <SurfaceModel Surface, SpatialIndex Index>
-std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_moving(Following& following,
-                                                                              detail::ReceiverMemory& memory,
-                                                                              std::size_t transmitter,
-                                                                              bool rests) const {
-  memory.links[transmitter].standing.forget();
-  if (may_pool(following, memory, transmitter, rests)) {
-    if (memory.half.place()) return paths_in_place(following, memory, transmitter);
-    prepare_pool(following, memory, transmitter);
+std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_moving(FollowedLink& link,
+                                                                              const KeptHalf& half) const {
+  link.memory.standing.forget();
+  const Following& following = link.of;
+  if (may_pool(following, half, link.transmitter, link.rests)) {
+    if (half.place()) return paths_in_place(link, half);
+    prepare_pool(link, half);
   }
-  if (following.half == &memory.half.half()) memory.half.lay_out_images(scene_, *outlines_);
   const LinkHalves halves{*outlines_, *lanes_, following.transmitters.halves, *following.half, *following.lists};
-  const SequenceList proposed = join_link(scene_, following.search, halves, transmitter);
-  StandingLink<PathContribution>& standing = memory.links[transmitter].standing;
-  const bool notes = rests && scene_.bodies().size() > 1;
+  const SequenceList proposed = join_link(scene_, following.search, halves, link.transmitter);
+  const bool notes = link.rests && scene_.bodies().size() > 1;
   std::vector<PathContribution> paths;
   Sequence sequence;
   for (std::size_t number = 0; number < proposed.size(); ++number) {
     const std::span<const SequenceElement> elements = proposed[number];
     sequence.assign(elements.begin(), elements.end());
-    ++following.counters.sequences_proposed;
-    std::optional<PathContribution> found =
-        notes ? note_standing(following, standing, transmitter, sequence) : following.solve(transmitter, sequence);
+    ++link.counters.sequences_proposed;
+    std::optional<PathContribution> found = notes ? note_standing(link, sequence) : link.solve(sequence);
     if (found) paths.push_back(std::move(*found));
   }
-  if (notes) standing.complete();
+  if (notes) link.memory.standing.complete();
   return paths;
+}
+
+/// Whether what both ends see is joined as it is: not where a link is known, nor in a place of which all candidates
+/// are.
+template <SurfaceModel Surface, SpatialIndex Index>
+bool BasicSimulator<Surface, Index>::joins_anew(const Following& following, const detail::ReceiverMemory& memory,
+                                                const LinkToFollow& link) const {
+  if (link.rests && memory.links[link.transmitter].standing.is_known()) return false;
+  return !may_pool(following, memory.half, link.transmitter, link.rests) || !memory.half.place();
 }
 
 /// Whether it pays to know all candidates of the places that the receiver comes through.
 template <SurfaceModel Surface, SpatialIndex Index>
-bool BasicSimulator<Surface, Index>::may_pool(const Following& following, const detail::ReceiverMemory& memory,
-                                              std::size_t transmitter, bool rests) const {
+bool BasicSimulator<Surface, Index>::may_pool(const Following& following, const KeptHalf& half, std::size_t transmitter,
+                                              bool rests) const {
   const PathSearchSettings& search = following.search;
   const bool is_covered = search.max_interactions >= 1 && !joins_triples(search) &&
                           (search.max_diffractions <= 1 || search.max_interactions <= 1);
-  return is_covered && !rests && memory.half.is_in_places() &&
-         following.transmitters.halves[transmitter].lists() != nullptr;
+  return is_covered && !rests && half.is_in_places() && following.transmitters.halves[transmitter].lists() != nullptr;
 }
 
 /// Finds some of the candidates of the place that the receiver will be in next.
 template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::prepare_pool(const Following& following, detail::ReceiverMemory& memory,
-                                                  std::size_t transmitter) const {
-  auto next = memory.half.next_place();
+void BasicSimulator<Surface, Index>::prepare_pool(FollowedLink& link, const KeptHalf& half) const {
+  auto next = half.next_place();
   if (!next) return;
-  const BeamLists& reached = *following.transmitters.halves[transmitter].lists();
-  memory.links[transmitter].pooled.prepare({scene_, *outlines_, reached, joined_orders(following.search)},
-                                           std::move(next), memory.half.frames_to_next());
+  const BeamLists& reached = *link.of.transmitters.halves[link.transmitter].lists();
+  link.memory.pooled.prepare({scene_, *outlines_, reached, joined_orders(link.of.search)}, std::move(next),
+                             half.frames_to_next());
 }
 
 /// All paths of a link whose transmitter stands, from the candidates of the receiver's place.
 template <SurfaceModel Surface, SpatialIndex Index>
-std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Following& following,
-                                                                             detail::ReceiverMemory& memory,
-                                                                             std::size_t transmitter) const {
-  PooledLink& pooled = memory.links[transmitter].pooled;
-  const KeptHalf& mast = following.transmitters.halves[transmitter];
-  if (!pooled.is_of(*memory.half.place())) {
-    pooled.enter({scene_, *outlines_, *mast.lists(), joined_orders(following.search)}, memory.half.place());
+std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(FollowedLink& link,
+                                                                             const KeptHalf& half) const {
+  PooledLink& pooled = link.memory.pooled;
+  const Following& following = link.of;
+  const KeptHalf& mast = following.transmitters.halves[link.transmitter];
+  if (!pooled.is_of(*half.place())) {
+    pooled.enter({scene_, *outlines_, *mast.lists(), joined_orders(following.search)}, half.place());
   }
   std::vector<PathContribution> paths;
   const auto solve = [&](const Sequence& sequence) {
-    ++following.counters.sequences_proposed;
-    std::optional<PathContribution> found = following.solve(transmitter, sequence);
+    ++link.counters.sequences_proposed;
+    std::optional<PathContribution> found = link.solve(sequence);
     if (found) paths.push_back(std::move(*found));
     return found.has_value();
   };
   solve({});
   const JoinGates gates(scene_, *outlines_);
-  pooled.for_each_open(PoolJudge<Index>{gates, *outlines_, *following.transmitters.link[transmitter], following.end,
-                                        mast.half(), following.ways, following.counters.solver},
-                       solve);
+  pooled.for_each_open(
+      PoolJudge<Index>{gates, *outlines_, link.from(), following.end, mast.half(), link.ways, link.counters.solver},
+      solve);
   HalfJoiner(scene_, *outlines_, joined_orders(following.search))
       .for_each_body_sequence(*following.half, mast.half(), solve);
-  prepare_pool(following, memory, transmitter);
+  prepare_pool(link, half);
   return paths;
 }
 

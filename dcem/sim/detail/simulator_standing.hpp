@@ -15,24 +15,20 @@ namespace dcem {
 /// What a sequence brings between ends that stand. Notes it where it may carry a path as long as they do; where the
 /// scenery stops it, it does not, and need not be solved.
 template <SurfaceModel Surface, SpatialIndex Index>
-std::optional<PathContribution> BasicSimulator<Surface, Index>::note_standing(Following& following,
-                                                                              StandingLink<PathContribution>& standing,
-                                                                              std::size_t transmitter,
+std::optional<PathContribution> BasicSimulator<Surface, Index>::note_standing(FollowedLink& link,
                                                                               const Sequence& sequence) const {
-  std::optional<StandingWay> way = following.ways.find(*following.transmitters.link[transmitter], following.end,
-                                                       sequence, following.counters.solver);
+  std::optional<StandingWay> way = link.ways.find(link.from(), link.of.end, sequence, link.counters.solver);
   if (!way) return std::nullopt;
-  std::optional<PathContribution> found = following.solve(transmitter, sequence);
-  standing.add({std::move(*way), found, following.solver.had_choice()});
+  std::optional<PathContribution> found = link.solve(sequence);
+  link.memory.standing.add({std::move(*way), found, link.solver.had_choice()});
   return found;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_standing(Following& following,
-                                                                                detail::ReceiverMemory& memory,
-                                                                                std::size_t transmitter,
+std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_standing(FollowedLink& link,
                                                                                 bool fields_stay) const {
-  StandingLink<PathContribution>& standing = memory.links[transmitter].standing;
+  StandingLink<PathContribution>& standing = link.memory.standing;
+  const Following& following = link.of;
   const auto has_moved = [&](SequenceElement element) {
     const BodyId body = element.is_edge() ? scene_.wedge(element.edge()).body : scene_.facet(element.mirror()).body;
     return change_->moved()[body.value] != 0;
@@ -40,27 +36,27 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_standing(
   if (change_->any_moved()) standing.drop(has_moved);
   for (auto& entry : standing.entries()) {
     if ((entry.has_choice && change_->any()) || change_->boxes().meet(entry.way.points_m, entry.way.around)) {
-      ++following.cache.revalidated;
+      ++link.cache.revalidated;
       const bool was = entry.outcome.has_value();
-      entry.outcome = following.solve(transmitter, entry.way.sequence);
-      entry.has_choice = following.solver.had_choice();
-      ++(entry.outcome ? following.cache.reused : following.cache.expired);
-      if (!was && !entry.outcome) --following.cache.expired;
+      entry.outcome = link.solve(entry.way.sequence);
+      entry.has_choice = link.solver.had_choice();
+      ++(entry.outcome ? link.cache.reused : link.cache.expired);
+      if (!was && !entry.outcome) --link.cache.expired;
     } else if (entry.outcome) {
-      ++following.cache.taken_over;
+      ++link.cache.taken_over;
       if (!fields_stay) {
         entry.outcome = following.field.evaluate(std::move(entry.outcome->path),
-                                                 following.transmitters.radio[transmitter], following.radio);
+                                                 following.transmitters.radio[link.transmitter], following.radio);
       }
     }
   }
   if (change_->any_moved() && following.search.max_interactions > 0) {
     const auto add = [&](const Sequence& sequence) {
-      ++following.counters.sequences_proposed;
-      note_standing(following, standing, transmitter, sequence);
+      ++link.counters.sequences_proposed;
+      note_standing(link, sequence);
     };
     const JoinOrders orders = joined_orders(following.search);
-    const KeptHalf& mast = following.transmitters.halves[transmitter];
+    const KeptHalf& mast = following.transmitters.halves[link.transmitter];
     HalfJoiner(scene_, *outlines_, orders).for_each_moved_sequence(*following.half, mast.half(), add);
     if (joins_triples(following.search)) {
       TripleJoiner(scene_, *outlines_, *lanes_, orders).for_each_moved_sequence(*following.lists, *mast.lists(), add);
