@@ -196,15 +196,17 @@ DCEM_INLINE ChangeSet Scene::apply(const Frame& frame, ThreadPool* pool) {
 }
 
 DCEM_INLINE void Scene::take_over(BodyId id, const BodyState& state, ChangeSet& changes) {
-  const BodyState before = std::exchange(states_[id.value], state);
-  if (before.occupant != state.occupant) {
+  BodyState& now = states_[id.value];
+  if (now.occupant != state.occupant) {
     changes.replaced.push_back(id);
-    if (const auto known = body_by_id_.find(before.occupant); known != body_by_id_.end() && known->second == id) {
+    if (const auto known = body_by_id_.find(now.occupant); known != body_by_id_.end() && known->second == id) {
       body_by_id_.erase(known);
     }
   }
-  if (!before.present && !state.present) return;
-  if (before.present == state.present && before.placement.pose == state.placement.pose) return;
+  const bool was_there = now.present;
+  const bool is_as_before = was_there == state.present && now.placement.pose == state.placement.pose;
+  now = state;  // in the room of what it was
+  if ((!was_there && !state.present) || is_as_before) return;
   changes.moved.push_back(id);
 }
 

@@ -22,39 +22,44 @@ DCEM_INLINE std::vector<std::size_t> busiest_first(std::size_t receivers,
   return order;
 }
 
-/// Where each link of each receiver stands among all: by transmitter, then receiver.
-inline std::vector<std::vector<std::size_t>> places_of(std::span<const std::vector<LinkResult>> by_receiver,
-                                                       ThreadPool& pool) {
-  std::vector<std::vector<std::size_t>> places(by_receiver.size());
+/// Where the links of each receiver begin, one after the other, and how many there are in all.
+inline std::vector<std::size_t> first_links(std::span<const std::vector<LinkResult>> by_receiver) {
+  std::vector<std::size_t> first{0};
+  first.reserve(by_receiver.size() + 1);
+  for (const std::vector<LinkResult>& links : by_receiver) first.push_back(first.back() + links.size());
+  return first;
+}
+
+/// Where each link of each receiver, one after the other, stands among all: by transmitter, then receiver.
+inline std::vector<std::size_t> places_of(std::span<const std::vector<LinkResult>> by_receiver,
+                                          const std::vector<std::size_t>& first, ThreadPool& pool) {
+  std::vector<std::size_t> places(first.back());
   pool.for_each(by_receiver.size(), [&](std::size_t receiver, unsigned) {
-    for (const LinkResult& link : by_receiver[receiver]) places[receiver].push_back(link.transmitter);
+    std::size_t link = first[receiver];
+    for (const LinkResult& one : by_receiver[receiver]) places[link++] = one.transmitter;
   });
-  std::vector<std::size_t> next{0};  // by transmitter
-  for (const std::vector<std::size_t>& of_one : places) {
-    for (const std::size_t transmitter : of_one) {
-      if (next.size() < transmitter + 2) next.resize(transmitter + 2);
-      ++next[transmitter + 1];
-    }
+  std::vector<std::size_t> next;  // by transmitter
+  for (const std::size_t transmitter : places) {
+    if (next.size() < transmitter + 2) next.resize(transmitter + 2);
+    ++next[transmitter + 1];
   }
   std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::vector<std::size_t>& of_one : places) {
-    for (std::size_t& place : of_one) place = next[place]++;
-  }
+  for (std::size_t& place : places) place = next[place]++;
   return places;
 }
 
 DCEM_INLINE std::vector<LinkResult> gather_links(std::vector<std::vector<LinkResult>>&& by_receiver,
                                                  std::vector<LinkResult>&& room, ThreadPool& pool) {
-  std::size_t count = 0;
-  for (const std::vector<LinkResult>& links : by_receiver) count += links.size();
+  const std::vector<std::size_t> first = first_links(by_receiver);
   ThreadPool alone(1);
-  ThreadPool& threads = count < many_links ? alone : pool;
-  const std::vector<std::vector<std::size_t>> places = places_of(by_receiver, threads);
+  ThreadPool& threads = first.back() < many_links ? alone : pool;
+  const std::vector<std::size_t> places = places_of(by_receiver, first, threads);
   std::vector<LinkResult> all = std::move(room);
-  all.resize(count);
+  all.resize(first.back());
   threads.for_each(by_receiver.size(), [&](std::size_t receiver, unsigned) {
     std::vector<LinkResult> links = std::move(by_receiver[receiver]);
-    for (std::size_t link = 0; link < links.size(); ++link) all[places[receiver][link]] = std::move(links[link]);
+    for (std::size_t link = 0; link < links.size(); ++link)
+      all[places[first[receiver] + link]] = std::move(links[link]);
   });
   return all;
 }

@@ -22,7 +22,7 @@ constexpr double room_m = 200.0;            ///< so far away the walls of a room
 constexpr double moving_mps = 0.1;
 constexpr std::size_t most_named = 5;       ///< of each kind of misplacement
 constexpr std::size_t most_watched = 1000;  ///< receivers that are looked at in each frame; of more, the first ones
-constexpr std::size_t at_once = 32;         ///< devices or objects that a thread looks at
+constexpr std::size_t at_once = 8;          ///< devices or objects that a thread looks at
 constexpr std::size_t most_asked = 200;     ///< receivers, and points of each grid, that are asked where they are
 
 double outside_m(const Aabb<double>& box, const Vec3& point_m, int axis) {

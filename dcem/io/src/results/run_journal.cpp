@@ -167,8 +167,8 @@ void RunJournal::add(const FrameFigures& figures, std::span<const LinkResult> li
   std::vector<std::string> heads(lines->size());
   pool().for_each(heads.size(),
                   [&](std::size_t index, unsigned) { heads[index] = piece_head(lines_piece, (*lines)[index]); });
-  writing_->start([this, first = first_piece(figures, of_lines, 0, heads.size()), heads = std::move(heads), lines] {
-    write(first);
+  writing_->start([this, figures, of_lines = std::move(of_lines), heads = std::move(heads), lines] {
+    write(first_piece(figures, of_lines, 0, heads.size()));
     for (std::size_t index = 0; index < heads.size(); ++index) {
       write(heads[index]);
       write((*lines)[index]);
