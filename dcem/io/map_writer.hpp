@@ -12,6 +12,10 @@
 #include "dcem/io/heat_map.hpp"
 #include "dcem/scene/scene.hpp"
 
+namespace dcem {
+class ThreadPool;
+}
+
 namespace dcem::io {
 
 inline constexpr std::string_view map_csv_header =
@@ -44,8 +48,9 @@ HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame,
                     std::optional<double> time_s = {});
 
 /// Light and shade on what stands higher than a grid, seen from above: matt surfaces, light from the north-west that
-/// falls under 45°, no shadows cast. As many tones as 1280 along the longer side.
-Relief map_relief(const ReceiverGrid& grid, const Scene& scene);
+/// falls under 45°, no shadows cast. As many tones as 1280 along the longer side. The threads of `pool`, where there is
+/// one, share the rows.
+Relief map_relief(const ReceiverGrid& grid, const Scene& scene, ThreadPool* pool = nullptr);
 
 /// Where the triangles of the scene meet the horizontal plane at `height_m`: segments x0, y0, x1, y1 in metres. A
 /// corner that lies exactly on the plane counts as below it, so the cut is that of a plane a hair higher: each triangle

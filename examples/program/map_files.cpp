@@ -81,7 +81,7 @@ io::Relief MapFiles::relief_of(const CombinedMap& combined) const {
   const auto is_obstructed = [](const CombinedMapPoint& point) { return point.obstructed; };
   const bool shows = style_.hillshade && draws(combined.places) &&
                      std::any_of(combined.points.begin(), combined.points.end(), is_obstructed);
-  return shows ? io::map_relief(combined.grid(), scene_) : io::Relief{};
+  return shows ? io::map_relief(combined.grid(), scene_, &pool_) : io::Relief{};
 }
 
 template <typename Draw>

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/map_writer.hpp"
 
 namespace dcem::io {
@@ -47,8 +48,8 @@ CellSpan cells_within(double low_m, double high_m, double origin_m, double cell_
   return {index(low_m), index(high_m)};
 }
 
-// Raises the cells below a triangle to it. An upright one has no area from above.
-void raise(SurfaceHeights& surface, const std::array<Vec3, 3>& corners_m) {
+// Raises the cells below a triangle to it, in some rows. An upright one has no area from above.
+void raise(SurfaceHeights& surface, const std::array<Vec3, 3>& corners_m, const CellSpan& in_rows) {
   const auto& [a, b, c] = corners_m;
   const double twice_area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
   if (twice_area == 0.0) return;
@@ -56,7 +57,7 @@ void raise(SurfaceHeights& surface, const std::array<Vec3, 3>& corners_m) {
   const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
   const CellSpan columns = cells_within(low_x, high_x, surface.left_m, surface.cell_m, surface.columns);
   const CellSpan rows = cells_within(low_y, high_y, surface.bottom_m, surface.cell_m, surface.rows);
-  for (std::size_t row = rows.first; row < rows.last; ++row) {
+  for (std::size_t row = std::max(rows.first, in_rows.first); row < std::min(rows.last, in_rows.last); ++row) {
     const double y = surface.bottom_m + (static_cast<double>(row) + 0.5) * surface.cell_m;
     for (std::size_t column = columns.first; column < columns.last; ++column) {
       const double x = surface.left_m + (static_cast<double>(column) + 0.5) * surface.cell_m;
@@ -76,26 +77,35 @@ double lit_share(double slope_x, double slope_y) {
                            std::sqrt(slope_x * slope_x + slope_y * slope_y + 1.0));
 }
 
+// The tones of one row.
+void light_row(const SurfaceHeights& surface, std::size_t row, Relief& relief) {
+  const std::size_t south = row > 0 ? row - 1 : row, north = std::min(row + 1, surface.rows - 1);
+  for (std::size_t column = 0; column < surface.columns; ++column) {
+    const std::size_t west = column > 0 ? column - 1 : column, east = std::min(column + 1, surface.columns - 1);
+    const double rise_x_m = surface.at(east, row) - surface.at(west, row);
+    const double rise_y_m = surface.at(column, north) - surface.at(column, south);
+    relief.tones[row * surface.columns + column] =
+        static_cast<float>(lit_share(rise_x_m / (2.0 * surface.cell_m), rise_y_m / (2.0 * surface.cell_m)));
+  }
+}
+
 }  // namespace
 
-Relief map_relief(const ReceiverGrid& grid, const Scene& scene) {
+Relief map_relief(const ReceiverGrid& grid, const Scene& scene, ThreadPool* pool) {
+  constexpr std::size_t rows_at_once = 64;  // each thread looks at all triangles for so many
   SurfaceHeights surface = level_ground(grid);
   const auto boxes = scene.triangle_boxes();
-  for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
-    if (boxes[triangle].max.z > grid.origin_m.z) raise(surface, scene.corners_m(triangle));
-  }
-  Relief relief{surface.columns, surface.rows};
-  relief.tones.reserve(surface.heights_m.size());
-  for (std::size_t row = 0; row < surface.rows; ++row) {
-    const std::size_t south = row > 0 ? row - 1 : row, north = std::min(row + 1, surface.rows - 1);
-    for (std::size_t column = 0; column < surface.columns; ++column) {
-      const std::size_t west = column > 0 ? column - 1 : column, east = std::min(column + 1, surface.columns - 1);
-      const double rise_x_m = surface.at(east, row) - surface.at(west, row);
-      const double rise_y_m = surface.at(column, north) - surface.at(column, south);
-      relief.tones.push_back(
-          static_cast<float>(lit_share(rise_x_m / (2.0 * surface.cell_m), rise_y_m / (2.0 * surface.cell_m))));
+  ThreadPool alone(1);
+  ThreadPool& threads = pool != nullptr ? *pool : alone;
+  threads.for_each((surface.rows + rows_at_once - 1) / rows_at_once, [&](std::size_t block, unsigned) {
+    const CellSpan rows{block * rows_at_once, (block + 1) * rows_at_once};
+    for (std::uint32_t triangle = 0; triangle < boxes.size(); ++triangle) {
+      if (boxes[triangle].max.z > grid.origin_m.z) raise(surface, scene.corners_m(triangle), rows);
     }
-  }
+  });
+  Relief relief{surface.columns, surface.rows};
+  relief.tones.resize(surface.heights_m.size());
+  threads.for_each(surface.rows, [&](std::size_t row, unsigned) { light_row(surface, row, relief); });
   return relief;
 }
 
