@@ -1,5 +1,6 @@
 // What an end of a link sees and lists, and how a scene is searched.
 #include "dcem/paths/discover/edge_reach_bodies.hpp"
+#include "dcem/paths/discover/half_pairs_bodies.hpp"
 #include "dcem/paths/halves/beam_finder_bodies.hpp"
 #include "dcem/paths/halves/crowd_beams_bodies.hpp"
 #include "dcem/paths/halves/facet_outlines_bodies.hpp"

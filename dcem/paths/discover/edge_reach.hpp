@@ -60,6 +60,7 @@ struct ChainLimits {
   std::size_t max_diffractions = 1;
   std::size_t max_interactions = 3;  ///< reflections and diffractions together
   bool mirrors_between = false;      ///< try every mirror between two edges, too: for small scenes
+  bool pairs_apart = false;          ///< chains over two edges are somebody else's
 };
 
 /// Calls `visit(sequence)` for every chain that joins a half of the receiver's with a half of a transmitter's: at one
@@ -86,6 +87,10 @@ class ChainJoiner {
     std::size_t reflections = 0, diffractions = 0;
   };
 
+  /// Where pairs are somebody else's, and three edges are too many, chains have one.
+  std::size_t most_edges() const {
+    return limits_.pairs_apart && limits_.max_diffractions == 2 ? 1 : limits_.max_diffractions;
+  }
   bool fits(const Spent& spent) const {
     return spent.reflections <= limits_.max_reflections && spent.diffractions <= limits_.max_diffractions &&
            spent.reflections + spent.diffractions <= limits_.max_interactions;
@@ -94,8 +99,10 @@ class ChainJoiner {
   /// Ends the chain at its last element where that is an edge the transmitter reaches, and goes on over further ones.
   template <typename Visit>
   void extend(const Spent& spent, std::span<const EdgeReach::Edge> transmitter, Visit& visit) {
-    if (chain_.back().is_edge()) end_here(spent, transmitter, visit);
-    if (spent.diffractions == limits_.max_diffractions) return;
+    if (chain_.back().is_edge() && !(limits_.pairs_apart && spent.diffractions == 2)) {
+      end_here(spent, transmitter, visit);
+    }
+    if (spent.diffractions == most_edges()) return;
     const auto go_on = [&](SequenceElement element, const Spent& then) {
       if (!fits(then) || element == chain_.back()) return;
       chain_.push_back(element);

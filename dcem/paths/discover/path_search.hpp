@@ -12,6 +12,7 @@
 
 #include "dcem/paths/discover/edge_reach.hpp"
 #include "dcem/paths/discover/exact_search.hpp"
+#include "dcem/paths/discover/half_pairs.hpp"
 #include "dcem/paths/discover/path_cache.hpp"
 #include "dcem/paths/discover/ray_launcher.hpp"
 #include "dcem/paths/halves/covered.hpp"
@@ -53,6 +54,7 @@ struct LinkPaths {
 struct SearchCounters {
   std::uint64_t rays = 0;
   std::uint64_t sequences_proposed = 0;
+  PairCounters pairs;
   SolverCounters solver;
   CacheCounters cache;
 };
@@ -148,16 +150,13 @@ class PathSearch {
 
   /// Solves every chain that joins what the receiver reaches with what each transmitter reaches.
   void join(const ReachedEdges& own, std::span<const ReachedEdges> transmitters) {
-    ChainJoiner joiner(tracer_.scene(), chain_limits(settings_));
+    ChainLimits limits = chain_limits(settings_);
+    limits.pairs_apart = !settings_.exhaustive;
+    ChainJoiner joiner(tracer_.scene(), limits);
     for (std::size_t index = 0; index < transmitters_.size(); ++index) {
       if (!transmitters_[index]) continue;
-      joiner.for_each_chain(own, transmitters[index], [&](const Sequence& sequence) {
-        if (is_joined(sequence)) return;
-        ++counters_.sequences_proposed;
-        if (!is_remembered(index, sequence)) {
-          keep(index, solver_.solve(*transmitters_[index], receiver_, sequence));
-        }
-      });
+      joiner.for_each_chain(own, transmitters[index], [&](const Sequence& sequence) { try_chain(index, sequence); });
+      if (limits.pairs_apart) join_pairs(index, own, transmitters[index]);
     }
   }
 
@@ -191,6 +190,25 @@ class PathSearch {
       if (!transmitters_[index] || is_remembered(index, mirrors)) continue;
       keep(index, solver_.solve(*transmitters_[index], receiver_, mirrors, images_m));
     }
+  }
+
+  /// Solves the chains over two edges of a link.
+  void join_pairs(std::size_t transmitter, const ReachedEdges& own, const ReachedEdges& reached) {
+    SequenceList pairs;
+    join_edge_pairs(tracer_.scene(), chain_limits(settings_), {receiver_.position_m, own},
+                    {transmitters_[transmitter]->position_m, reached}, pairs, counters_.pairs);
+    Sequence sequence;
+    for (std::size_t number = 0; number < pairs.size(); ++number) {
+      sequence.assign(pairs[number].begin(), pairs[number].end());
+      try_chain(transmitter, sequence);
+    }
+  }
+
+  void try_chain(std::size_t transmitter, const Sequence& chain) {
+    if (is_joined(chain)) return;
+    ++counters_.sequences_proposed;
+    if (!is_remembered(transmitter, chain))
+      keep(transmitter, solver_.solve(*transmitters_[transmitter], receiver_, chain));
   }
 
   /// Whether halves have proposed a sequence, if it may carry a path at all.

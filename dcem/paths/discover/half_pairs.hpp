@@ -1,0 +1,40 @@
+#pragma once
+/// Chains over two edges, one that the receiver reaches and one that the transmitter reaches, in sampled search.
+///
+/// Of all pairs of halves few can carry a path: each edge must lie outside the other's wedge, and the shortest way from
+/// one end's image to the other's must meet both within their ends. That is asked of whole groups of edges by the boxes
+/// around them, then of eight at once in single precision with how far each number may be off
+/// (paths/discover/half_packs.hpp). What is refused cannot be a path, so nothing is lost; what is left the solver
+/// decides.
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "dcem/paths/discover/edge_reach.hpp"
+#include "dcem/paths/sequence.hpp"
+#include "dcem/scene/scene.hpp"
+
+namespace dcem {
+
+/// One end of a link, and the edges that it reaches.
+struct ReachingEnd {
+  Vec3 position_m{0.0};
+  std::span<const EdgeReach::Edge> edges;
+};
+
+/// What joining two ends took.
+struct PairCounters {
+  std::uint64_t boxes_asked = 0;  ///< of groups of edges
+  std::uint64_t packs_asked = 0;  ///< eight pairs at once
+};
+
+/// Appends the chains over two edges within some limits, from the receiver outwards, each once, without those that
+/// surely carry no path. Nothing lies between the edges.
+void join_edge_pairs(const Scene& scene, const ChainLimits& limits, const ReachingEnd& receiver,
+                     const ReachingEnd& transmitter, SequenceList& chains, PairCounters& counters);
+
+}  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/discover/half_pairs_bodies.hpp"
+#endif
