@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/paths/discover/edge_view.hpp"
 #include "dcem/paths/discover/path_search.hpp"
 
 namespace dcem {
@@ -33,6 +34,16 @@ void find_reach(const SceneTracer<Index>& tracer, const PathSearchSettings& sett
 // ---------------------------------------------------------------------------------------------------------------------
 
 namespace detail {
+
+/// Notes what the edges of a reach see, in sampled search.
+template <typename Index>
+void look_from_edges(const SceneTracer<Index>& tracer, const PathSearchSettings& settings, const LinkEnd& end,
+                     std::size_t frame, std::uint32_t rays, EdgeReach& reach, SearchCounters& counters) {
+  EdgeView<Index> view(tracer, end);
+  view.look(reach, chain_limits(settings), {settings.seed, frame}, rays_of_an_edge(rays));
+  counters.rays += view.rays();
+  counters.solver.traversal += view.traversal();
+}
 
 inline bool remembers_all(const PathCache& cache, std::span<const std::optional<LinkEnd>> transmitters) {
   for (std::size_t index = 0; index < transmitters.size(); ++index) {
@@ -83,8 +94,9 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSe
   if (settings.exhaustive) {
     search.search_all(noted);
   } else if (needs_rays(settings)) {
-    search.shoot(key, steady ? settings.rays_steady : settings.rays, cache != nullptr ? &cache->proposals() : nullptr,
-                 noted);
+    const std::uint32_t rays = steady ? settings.rays_steady : settings.rays;
+    search.shoot(key, rays, cache != nullptr ? &cache->proposals() : nullptr, noted);
+    if (noted != nullptr) detail::look_from_edges(tracer, settings, receiver, key.frame, rays, seen, counters);
   }
   if (noted != nullptr) search.join(seen.edges(), reached);
   if (noted != nullptr) seen.next_frame(detail::proposal_lifetime_frames(settings));
@@ -109,6 +121,7 @@ void find_reach(const SceneTracer<Index>& tracer, const PathSearchSettings& sett
   launcher.for_each_sequence(end, launch_rotation(settings.seed, key.id, key.frame), ignore_mirrors);
   counters.rays += launcher.rays();
   counters.solver.traversal += launcher.traversal();
+  detail::look_from_edges(tracer, settings, end, key.frame, rays, reach, counters);
 }
 
 }  // namespace dcem

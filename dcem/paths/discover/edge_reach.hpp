@@ -21,6 +21,7 @@ class EdgeReach {
   struct Edge {
     WedgeId id;
     std::vector<std::span<const SequenceElement>> mirrors;  ///< from the end to the edge, one list per way
+    std::vector<FacetId> in_view;                           ///< mirrors that rays from the edge met, ascending
   };
 
   /// Notes that the edge may be reached over `mirrors`.
@@ -37,9 +38,21 @@ class EdgeReach {
     halves_.append(half_);
   }
 
+  /// Notes that a ray from the edge met a mirror.
+  void note_view(WedgeId edge, FacetId mirror) {
+    half_.assign({edge, mirror});
+    views_.note(half_);
+  }
+
   /// Forgets everything, or what was not noted in the last `lifetime_frames` frames.
-  void clear() { halves_.clear(); }
-  void next_frame(std::uint32_t lifetime_frames) { halves_.next_frame(lifetime_frames); }
+  void clear() {
+    halves_.clear();
+    views_.clear();
+  }
+  void next_frame(std::uint32_t lifetime_frames) {
+    halves_.next_frame(lifetime_frames);
+    views_.next_frame(lifetime_frames);
+  }
 
   std::size_t size() const { return halves_.size(); }
 
@@ -47,7 +60,10 @@ class EdgeReach {
   std::vector<Edge> edges() const;
 
  private:
+  void add_views(std::span<Edge> edges) const;
+
   ProposalMemory halves_;
+  ProposalMemory views_;  ///< an edge and a mirror each
   Sequence half_;
 };
 

@@ -17,10 +17,20 @@ DCEM_INLINE std::vector<EdgeReach::Edge> EdgeReach::edges() const {
   std::stable_sort(halves.begin(), halves.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Edge> edges;
   for (const auto& [id, mirrors] : halves) {
-    if (edges.empty() || edges.back().id != id) edges.push_back({id, {}});
+    if (edges.empty() || edges.back().id != id) edges.push_back({id, {}, {}});
     edges.back().mirrors.push_back(mirrors);
   }
+  add_views(edges);
   return edges;
+}
+
+DCEM_INLINE void EdgeReach::add_views(std::span<Edge> edges) const {
+  views_.for_each([&](const Sequence& view) {
+    const auto edge = std::lower_bound(edges.begin(), edges.end(), view.front().edge(),
+                                       [](const Edge& one, WedgeId id) { return one.id < id; });
+    if (edge != edges.end() && edge->id == view.front().edge()) edge->in_view.push_back(view.back().mirror());
+  });
+  for (Edge& edge : edges) std::sort(edge.in_view.begin(), edge.in_view.end());
 }
 
 }  // namespace dcem

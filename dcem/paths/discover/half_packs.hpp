@@ -10,34 +10,11 @@
 #include <vector>
 
 #include "dcem/core/simd.hpp"
-#include "dcem/geometry/aabb.hpp"
+#include "dcem/paths/discover/edge_half.hpp"
 #include "dcem/paths/halves/edge_parts.hpp"
 #include "dcem/paths/halves/lane_edge.hpp"
-#include "dcem/paths/sequence.hpp"
 
 namespace dcem {
-
-/// An edge that an end reaches, the mirrors on the way from the end, and the end's image in them.
-struct EdgeHalf {
-  WedgeId id;
-  Wedge edge;
-  std::span<const SequenceElement> mirrors;
-  Vec3 image_m;
-};
-
-/// A half as others are asked against it, in double and in single precision.
-struct NearHalf {
-  Wedge edge;
-  Vec3 along, last_normal;
-  double place_m, distance_m, length_m;  ///< of the image along and from the edge; of the edge
-  LaneEdge lanes;
-  float error_m;  ///< how far coordinates in single precision may be off
-
-  NearHalf(const EdgeHalf& half, const Vec3& origin_m, double reach_m);
-
-  /// Whether the edge may be seen from anywhere in a box, and the way from there over it may meet it.
-  bool may_meet(const Aabb<double>& box) const;
-};
 
 inline namespace DCEM_ISA {
 
@@ -50,8 +27,9 @@ struct HalfPack {
 
   HalfPack(std::span<const EdgeHalf> halves, const Vec3& origin_m);
 
-  /// The lanes of those halves that the way from another may lead on to.
-  std::uint32_t meeting(const NearHalf& near) const;
+  /// The lanes of those halves that the way from another may lead on to; with a mirror between the two, whose image the
+  /// other is in, through that.
+  std::uint32_t meeting(const NearHalf& near, const MirrorWindow* window, const Vec3& origin_m) const;
 
  private:
   static constexpr float beside_m = 2e-3F;  ///< edges are taken to be longer by this at both ends
@@ -66,47 +44,14 @@ struct HalfPack {
   }
   std::uint32_t hidden_by_own_faces(const NearHalf& near) const;
   Found look_from(const NearHalf& near, const LanePoints& point) const;
-  std::uint32_t missing(const NearHalf& near) const;
+  std::uint32_t missing(const NearHalf& near, const MirrorWindow* window, const Vec3& origin_m) const;
+  static std::uint32_t beside(const MirrorWindow& window, const Vec3& origin_m, const LanePoints& from,
+                              const LanePoints& to, const Float8& error_m);
 };
 
 }  // namespace DCEM_ISA
 
 // ---------------------------------------------------------------------------------------------------------------------
-
-namespace detail {
-
-/// The normal of the second face, on the exterior side.
-inline Vec3 last_face_normal(const Wedge& wedge) {
-  const double angle_rad = wedge.exterior_angle_rad;
-  return std::sin(angle_rad) * wedge.tangent - std::cos(angle_rad) * wedge.normal;
-}
-
-}  // namespace detail
-
-inline NearHalf::NearHalf(const EdgeHalf& half, const Vec3& origin_m, double reach_m)
-    : edge(half.edge),
-      along(edge_direction(half.edge)),
-      last_normal(detail::last_face_normal(half.edge)),
-      place_m(glm::dot(half.image_m - half.edge.start_m, along)),
-      distance_m(glm::distance(half.image_m, half.edge.start_m + place_m * along)),
-      length_m(edge_length_m(half.edge)),
-      lanes(lane_edge(half.edge, origin_m)),
-      error_m(static_cast<float>(4e-7 * reach_m)) {}
-
-inline bool NearHalf::may_meet(const Aabb<double>& box) const {
-  const Vec3 half_m = 0.5 * (box.max - box.min), middle_m = 0.5 * (box.min + box.max) - edge.start_m;
-  const auto spread = [&](const Vec3& direction) { return glm::dot(glm::abs(direction), half_m); };
-  const auto is_behind = [&](const Vec3& normal) { return glm::dot(normal, middle_m) + spread(normal) < -1e-2; };
-  if (lanes.both_faces && is_behind(edge.normal) && is_behind(last_normal)) return false;
-  // A point at z along the edge and d from it leads on to the image over (z·d₁ + z₁·d)/(d + d₁).
-  const double middle = glm::dot(middle_m, along), low = middle - spread(along), high = middle + spread(along);
-  const double from_line = glm::length(middle_m - middle * along), radius = glm::length(half_m);
-  const double nearest = std::max(0.0, from_line - radius), farthest = from_line + radius;
-  const double slack = 1e-2 * (farthest + distance_m);
-  const auto times = [&](double slope, double most) { return slope * (slope * most > 0.0 ? farthest : nearest); };
-  return times(place_m, 1.0) + high * distance_m > -slack &&
-         times(place_m - length_m, -1.0) + (low - length_m) * distance_m < slack;
-}
 
 inline namespace DCEM_ISA {
 
@@ -178,8 +123,33 @@ inline HalfPack::Found HalfPack::look_from(const NearHalf& near, const LanePoint
   return found;
 }
 
-/// The lanes in which the way meets the other half's edge beyond its ends, of a zero that a few halvings enclose.
-inline std::uint32_t HalfPack::missing(const NearHalf& near) const {
+/// The lanes in which a way, both of whose ends may be off, crosses a mirror's plane beside the box around it, or not
+/// at all.
+inline std::uint32_t HalfPack::beside(const MirrorWindow& window, const Vec3& origin_m, const LanePoints& from,
+                                      const LanePoints& to, const Float8& error_m) {
+  const Vec3& normal = window.plane.normal;
+  const auto offset = static_cast<float>(glm::dot(normal, window.plane.point_m - origin_m));
+  const auto over = [&](const LanePoints& points) {
+    return dot(points, static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)) -
+           offset;
+  };
+  const Float8 first = over(from), second = over(to), inverse = Float8(1.0F) / (first - second);
+  std::uint32_t lanes = (((error_m < first) & (error_m < second)) | ((first < -error_m) & (second < -error_m))).bits();
+  const LanePoints way = to - from;
+  const Float8 length = simd::absolute(way.x) + simd::absolute(way.y) + simd::absolute(way.z);
+  const Float8 room = error_m * (Float8(2.0F) + length * simd::absolute(inverse)), share = first * inverse;
+  const auto outside = [&](const Float8& start, const Float8& along_way, int axis) {
+    const Float8 point = start + share * along_way;
+    return ((point + room < Float8(static_cast<float>(window.box.min[axis] - origin_m[axis]))) |
+            (Float8(static_cast<float>(window.box.max[axis] - origin_m[axis])) + room < point))
+        .bits();
+  };
+  return lanes | outside(from.x, way.x, 0) | outside(from.y, way.y, 1) | outside(from.z, way.z, 2);
+}
+
+/// The lanes in which the way meets the other half's edge beyond its ends, or misses the mirror: of a zero that a few
+/// halvings enclose.
+inline std::uint32_t HalfPack::missing(const NearHalf& near, const MirrorWindow* window, const Vec3& origin_m) const {
   Float8 low(0.0F), high = length_m;
   for (int step = 0; step < halvings; ++step) {
     const Float8 middle = Float8(0.5F) * (low + high);
@@ -187,17 +157,24 @@ inline std::uint32_t HalfPack::missing(const NearHalf& near) const {
     high = simd::select(here.slope_error < here.slope, middle, high);
     low = simd::select(here.slope < -here.slope_error, middle, low);
   }
-  const LaneMeeting here = look_from(near, at(Float8(0.5F) * (low + high))).near;
+  const LanePoints point = at(Float8(0.5F) * (low + high));
+  const LaneMeeting here = look_from(near, point).near;
   const Float8 moved_m = Float8(0.5F) * (high - low);  // from where it was asked for
   const Float8 room =
       here.beside_m + beside_m +
       edge_point_reach_m(Float8(static_cast<float>(near.distance_m)), here.sum_m, here.between_m, moved_m);
-  return ((here.place_m + room < Float8(0.0F)) | (Float8(static_cast<float>(near.length_m)) + room < here.place_m))
-      .bits();
+  const Mask8 beyond =
+      (here.place_m + room < Float8(0.0F)) | (Float8(static_cast<float>(near.length_m)) + room < here.place_m);
+  if (window == nullptr) return beyond.bits();
+  const LaneEdge& edge = near.lanes;
+  const LanePoints from{Float8(edge.start[0]) + here.place_m * edge.direction[0],
+                        Float8(edge.start[1]) + here.place_m * edge.direction[1],
+                        Float8(edge.start[2]) + here.place_m * edge.direction[2]};
+  return beyond.bits() | beside(*window, origin_m, from, point, room + moved_m + near.error_m);
 }
 
 /// Lanes are asked for what they are not, so that NaN, of points in one, passes.
-inline std::uint32_t HalfPack::meeting(const NearHalf& near) const {
+inline std::uint32_t HalfPack::meeting(const NearHalf& near, const MirrorWindow* window, const Vec3& origin_m) const {
   std::uint32_t left = lanes & ~(near.lanes.behind(near.lanes.from_start(first), near.error_m) &
                                  near.lanes.behind(near.lanes.from_start(last), near.error_m));
   if (left == 0) return 0;
@@ -208,7 +185,7 @@ inline std::uint32_t HalfPack::meeting(const NearHalf& near) const {
   left &= ~(end.slope < -end.slope_error).bits();
   if (left == 0) return 0;
   left &= ~hidden_by_own_faces(near);
-  return left == 0 ? 0 : left & ~missing(near);
+  return left == 0 ? 0 : left & ~missing(near, window, origin_m);
 }
 
 }  // namespace DCEM_ISA

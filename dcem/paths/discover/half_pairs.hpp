@@ -29,7 +29,7 @@ struct PairCounters {
 };
 
 /// Appends the chains over two edges within some limits, from the receiver outwards, each once, without those that
-/// surely carry no path. Nothing lies between the edges.
+/// surely carry no path. Between the edges lies nothing, or one of the mirrors that one of them sees.
 void join_edge_pairs(const Scene& scene, const ChainLimits& limits, const ReachingEnd& receiver,
                      const ReachingEnd& transmitter, SequenceList& chains, PairCounters& counters);
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "dcem/core/build_mode.hpp"
@@ -26,9 +27,11 @@ class HalfGroups {
  public:
   HalfGroups(std::vector<EdgeHalf> halves, const Vec3& origin_m);
 
-  /// Calls `visit(half)` for those that the way from another half may lead on to.
+  std::span<const EdgeHalf> halves() const { return halves_; }
+
+  /// Calls `visit(half)` for those that the way from another half, or from its image in a mirror, may lead on to.
   template <typename Visit>
-  void for_each_from(const NearHalf& near, PairCounters& counters, Visit&& visit) const;
+  void for_each_from(const NearHalf& near, const MirrorWindow* window, PairCounters& counters, Visit&& visit) const;
 
  private:
   struct Pack {
@@ -40,6 +43,7 @@ class HalfGroups {
     std::size_t first, last;  ///< packs
   };
 
+  Vec3 origin_m_;
   std::vector<EdgeHalf> halves_;
   std::vector<Pack> packs_;
   std::vector<Group> groups_;
@@ -70,7 +74,8 @@ inline void sort_neighbours(std::span<EdgeHalf> halves) {
   sort_neighbours(halves.subspan(middle));
 }
 
-inline HalfGroups::HalfGroups(std::vector<EdgeHalf> halves, const Vec3& origin_m) : halves_(std::move(halves)) {
+inline HalfGroups::HalfGroups(std::vector<EdgeHalf> halves, const Vec3& origin_m)
+    : origin_m_(origin_m), halves_(std::move(halves)) {
   sort_neighbours(halves_);
   for (std::size_t first = 0; first < halves_.size(); first += simd_lanes) {
     const auto held =
@@ -85,7 +90,8 @@ inline HalfGroups::HalfGroups(std::vector<EdgeHalf> halves, const Vec3& origin_m
 }
 
 template <typename Visit>
-void HalfGroups::for_each_from(const NearHalf& near, PairCounters& counters, Visit&& visit) const {
+void HalfGroups::for_each_from(const NearHalf& near, const MirrorWindow* window, PairCounters& counters,
+                               Visit&& visit) const {
   for (const Group& group : groups_) {
     ++counters.boxes_asked;
     if (!near.may_meet(group.box)) continue;
@@ -93,7 +99,7 @@ void HalfGroups::for_each_from(const NearHalf& near, PairCounters& counters, Vis
       ++counters.boxes_asked;
       if (!near.may_meet(packs_[pack].box)) continue;
       ++counters.packs_asked;
-      for (std::uint32_t left = packs_[pack].lanes.meeting(near); left != 0; left &= left - 1) {
+      for (std::uint32_t left = packs_[pack].lanes.meeting(near, window, origin_m_); left != 0; left &= left - 1) {
         visit(halves_[pack * simd_lanes + static_cast<std::size_t>(std::countr_zero(left))]);
       }
     }
@@ -118,7 +124,7 @@ inline std::vector<std::vector<EdgeHalf>> halves_of(const Scene& scene, const Re
       if (mirrors.size() >= halves.size()) continue;
       const Vec3 image_m = image_of(scene, end.position_m, mirrors);
       if (may_face(edge, image_m - edge.start_m))
-        halves[mirrors.size()].push_back({reached.id, edge, mirrors, image_m});
+        halves[mirrors.size()].push_back({reached.id, edge, mirrors, image_m, reached.in_view});
     }
   }
   return halves;
@@ -137,33 +143,110 @@ inline double reach_of(std::span<const std::vector<EdgeHalf>> halves, const Vec3
   return reach_m;
 }
 
+/// A half as it looks in a mirror. Its ends change places, because tangent, normal and direction stay right-handed.
+inline EdgeHalf half_in_mirror(const EdgeHalf& half, const Plane& plane) {
+  const auto turned = [&](const Vec3& direction) {
+    return direction - 2.0 * glm::dot(direction, plane.normal) * plane.normal;
+  };
+  EdgeHalf image = half;
+  image.edge.start_m = mirrored(plane, half.edge.end_m);
+  image.edge.end_m = mirrored(plane, half.edge.start_m);
+  image.edge.tangent = turned(half.edge.tangent);
+  image.edge.normal = turned(half.edge.normal);
+  image.image_m = mirrored(plane, half.image_m);
+  return image;
+}
+
+inline MirrorWindow window_of(const Scene& scene, FacetId id) {
+  MirrorWindow window{scene.facet(id).plane, {}};
+  for (const Vec3& corner_m : scene.hull_m(scene.facet(id))) window.box.extend(corner_m);
+  window.box = inflated(window.box, 1e-2);
+  return window;
+}
+
+/// Joins the halves of two ends over two edges.
+class PairJoiner {
+ public:
+  PairJoiner(const Scene& scene, const ChainLimits& limits, const ReachingEnd& receiver, const ReachingEnd& transmitter,
+             SequenceList& chains, PairCounters& counters)
+      : scene_(scene), limits_(limits), origin_m_(receiver.position_m), chains_(chains), counters_(counters) {
+    std::vector<std::vector<EdgeHalf>> near = halves_of(scene, receiver, limits);
+    std::vector<std::vector<EdgeHalf>> far = halves_of(scene, transmitter, limits);
+    reach_m_ = 2.0 * (reach_of(near, origin_m_) + reach_of(far, origin_m_));  // in mirrors, too
+    for (std::vector<EdgeHalf>& of : near) near_.emplace_back(std::move(of), origin_m_);
+    for (std::vector<EdgeHalf>& of : far) far_.emplace_back(std::move(of), origin_m_);
+  }
+
+  void join() {
+    for_each_two(0, [&](const HalfGroups& near, const HalfGroups& far) { join_directly(near, far); });
+    if (limits_.max_reflections == 0) return;
+    for_each_two(1, [&](const HalfGroups& near, const HalfGroups& far) {
+      join_over_mirrors<false>(near, far);
+      join_over_mirrors<true>(far, near);
+    });
+  }
+
+ private:
+  /// Calls `visit(near, far)` for halves whose mirrors leave room for some between the edges.
+  template <typename Visit>
+  void for_each_two(std::size_t between, Visit&& visit) const {
+    for (std::size_t mirrors = 0; mirrors < near_.size(); ++mirrors) {
+      for (std::size_t more = 0; more < far_.size() && mirrors + more + between < near_.size(); ++more) {
+        visit(near_[mirrors], far_[more]);
+      }
+    }
+  }
+
+  void join_directly(const HalfGroups& near, const HalfGroups& far) {
+    for (const EdgeHalf& half : near.halves()) {
+      far.for_each_from({half, origin_m_, reach_m_}, nullptr, counters_, [&](const EdgeHalf& other) {
+        if (other.id != half.id) add(half, {}, other);
+      });
+    }
+  }
+
+  /// Over the mirrors that the edges of `from` see; `turned`: `from` is the transmitter's, and what the receiver's
+  /// edges see, too, has been joined.
+  template <bool turned>
+  void join_over_mirrors(const HalfGroups& from, const HalfGroups& to) {
+    for (const EdgeHalf& half : from.halves()) {
+      for (const FacetId mirror : half.in_view) {
+        const MirrorWindow window = window_of(scene_, mirror);
+        const EdgeHalf image = half_in_mirror(half, window.plane);
+        to.for_each_from({image, origin_m_, reach_m_}, &window, counters_, [&](const EdgeHalf& other) {
+          const SequenceElement between = mirror;
+          if constexpr (!turned) return add(half, {&between, 1}, other);
+          if (!std::binary_search(other.in_view.begin(), other.in_view.end(), mirror)) add(other, {&between, 1}, half);
+        });
+      }
+    }
+  }
+
+  void add(const EdgeHalf& near, std::span<const SequenceElement> between, const EdgeHalf& far) {
+    chain_.assign(near.mirrors.begin(), near.mirrors.end());
+    chain_.emplace_back(near.id);
+    chain_.insert(chain_.end(), between.begin(), between.end());
+    chain_.emplace_back(far.id);
+    chain_.insert(chain_.end(), far.mirrors.rbegin(), far.mirrors.rend());
+    chains_.add(chain_);
+  }
+
+  const Scene& scene_;
+  ChainLimits limits_;
+  Vec3 origin_m_;
+  double reach_m_ = 0.0;
+  std::vector<HalfGroups> near_, far_;  ///< by how many mirrors there are
+  SequenceList& chains_;
+  PairCounters& counters_;
+  Sequence chain_;
+};
+
 }  // namespace detail
 
 DCEM_INLINE void join_edge_pairs(const Scene& scene, const ChainLimits& limits, const ReachingEnd& receiver,
                                  const ReachingEnd& transmitter, SequenceList& chains, PairCounters& counters) {
   if (limits.max_diffractions < 2 || limits.max_interactions < 2) return;
-  const Vec3 origin_m = receiver.position_m;
-  std::vector<std::vector<EdgeHalf>> far = detail::halves_of(scene, transmitter, limits);
-  const std::vector<std::vector<EdgeHalf>> near = detail::halves_of(scene, receiver, limits);
-  const double reach_m = detail::reach_of(near, origin_m) + detail::reach_of(far, origin_m);
-  std::vector<detail::HalfGroups> groups;
-  for (std::vector<EdgeHalf>& of : far) groups.emplace_back(std::move(of), origin_m);
-  Sequence chain;
-  for (std::size_t mirrors = 0; mirrors < near.size(); ++mirrors) {
-    for (const EdgeHalf& half : near[mirrors]) {
-      const NearHalf from(half, origin_m, reach_m);
-      for (std::size_t more = 0; more < groups.size() && mirrors + more < near.size(); ++more) {
-        groups[more].for_each_from(from, counters, [&](const EdgeHalf& other) {
-          if (other.id == half.id) return;
-          chain.assign(half.mirrors.begin(), half.mirrors.end());
-          chain.emplace_back(half.id);
-          chain.emplace_back(other.id);
-          chain.insert(chain.end(), other.mirrors.rbegin(), other.mirrors.rend());
-          chains.add(chain);
-        });
-      }
-    }
-  }
+  detail::PairJoiner(scene, limits, receiver, transmitter, chains, counters).join();
 }
 
 }  // namespace dcem

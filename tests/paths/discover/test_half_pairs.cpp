@@ -49,7 +49,7 @@ bool are_over_two_edges(const Sequence& chain) {
 }  // namespace
 
 TEST_CASE("half pairs: no path over two edges is lost, and few pairs are left") {
-  std::size_t paths = 0, pairs = 0, proposed = 0;
+  std::size_t paths = 0, pairs = 0, proposed = 0, over_mirrors = 0;
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
     CAPTURE(seed);
     Draw draw(33'000 + seed);
@@ -61,27 +61,33 @@ TEST_CASE("half pairs: no path over two edges is lost, and few pairs are left") 
     settings.max_diffractions = 2;
     settings.max_interactions = 3;
     settings.max_transmissions = 0;
-    const EdgeReach near = reach_of(traced, to, settings), far = reach_of(traced, from, settings);
+    EdgeReach near = reach_of(traced, to, settings), far = reach_of(traced, from, settings);
+    for (const EdgeReach::Edge& edge : near.edges()) {
+      for (std::uint32_t facet = 0; facet < traced.scene.facets().size(); ++facet) {
+        near.note_view(edge.id, FacetId(facet));
+      }
+    }
     const ReachedEdges near_edges = near.edges(), far_edges = far.edges();
     const Joined joined =
         join(traced.scene, chain_limits(settings), {to.position_m, near_edges}, {from.position_m, far_edges});
     CHECK(joined.chains.size() == joined.count);  // each once
     CHECK(std::all_of(joined.chains.begin(), joined.chains.end(), are_over_two_edges));
     PathSolver<WideIndex> solver(traced.tracer, 0);
-    ChainLimits limits = chain_limits(settings);
-    limits.mirrors_between = false;
-    ChainJoiner all(traced.scene, limits);
+    ChainJoiner all(traced.scene, chain_limits(settings));
     all.for_each_chain(near_edges, far_edges, [&](const Sequence& chain) {
       if (!are_over_two_edges(chain)) return;
       ++pairs;
       if (!solver.solve(from, to, chain)) return;
       ++paths;
+      over_mirrors += !chain[1].is_edge() && chain.size() == 3 && chain[0].is_edge() ? 1U : 0U;
       CHECK(joined.chains.contains(chain));
     });
     proposed += joined.count;
   }
-  MESSAGE(paths << " paths; " << proposed << " of " << pairs << " pairs proposed");
+  MESSAGE(paths << " paths, " << over_mirrors << " with a mirror between; " << proposed << " of " << pairs
+                << " pairs proposed");
   CHECK(paths > 1000);
+  CHECK(over_mirrors > 100);
   CHECK(proposed * 8 < pairs);
 }
 
