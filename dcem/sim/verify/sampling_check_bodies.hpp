@@ -86,6 +86,30 @@ inline LinksByEnds links_of(std::span<const LinkResult> links, const std::vector
   return found;
 }
 
+/// Solves some links again, ascending by receiver: `devices` are the receivers whose numbers are `receivers`. What no
+/// such link has as its transmitter is not looked from.
+inline std::vector<std::pair<const LinkResult*, LinkResult>> solved_again(const Simulator& reference,
+                                                                          const LinksByEnds& found,
+                                                                          const std::vector<std::size_t>& receivers,
+                                                                          const std::vector<Device>& devices) {
+  std::vector<std::size_t> numbers;  // of the transmitters, ascending as the links are
+  std::vector<Device> transmitters;
+  std::vector<LinkRequest> requests;
+  for (const auto& [ends, link] : found) {
+    if (numbers.empty() || numbers.back() != ends.first) {
+      numbers.push_back(ends.first);
+      transmitters.push_back(reference.scene().transmitters()[ends.first]);
+    }
+    const auto receiver = std::lower_bound(receivers.begin(), receivers.end(), ends.second) - receivers.begin();
+    requests.push_back({numbers.size() - 1, static_cast<std::size_t>(receiver)});
+  }
+  std::vector<std::pair<const LinkResult*, LinkResult>> pairs;
+  for (LinkResult& again : reference.solve(transmitters, devices, requests)) {
+    pairs.emplace_back(found.at({numbers[again.transmitter], receivers[again.receiver]}), std::move(again));
+  }
+  return pairs;
+}
+
 inline CheckedLink checked(const LinkResult& found, const LinkResult& again) {
   CheckedLink link{found.paths.size(), found.paths.size(), 0.0};
   double power_ratio = 0.0, lacking = 0.0;
@@ -152,9 +176,8 @@ DCEM_INLINE SamplingReport check_sampling(const Simulator& simulator, const Fram
   Simulator reference(simulator.scene(), settings);
   reference.move_to(frame);
   const detail::LinksByEnds found = detail::links_of(solved.links, chosen);
-  for (const LinkResult& again : reference.solve(devices)) {
-    const auto same = found.find({again.transmitter, chosen[again.receiver]});
-    if (same != found.end()) report.links.push_back(detail::checked(*same->second, again));
+  for (const auto& [link, again] : detail::solved_again(reference, found, chosen, devices)) {
+    report.links.push_back(detail::checked(*link, again));
   }
   return report;
 }
