@@ -137,9 +137,14 @@ io::RunFacts run_facts(const Job& job, const Simulator& simulator, const SearchP
           io::sampled_kinds(propagation, plan)};
 }
 
-void warn_of_slow_search(Job& job, const Simulator& simulator, const Device& receiver, std::size_t receivers) {
+std::size_t links_at_most(const Simulator& simulator) {
+  const std::size_t all = simulator.scene().receivers().size() * simulator.scene().transmitters().size();
+  const auto& pairs = simulator.settings().links.pairs;
+  return pairs ? std::min(all, pairs->size()) : all;
+}
+
+void warn_of_slow_search(Job& job, const Simulator& simulator, const Device& receiver, std::size_t links) {
   const std::vector<double> chains = simulator.estimated_chains(receiver);
-  const std::size_t links = receivers * simulator.scene().transmitters().size();
   if (const auto hint = io::slow_search_hint({chains, links, job.frames.count()})) {
     job.scenario.warnings.push_back(*hint);
   }

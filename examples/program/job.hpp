@@ -41,8 +41,12 @@ Simulator make_simulator(Scene scene, const SimulationSettings& settings, const 
 
 io::RunFacts run_facts(const Job& job, const Simulator& simulator, const SearchPlan& plan, std::size_t receivers);
 
-/// Where a sampled search would take hours, a warning says so. `receiver`: one of those that are searched for.
-void warn_of_slow_search(Job& job, const Simulator& simulator, const Device& receiver, std::size_t receivers);
+/// Of a frame of `dcem run`; where links have a range there are fewer.
+std::size_t links_at_most(const Simulator& simulator);
+
+/// Where a sampled search would take hours for so many links of a frame, a warning says so. `receiver`: one of those
+/// that are searched for.
+void warn_of_slow_search(Job& job, const Simulator& simulator, const Device& receiver, std::size_t links);
 
 /// One line per warning on the error stream, unless the user wants quiet. Called when nothing in the input can be wrong
 /// any more, because an error is to be the only line.

@@ -312,7 +312,8 @@ void map_one(const ScenarioOptions& options) {
                                           simulator.scene().surface_count(), orders.points())) {
     job.scenario.warnings.push_back(*hint);
   }
-  if (const auto receiver = orders.middle()) warn_of_slow_search(job, simulator, *receiver, orders.points());
+  if (const auto receiver = orders.middle())
+    warn_of_slow_search(job, simulator, *receiver, orders.points() * simulator.scene().transmitters().size());
   io::RunSummary summary(run_facts(job, simulator, simulator.plan(), orders.points()), simulator.scene());
   print_warnings(job.scenario.warnings, options);
   // The powers, the best server and the SINR.

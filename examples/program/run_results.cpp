@@ -49,7 +49,7 @@ void prepare_results(Job& job, const Simulator& simulator, const ResultFolder& f
     warn_of_plots(job, io::plotted_links(simulator.scene(), simulator.scene().receivers()));
   }
   const auto receivers = simulator.scene().receivers();
-  if (!receivers.empty()) warn_of_slow_search(job, simulator, receivers.front(), receivers.size());
+  if (!receivers.empty()) warn_of_slow_search(job, simulator, receivers.front(), links_at_most(simulator));
 }
 
 bool holds_result(ResultFolder& folder, const io::RunIdentity& identity) {

@@ -147,7 +147,7 @@ void run_shard(const ScenarioOptions& options) {
   require_effect(options, simulator);
   const auto receivers = simulator.scene().receivers();
   if (!receivers.empty()) {
-    warn_of_slow_search(job, simulator, receivers.front(), receivers.size() / options.shard->of + 1);
+    warn_of_slow_search(job, simulator, receivers.front(), links_at_most(simulator) / options.shard->of + 1);
   }
   print_warnings(job.scenario.warnings, options);
   const StopRequest stop;
