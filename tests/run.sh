@@ -2,8 +2,8 @@
 # Builds the release preset and runs its tests. Installs missing Debian packages where it may (root or sudo).
 #
 #   tests/run.sh              what a contributor needs: everything but what --all adds
-#   tests/run.sh --all        also slow tests, every slip in every key, the viewer in a browser, pictures of docs/,
-#                             benchmarks, packaging, budgets of compile time
+#   tests/run.sh --all        also slow tests, all draws of the others, every slip in every key, the viewer in a
+#                             browser, pictures of docs/, benchmarks, packaging, budgets of compile time
 #   CXX=clang++ tests/run.sh  with another compiler, in build/release-clang++ (default: build/release)
 #
 # With CI set in the environment a compiler warning is an error.

@@ -15,6 +15,7 @@
 #include "tests/io/program_case.hpp"
 #include "tests/io/result_files.hpp"
 #include "tests/io/running_program.hpp"
+#include "tests/support/all_tests.hpp"
 
 namespace test_long_runs {
 
@@ -191,7 +192,7 @@ TEST_CASE("a run that is killed leaves nothing that looks finished, goes on all 
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;
   REQUIRE(dcem_program(folder, run_town("all")).exit_code == 0);
-  for (const std::string how : {"", " --resume"}) {
+  for (const std::string& how : all_or<std::vector<std::string>>({"", " --resume"}, {" --resume"})) {
     CAPTURE(how);
     REQUIRE(end_town(folder, "killed", SIGKILL) == 1000 + SIGKILL);
     for (const std::string& name : names_in(folder / "killed")) {

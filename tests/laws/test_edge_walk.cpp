@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/all_tests.hpp"
 #include "tests/support/law_scenes.hpp"
 
 namespace test_edge_walk {
@@ -147,7 +148,7 @@ TEST_CASE("walking round a corner: the step across each shadow boundary is at mo
   double worst = 0.0;
   std::size_t walks = 0, broken_without = 0;
   for (const EdgeCase& edge : edges()) {
-    for (const double frequency_hz : {1e9, 10e9, 30e9, 100e9}) {
+    for (const double frequency_hz : all_or<std::vector<double>>({1e9, 10e9, 30e9, 100e9}, {1e9, 30e9})) {
       for (const Boundary& boundary : boundaries(edge.half_plane)) {
         for (const double climb_m : {0.0, 20.0}) {
           CAPTURE(edge.name);

@@ -9,6 +9,7 @@
 
 #include "dcem/core/work_times.hpp"
 #include "tests/paths/halves/small_town.hpp"
+#include "tests/support/all_tests.hpp"
 #include "tests/support/memory_trial.hpp"
 
 namespace test_shared_links {
@@ -81,7 +82,7 @@ TEST_CASE("one receiver and many transmitters: the same for any number of thread
   for (const MemoryOrders& orders : {MemoryOrders{2, 0, 1, 2}, {2, 1, 0, 2}, {1, 0, 2, 2}, {2, 0, 1, 3}}) {
     for (const CacheMode cache : {CacheMode::exact, CacheMode::off}) {
       CAPTURE(orders.interactions);
-      for (const std::size_t receivers : {std::size_t{1}, std::size_t{3}}) {
+      for (const std::size_t receivers : all_or<std::vector<std::size_t>>({1, 3}, {3})) {
         check_threads(town_of_senders(7 + receivers, receivers), with_cache(memory_settings(orders), cache));
       }
     }
