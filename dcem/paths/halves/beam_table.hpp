@@ -78,63 +78,6 @@ class BeamTable {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-inline void BeamTable::lay_out(const Scene& scene, const LaneScene& lanes, const BeamFinds& finds) {
-  lanes_ = &lanes;
-  before_.resize(finds.pairs.size());
-  before_rows_.build(
-      scene.facets().size(), finds.pairs.size(), 1, [&](std::size_t item) { return finds.pairs[item][0]; },
-      [&](std::size_t item, std::uint32_t place) { before_[place] = finds.pairs[item][1]; });
-  lay_out_parts(scene, finds);
-  lay_out_lit_parts(scene, finds);
-}
-
-inline void BeamTable::lay_out_parts(const Scene& scene, const BeamFinds& finds) {
-  parts_.resize(finds.parts.size());
-  part_rows_.build(
-      scene.wedges().size(), parts_.size(), 1, [&](std::size_t item) { return finds.parts[item].edge; },
-      [&](std::size_t item, std::uint32_t place) { parts_[place] = finds.parts[item]; });
-  part_clusters_.build(parts_, lanes_->origin_m(),
-                       [&](const EdgePart& part) -> const Wedge& { return scene.wedge(WedgeId(part.edge)).edge; });
-  find_body_boxes(scene);
-}
-
-/// Bodies are small and apart: a box around parts of several of them says little.
-inline void BeamTable::find_body_boxes(const Scene& scene) {
-  body_boxes_.clear();
-  for (std::size_t first = 0, last = 0; first < parts_.size(); first = last) {
-    const BodyId body = scene.wedge(WedgeId(parts_[first].edge)).body;
-    if (body == BodyId(0)) return body_boxes_.clear();
-    Aabb<double> box;
-    for (; last < parts_.size() && scene.wedge(WedgeId(parts_[last].edge)).body == body; ++last) {
-      const Wedge& edge = scene.wedge(WedgeId(parts_[last].edge)).edge;
-      box.extend(edge.start_m - lanes_->origin_m());
-      box.extend(edge.end_m - lanes_->origin_m());
-    }
-    body_boxes_.push_back(ConeClusters::box_of(box));
-  }
-}
-
-/// In eights, edge by edge.
-inline void BeamTable::lay_out_lit_parts(const Scene& scene, const BeamFinds& finds) {
-  LitLanes none;
-  none.to.fill(-1e30F);
-  none.mirror.fill(nothing);
-  lit_.clear();
-  lit_rows_.build(
-      scene.wedges().size(), finds.lit.size(), simd_lanes, [&](std::size_t item) { return finds.lit_edges[item]; },
-      [&](std::size_t item, std::uint32_t place) {
-        if (lit_.empty()) lit_.assign(lit_rows_.size() / simd_lanes, none);
-        LitLanes& eight = lit_[place / simd_lanes];
-        const std::size_t lane = place % simd_lanes;
-        const EdgePart& part = finds.lit[item];
-        eight.from[lane] = part.from;
-        eight.to[lane] = part.to;
-        eight.place[lane] = part.place;
-        eight.distance[lane] = part.distance;
-        eight.mirror[lane] = part.edge;
-      });
-}
-
 template <typename Visit>
 void BeamTable::for_each_lit_part(WedgeId edge, Visit&& visit) const {
   const RowIndex::Row row = lit_rows_.row(edge.value);
@@ -173,3 +116,7 @@ void BeamTable::for_each_lit_part(WedgeId edge, const Vec3& point, float radius_
 }
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/halves/beam_table_bodies.hpp"
+#endif

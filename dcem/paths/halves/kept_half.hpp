@@ -41,36 +41,7 @@ class KeptHalf {
   /// Brings the half to where the device is, and to where the bodies are. The settings are those of the time before.
   /// `moved`, by body: which of them have moved since then; empty: that is not known.
   void update(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const HalfSettings& settings,
-              const HalfLists& wanted = {}, std::span<const char> moved = {}) {
-    const bool is_followed = end_.has_value();
-    const Vec3 step_m = is_followed ? end.position_m - end_->position_m : Vec3(0.0);
-    note(end, wanted.receivers);
-    const bool is_known =
-        has_scenery_ && has_bodies_ && !moved.empty() && std::ranges::none_of(moved, [](char has) { return has != 0; });
-    const bool closer = wanted.lanes != nullptr && wanted.at_once;
-    const bool lists_follow = has_bodies_ && has_listed_bodies_ && !moved.empty();
-    if (!has_scenery_ && is_followed && !closer && pays(step_m)) {
-      follow(scene, outlines, end, step_m, settings);
-    } else if (!has_scenery_) {
-      step_m_ = glm::length(step_m);
-      find_scenery(scene, outlines, end, settings, closer);
-    }
-    const bool makes_lists =
-        wanted.lanes != nullptr && !has_lists_ && (wanted.at_once || (!keeps_places_ && pay(joins_)));
-    if (makes_lists && !is_closer_) find_scenery(scene, outlines, end, settings, true);
-    if (!is_known) half_.find_bodies(scene, outlines, settings, moved, wanted.pool);
-    has_bodies_ = true;
-    has_listed_bodies_ = has_listed_bodies_ && is_known;
-    if (wanted.lanes == nullptr) return;
-    const BeamSource source{scene,       outlines,          *wanted.lanes, half_, settings, wanted.over_mirrors,
-                            wanted.pool, wanted.most_pieces};
-    if (makes_lists) lists_.find_scenery(source);
-    has_lists_ = has_lists_ || makes_lists;
-    if (keeps_places_ && !has_lists_) go_on_with_lists(source, wanted.receivers);
-    if (!wanted.at_once || outlines.bodies().empty() || (!makes_lists && is_known && has_listed_bodies_)) return;
-    lists_.find_bodies(source, moved, lists_follow && !makes_lists);
-    has_listed_bodies_ = true;
-  }
+              const HalfLists& wanted = {}, std::span<const char> moved = {});
 
   /// Notes a frame whose links are known already: what `update` would do for it is left to the next `update`, which
   /// then finds what it would have found.
@@ -112,76 +83,25 @@ class KeptHalf {
   /// Of a device that has stood for a while, looks through some mirrors more in each frame: as many as take the time
   /// that the links from scratch do. Fewer of them let all frames wait for what the lists spare. One that rides on a
   /// body may drive off at any moment: it begins where they would have paid by then.
-  void go_on_with_lists(const BeamSource& source, std::size_t receivers) {
-    constexpr std::size_t mirrors_for_a_link = 30;
-    if (end_->ignored_body && !pay(joins_)) return;
-    ++frames_standing_;
-    if (frames_standing_ == 2) lists_.begin_scenery(source);
-    if (frames_standing_ > 2) has_lists_ = lists_.go_on(source, mirrors_for_a_link * receivers);
-  }
+  void go_on_with_lists(const BeamSource& source, std::size_t receivers);
 
   /// Of a device that has moved a little. Until the first place is ready it looks itself.
   void follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const Vec3& step_m,
-              const HalfSettings& settings) {
-    step_m_ = glm::length(step_m);
-    const HalfSettings of_place = looked_at_twice_from(settings, false);
-    const auto is_in = [&](const auto& place) { return place && place->box().holds(end.position_m); };
-    if (!is_in(place_)) place_.reset();
-    if (!place_ && is_in(next_)) {
-      while (!next_->is_known()) next_->go_on(scene, outlines, of_place);
-      place_ = std::move(next_);
-    }
-    prepare_next(scene, outlines, end.position_m, step_m, of_place);
-    is_closer_ = false;
-    has_scenery_ = true;
-    if (!place_) return half_.find_scenery(scene, outlines, end, of_place);
-    half_.take_scenery(scene, outlines, end, *place_);
-    if (images_at_once_) half_.lay_out_images(scene, outlines);
-  }
+              const HalfSettings& settings);
 
   /// Works on the next place, so much in each frame that it is known, with time for what others prepare, when the
   /// device comes into it.
   void prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m, const Vec3& step_m,
-                    const HalfSettings& settings) {
-    constexpr int most_frames = 8, steps_of_others = 2;
-    if (place_) {
-      frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
-    } else if (--frames_to_next_ <= 0 || !next_) {
-      next_.reset();  // missed, or none
-      frames_to_next_ = most_frames / 2;
-    }
-    if (frames_to_next_ > most_frames) return;
-    if (!next_) {
-      const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
-      next_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m));
-    }
-    const int all = next_->steps_left() + steps_of_others, now = (all + frames_to_next_) / (frames_to_next_ + 1);
-    for (int step = 0; step < now && !next_->is_known(); ++step) next_->go_on(scene, outlines, settings);
-  }
+                    const HalfSettings& settings);
 
   /// After how many frames a device that moves on like this is in a place no more: `most` + 1 where it is longer.
-  static int frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most) {
-    int frames = 1;
-    while (frames <= most && box.holds(now_m + static_cast<double>(frames) * step_m)) ++frames;
-    return frames;
-  }
+  static int frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most);
 
   /// Whether a device that has moved so far will be in a place for some frames.
   bool pays(const Vec3& moved_m) const { return keeps_places_ && glm::length(moved_m) <= longest_step_m_; }
 
   /// A place that begins a little behind a device and lies where it is going.
-  static PlaceBox place_ahead(const Vec3& before_m, const Vec3& now_m) {
-    constexpr double behind_m = 0.25, half_width_m = 0.5, half_height_m = 0.1;
-    const Vec3 moved_m = now_m - before_m;
-    const double level_m = std::hypot(moved_m.x, moved_m.y);
-    const Vec3 ahead = level_m > 0.0 ? Vec3(moved_m.x / level_m, moved_m.y / level_m, 0.0) : Vec3(1.0, 0.0, 0.0);
-    const double climb = moved_m.z / std::max(level_m, 1e-3 + std::abs(moved_m.z));
-    const double length_m = glm::length(moved_m) < fast_step_m ? 4.0 : 6.0;
-    const double half_length_m = 0.5 * length_m, to_middle_m = half_length_m - behind_m;
-    return {now_m + to_middle_m * ahead + Vec3(0.0, 0.0, to_middle_m * climb),
-            ahead,
-            {half_length_m, half_width_m, half_height_m + half_length_m * std::abs(climb)}};
-  }
+  static PlaceBox place_ahead(const Vec3& before_m, const Vec3& now_m);
 
   HalfSettings looked_at_twice_from(HalfSettings settings, bool closer) const {
     if (closer || !keeps_places_) settings.closer_from = closer ? 0 : very_many;
@@ -191,13 +111,7 @@ class KeptHalf {
   /// `closer`: for lists, which take so long for each mirror that it pays to look twice. Others look twice where they
   /// see very much, from above large cities.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const HalfSettings& settings,
-                    bool closer) {
-    place_.reset();
-    next_.reset();
-    half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, closer));
-    is_closer_ = closer;
-    has_scenery_ = true;
-  }
+                    bool closer);
 
   static constexpr std::size_t very_many = 20'000;  ///< facets; three times what a mast over one city sees
   /// Places are 4 m long by measurement: twice as long they take longer for each metre, half as long, too; of devices

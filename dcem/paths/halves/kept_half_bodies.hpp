@@ -1,9 +1,116 @@
 #pragma once
-/// Body of kept_half.hpp.
+/// Bodies of kept_half.hpp.
+#include <algorithm>
+#include <cmath>
+
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/kept_half.hpp"
 
 namespace dcem {
+
+DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
+                                  const HalfSettings& settings, const HalfLists& wanted, std::span<const char> moved) {
+  const bool is_followed = end_.has_value();
+  const Vec3 step_m = is_followed ? end.position_m - end_->position_m : Vec3(0.0);
+  note(end, wanted.receivers);
+  const bool is_known =
+      has_scenery_ && has_bodies_ && !moved.empty() && std::ranges::none_of(moved, [](char has) { return has != 0; });
+  const bool closer = wanted.lanes != nullptr && wanted.at_once;
+  const bool lists_follow = has_bodies_ && has_listed_bodies_ && !moved.empty();
+  if (!has_scenery_ && is_followed && !closer && pays(step_m)) {
+    follow(scene, outlines, end, step_m, settings);
+  } else if (!has_scenery_) {
+    step_m_ = glm::length(step_m);
+    find_scenery(scene, outlines, end, settings, closer);
+  }
+  const bool makes_lists =
+      wanted.lanes != nullptr && !has_lists_ && (wanted.at_once || (!keeps_places_ && pay(joins_)));
+  if (makes_lists && !is_closer_) find_scenery(scene, outlines, end, settings, true);
+  if (!is_known) half_.find_bodies(scene, outlines, settings, moved, wanted.pool);
+  has_bodies_ = true;
+  has_listed_bodies_ = has_listed_bodies_ && is_known;
+  if (wanted.lanes == nullptr) return;
+  const BeamSource source{scene,       outlines,          *wanted.lanes, half_, settings, wanted.over_mirrors,
+                          wanted.pool, wanted.most_pieces};
+  if (makes_lists) lists_.find_scenery(source);
+  has_lists_ = has_lists_ || makes_lists;
+  if (keeps_places_ && !has_lists_) go_on_with_lists(source, wanted.receivers);
+  if (!wanted.at_once || outlines.bodies().empty() || (!makes_lists && is_known && has_listed_bodies_)) return;
+  lists_.find_bodies(source, moved, lists_follow && !makes_lists);
+  has_listed_bodies_ = true;
+}
+
+DCEM_INLINE void KeptHalf::go_on_with_lists(const BeamSource& source, std::size_t receivers) {
+  constexpr std::size_t mirrors_for_a_link = 30;
+  if (end_->ignored_body && !pay(joins_)) return;
+  ++frames_standing_;
+  if (frames_standing_ == 2) lists_.begin_scenery(source);
+  if (frames_standing_ > 2) has_lists_ = lists_.go_on(source, mirrors_for_a_link * receivers);
+}
+
+DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
+                                  const Vec3& step_m, const HalfSettings& settings) {
+  step_m_ = glm::length(step_m);
+  const HalfSettings of_place = looked_at_twice_from(settings, false);
+  const auto is_in = [&](const auto& place) { return place && place->box().holds(end.position_m); };
+  if (!is_in(place_)) place_.reset();
+  if (!place_ && is_in(next_)) {
+    while (!next_->is_known()) next_->go_on(scene, outlines, of_place);
+    place_ = std::move(next_);
+  }
+  prepare_next(scene, outlines, end.position_m, step_m, of_place);
+  is_closer_ = false;
+  has_scenery_ = true;
+  if (!place_) return half_.find_scenery(scene, outlines, end, of_place);
+  half_.take_scenery(scene, outlines, end, *place_);
+  if (images_at_once_) half_.lay_out_images(scene, outlines);
+}
+
+DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
+                                        const Vec3& step_m, const HalfSettings& settings) {
+  constexpr int most_frames = 8, steps_of_others = 2;
+  if (place_) {
+    frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
+  } else if (--frames_to_next_ <= 0 || !next_) {
+    next_.reset();  // missed, or none
+    frames_to_next_ = most_frames / 2;
+  }
+  if (frames_to_next_ > most_frames) return;
+  if (!next_) {
+    const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
+    next_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m));
+  }
+  const int all = next_->steps_left() + steps_of_others, now = (all + frames_to_next_) / (frames_to_next_ + 1);
+  for (int step = 0; step < now && !next_->is_known(); ++step) next_->go_on(scene, outlines, settings);
+}
+
+DCEM_INLINE int KeptHalf::frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most) {
+  int frames = 1;
+  while (frames <= most && box.holds(now_m + static_cast<double>(frames) * step_m)) ++frames;
+  return frames;
+}
+
+DCEM_INLINE PlaceBox KeptHalf::place_ahead(const Vec3& before_m, const Vec3& now_m) {
+  constexpr double behind_m = 0.25, half_width_m = 0.5, half_height_m = 0.1;
+  const Vec3 moved_m = now_m - before_m;
+  const double level_m = std::hypot(moved_m.x, moved_m.y);
+  const Vec3 ahead = level_m > 0.0 ? Vec3(moved_m.x / level_m, moved_m.y / level_m, 0.0) : Vec3(1.0, 0.0, 0.0);
+  const double climb = moved_m.z / std::max(level_m, 1e-3 + std::abs(moved_m.z));
+  const double length_m = glm::length(moved_m) < fast_step_m ? 4.0 : 6.0;
+  const double half_length_m = 0.5 * length_m, to_middle_m = half_length_m - behind_m;
+  return {now_m + to_middle_m * ahead + Vec3(0.0, 0.0, to_middle_m * climb),
+          ahead,
+          {half_length_m, half_width_m, half_height_m + half_length_m * std::abs(climb)}};
+}
+
+DCEM_INLINE void KeptHalf::find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
+                                        const HalfSettings& settings, bool closer) {
+  place_.reset();
+  next_.reset();
+  half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, closer));
+  is_closer_ = closer;
+  has_scenery_ = true;
+}
 
 DCEM_INLINE std::vector<KeptHalf> kept_halves(std::size_t count, int map_pixels) {
   return std::vector<KeptHalf>(count, KeptHalf(map_pixels));

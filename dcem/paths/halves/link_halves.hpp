@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "dcem/paths/discover/path_search.hpp"
+#include "dcem/paths/discover/search_settings.hpp"
 #include "dcem/paths/halves/join_orders.hpp"
 #include "dcem/paths/halves/kept_half.hpp"
 

@@ -26,50 +26,16 @@ class PathHalf {
 
   /// Works out what the end may see of the scenery.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
-                    const HalfSettings& settings) {
-    note(end);
-    place_ = nullptr;
-    has_images_ = true;
-    own_sight_.look_from(end);
-    own_sight_.find_scenery(scene, outlines, settings, layers_[0]);
-    layers_[0].lay_out(scene, position_m_, outlines.middle_m());
-  }
+                    const HalfSettings& settings);
   /// Takes what may be seen of the scenery from the place that the end is in, which must stay as long as the half uses
   /// it. Images in mirrors of the scenery are laid out when they are asked for.
-  void take_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const Place& place) {
-    note(end);
-    has_images_ = false;
-    if (place_ == &place) return layers_[0].see_edges_from(position_m_);
-    if (place_ == nullptr) own_sight_ = Sight(map_pixels_);
-    place_ = &place;
-    static_cast<SeenLayer&>(layers_[0]) = place.scenery();
-    layers_[0].lay_out_edges(scene, position_m_, outlines.middle_m());
-  }
+  void take_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const Place& place);
   /// Lays out the images in all mirrors of the scenery, where they are not yet.
-  void lay_out_images(const Scene& scene, const FacetOutlines& outlines) {
-    if (!has_images_) layers_[0].lay_out_images(scene, position_m_, outlines.middle_m());
-    has_images_ = true;
-  }
+  void lay_out_images(const Scene& scene, const FacetOutlines& outlines);
   /// The same of all other bodies, where they are now. The scenery must be known. `moved`, by body: which of them have
   /// moved since the frame before; empty: all. `pool`: as in `BodyReach::find`.
   void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                   std::span<const char> moved = {}, ThreadPool* pool = nullptr) {
-    for (const bool have_moved : {true, false}) {
-      HalfLayer& layer = layers_[have_moved ? 1 : 2];
-      sight().find_bodies(scene, outlines, settings, {ignored_body_, moved, have_moved}, layer);
-      layer.lay_out(scene, position_m_, outlines.middle_m());
-      bodies_[have_moved ? 0 : 1].lay_out(scene, layer, position_m_, outlines.middle_m());
-    }
-    if (place_ != nullptr) {
-      reach_.find(
-          outlines, place_->mirrors().size(), [&](std::size_t at) { return place_->mirrors()[at].cone; },
-          [&](std::size_t at) { return place_->mirrors()[at].number; }, pool);
-    } else {
-      reach_.find(
-          outlines, layers_[0].mirrors.size(), [&](std::size_t at) { return layers_[0].cones[at]; },
-          [](std::size_t at) { return static_cast<std::uint32_t>(at); }, pool);
-    }
-  }
+                   std::span<const char> moved = {}, ThreadPool* pool = nullptr);
 
   const Vec3& position_m() const { return position_m_; }
   /// The body that is not there for the end.
@@ -120,3 +86,7 @@ class PathHalf {
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/halves/path_half_bodies.hpp"
+#endif

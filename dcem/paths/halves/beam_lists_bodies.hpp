@@ -1,0 +1,139 @@
+#pragma once
+/// Bodies of beam_lists.hpp.
+#include <utility>
+
+#include "dcem/core/build_mode.hpp"
+#include "dcem/paths/halves/beam_lists.hpp"
+
+namespace dcem {
+
+DCEM_INLINE void BeamLists::find_all(const BeamSource& source) {
+  note_mirrors(source, 0, source.half.layers().size());
+  has_bodies_ = true;
+  found_ = {};
+  tables_ = {};
+  const BeamFinder finder(source, mirrors_);
+  for (const HalfLayer& layer : half_->layers()) finder.find_parts(layer, BeamFinder::many_pieces, found_[0]);
+  if (source.over_mirrors) finder.look_through(0, mirrors_.size(), true, BeamFinder::few_pieces, found_[0]);
+  tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0]);
+}
+
+DCEM_INLINE void BeamLists::find_scenery(const BeamSource& source) {
+  begin_scenery(source);
+  go_on(source, mirrors_.size());
+}
+
+DCEM_INLINE void BeamLists::begin_scenery(const BeamSource& source) {
+  note_mirrors(source, 0, 1);
+  has_bodies_ = source.outlines.bodies().empty();
+  found_ = {};
+  tables_ = {};
+  looked_through_ = 0;
+  BeamFinder(source, mirrors_).find_parts(half_->layers()[0], BeamFinder::many_pieces, found_[0]);
+}
+
+DCEM_INLINE bool BeamLists::go_on(const BeamSource& source, std::size_t mirrors) {
+  const std::size_t last = source.over_mirrors ? std::min(looked_through_ + mirrors, mirrors_.size()) : 0;
+  BeamFinder(source, mirrors_).look_through(looked_through_, last, false, source.most_pieces, found_[0]);
+  looked_through_ = last;
+  const bool is_done = !source.over_mirrors || last == mirrors_.size();
+  if (is_done) {
+    tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0]);
+    found_[0] = {};
+  }
+  return is_done;
+}
+
+/// Notes the mirrors of some layers: that of the scenery comes first, and stays while the others change.
+DCEM_INLINE void BeamLists::note_mirrors(const BeamSource& source, std::size_t first_layer, std::size_t layers) {
+  half_ = &source.half;
+  lanes_ = &source.lanes;
+  position_m_ = half_->position_m() - source.lanes.origin_m();
+  const std::size_t kept = first_layer == 0 ? 0 : half_->layers()[0].mirrors.size();
+  if (kept == 0) mirror_of_.assign(source.scene.facets().size(), nothing);
+  for (std::size_t at = kept; at < mirrors_.size() && kept > 0; ++at) mirror_of_[mirrors_[at].facet.value] = nothing;
+  mirrors_.erase(mirrors_.begin() + static_cast<std::ptrdiff_t>(kept), mirrors_.end());
+  for (const HalfLayer& layer : half_->layers().subspan(first_layer, layers)) {
+    for (std::size_t at = 0; at < layer.mirrors.size(); ++at) {
+      mirror_of_[layer.mirrors[at].value] = static_cast<std::uint32_t>(mirrors_.size());
+      mirrors_.push_back({layer.mirrors[at], layer.images_m[at] - source.lanes.origin_m(), layer.cones[at]});
+    }
+  }
+}
+
+DCEM_INLINE void BeamLists::find_bodies(const BeamSource& source, std::span<const char> moved, bool follows) {
+  std::vector<FacetId> before;
+  for (const BeamMirror& mirror : mirrors_) before.push_back(mirror.facet);
+  note_mirrors(source, 1, source.half.layers().size() - 1);
+  has_bodies_ = true;
+  if (follows) {
+    keep_standing(source, moved, before);
+  } else {
+    found_[of_others] = find_others(source, moved);
+  }
+  found_[of_moved] = find_moved(source, moved);
+  for (const std::size_t table : {of_moved, of_others}) {
+    tables_[table].lay_out(source.scene, source.lanes, found_[table]);
+  }
+}
+
+/// What is reached over a body that has moved.
+DCEM_INLINE BeamFinds BeamLists::find_moved(const BeamSource& source, std::span<const char> moved) const {
+  BeamFinds finds;
+  const BeamFinder finder(source, mirrors_);
+  finder.find_parts(half_->layers()[of_moved], BeamFinder::few_pieces, finds);
+  if (!source.over_mirrors) return finds;
+  const std::size_t standing = half_->layers()[0].mirrors.size(),
+                    last = standing + half_->layers()[of_moved].mirrors.size();
+  const BodyChoice choice{half_->ignored_body(), moved, true};
+  finder.reach_bodies(0, standing, choice, finds);
+  finder.reach_bodies(last, mirrors_.size(), choice, finds);
+  finder.look_through(standing, last, true, BeamFinder::few_pieces, finds);
+  return finds;
+}
+
+/// What is reached over other bodies, and over none that has moved.
+DCEM_INLINE BeamFinds BeamLists::find_others(const BeamSource& source, std::span<const char> moved) const {
+  BeamFinds finds;
+  const BeamFinder finder(source, mirrors_);
+  finder.find_parts(half_->layers()[of_others], BeamFinder::few_pieces, finds);
+  if (!source.over_mirrors) return finds;
+  const std::size_t standing = half_->layers()[0].mirrors.size(),
+                    first = standing + half_->layers()[of_moved].mirrors.size();
+  const BodyChoice choice{half_->ignored_body(), moved, false};
+  finder.reach_bodies(0, standing, choice, finds);
+  finder.reach_bodies(first, mirrors_.size(), choice, finds);
+  finder.look_through(first, mirrors_.size(), false, BeamFinder::few_pieces, finds);
+  return finds;
+}
+
+/// Keeps what was listed over bodies and concerns none that has moved now; the mirrors have other places.
+DCEM_INLINE void BeamLists::keep_standing(const BeamSource& source, std::span<const char> moved,
+                                          std::span<const FacetId> before) {
+  const auto has_moved = [&](BodyId body) { return moved.empty() ? body != BodyId(0) : moved[body.value] != 0; };
+  const auto place_now = [&](std::uint32_t mirror) {
+    return has_moved(source.scene.facet(before[mirror]).body) ? nothing : mirror_of_[before[mirror].value];
+  };
+  const auto of_edge = [&](std::uint32_t edge) { return source.scene.wedge(WedgeId(edge)).body; };
+  BeamFinds kept;
+  for (const std::size_t table : {of_others, of_moved}) {
+    const BeamFinds& old = found_[table];
+    for (const auto& [seen, mirror] : old.pairs) {
+      const std::uint32_t place = place_now(mirror);
+      if (place != nothing && !has_moved(source.scene.facet(FacetId(seen)).body)) kept.pairs.push_back({seen, place});
+    }
+    for (const EdgePart& part : old.parts) {
+      if (!has_moved(of_edge(part.edge))) kept.parts.push_back(part);
+    }
+    for (std::size_t at = 0; at < old.lit.size(); ++at) {
+      const std::uint32_t place = place_now(old.lit[at].edge);
+      if (place == nothing || has_moved(of_edge(old.lit_edges[at]))) continue;
+      kept.lit.push_back(old.lit[at]);
+      kept.lit.back().edge = place;
+      kept.lit_edges.push_back(old.lit_edges[at]);
+    }
+  }
+  found_[of_others] = std::move(kept);
+}
+
+}  // namespace dcem

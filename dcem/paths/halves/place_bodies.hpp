@@ -1,0 +1,66 @@
+#pragma once
+/// Bodies of place.hpp.
+#include "dcem/core/build_mode.hpp"
+#include "dcem/paths/halves/place.hpp"
+
+namespace dcem {
+
+DCEM_INLINE void PlaceBox::corners_beside(const Plane& plane, double side, std::vector<Vec3>& result_m) const {
+  const std::array<Vec3, 8> all_m = corners_m();
+  std::array<double, 8> above_m;
+  result_m.clear();
+  for (std::size_t corner = 0; corner < all_m.size(); ++corner) {
+    above_m[corner] = side * signed_distance_m(plane, all_m[corner]);
+    if (above_m[corner] > in_plane_guard_m) result_m.push_back(all_m[corner]);
+  }
+  if (result_m.empty() || result_m.size() == all_m.size()) return;
+  for (std::size_t corner = 0; corner < all_m.size(); ++corner) {
+    for (const std::size_t next : {corner | 1U, corner | 2U, corner | 4U}) {
+      if (next == corner || (above_m[corner] > in_plane_guard_m) == (above_m[next] > in_plane_guard_m)) continue;
+      const double share = above_m[corner] / (above_m[corner] - above_m[next]);
+      const Vec3 cut_m = all_m[corner] + share * (all_m[next] - all_m[corner]);
+      result_m.push_back(cut_m + side * in_plane_guard_m * plane.normal);
+    }
+  }
+}
+
+DCEM_INLINE std::array<Vec3, 8> PlaceBox::corners_m() const {
+  std::array<Vec3, 8> corners;
+  for (std::size_t corner = 0; corner < corners.size(); ++corner) {
+    const double along = (corner & 1U) != 0 ? half_m.x : -half_m.x, across = (corner & 2U) != 0 ? half_m.y : -half_m.y;
+    const double up = (corner & 4U) != 0 ? half_m.z : -half_m.z;
+    corners[corner] = middle_m + along * ahead + across * aside() + Vec3(0.0, 0.0, up);
+  }
+  return corners;
+}
+
+DCEM_INLINE void Place::go_on(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings) {
+  sight_.find_scenery_step(Sight::scenery_steps - steps_left_, scene, outlines, settings, scenery_);
+  if (--steps_left_ > 0) return;
+  sight_.settle();
+  take_mirrors(scene, outlines);
+}
+
+DCEM_INLINE void Place::take_mirrors(const Scene& scene, const FacetOutlines& outlines) {
+  std::vector<Vec3> corners_m;
+  std::vector<HalfSpace> cone;
+  std::vector<std::size_t> ends;
+  for (std::uint32_t number = 0; number < scenery_.mirrors.size(); ++number) {
+    const FacetId facet = scenery_.mirrors[number];
+    const Plane& plane = scene.facet(facet).plane;
+    for (const double side : {1.0, -1.0}) {
+      box_.corners_beside(plane, side, corners_m);
+      if (corners_m.empty()) continue;
+      common_cone(outlines.sides(facet), plane, side * plane.normal, corners_m, outlines.middle_m(), cone);
+      planes_.insert(planes_.end(), cone.begin(), cone.end());
+      ends.push_back(planes_.size());
+      mirrors_.push_back({facet, number, mirrored(plane, box_.middle_m), {}});
+    }
+  }
+  for (std::size_t at = 0; at < ends.size(); ++at) {
+    const std::size_t first = at == 0 ? 0 : ends[at - 1];
+    mirrors_[at].cone = std::span(planes_).subspan(first, ends[at] - first);
+  }
+}
+
+}  // namespace dcem
