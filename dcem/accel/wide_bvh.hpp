@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -22,7 +23,6 @@
 #include "dcem/accel/hit_filter.hpp"
 #include "dcem/accel/sah_cost.hpp"
 #include "dcem/accel/wide/arrays.hpp"
-#include "dcem/accel/wide/build/plan.hpp"
 #include "dcem/accel/wide/trace/kernels.hpp"
 #include "dcem/accel/wide/update/degradation.hpp"
 #include "dcem/accel/wide/validate.hpp"
@@ -33,6 +33,7 @@
 namespace dcem {
 
 namespace detail {
+class WidePlan;
 struct WideRotation;
 }  // namespace detail
 
@@ -210,6 +211,22 @@ class WideBvh {
   void carry_out(const detail::WideRotation& rotation, std::uint32_t node);
   void remember_inserted(WideChild child);
 
+  /// Memory for plans of parts to be built anew. Nothing in it outlives the edit that it is made for: a copy begins
+  /// without.
+  class PlanRoom {
+   public:
+    PlanRoom();
+    PlanRoom(const PlanRoom& other);
+    PlanRoom(PlanRoom&& other) noexcept;
+    PlanRoom& operator=(const PlanRoom& other);
+    PlanRoom& operator=(PlanRoom&& other) noexcept;
+    ~PlanRoom();
+    detail::WidePlan& plan();
+
+   private:
+    std::unique_ptr<detail::WidePlan> plan_;
+  };
+
   WideArrays arrays_;
   WideBuildSettings settings_;
   std::vector<std::uint32_t> object_first_;
@@ -226,7 +243,7 @@ class WideBvh {
   std::vector<Branch> branches_;
   std::size_t next_turn_ = 0;
   detail::DegradationLog degradation_;
-  detail::WidePlan plan_;  ///< kept for its memory
+  PlanRoom plan_room_;
 };
 
 }  // namespace dcem

@@ -2,6 +2,7 @@
 /// Bodies of wide_bvh.hpp: how a `WideBvh` is built and follows motion.
 #include "dcem/accel/wide/build/builder.hpp"
 #include "dcem/accel/wide/build/quads.hpp"
+#include "dcem/accel/wide/update/leaf_writer.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "dcem/core/build_mode.hpp"
 

@@ -9,14 +9,29 @@
 /// rotations lower leaves only there. A part that was rebuilt in place has the levels of its plan, which are counted
 /// before anything changes. Where they do not fit below the node, the node above is rebuilt_in_place instead; at the
 /// level's root they always fit, because the binner makes no more.
+#include "dcem/accel/wide/build/plan.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "dcem/core/build_mode.hpp"
 
 namespace dcem {
 
+DCEM_INLINE WideBvh::PlanRoom::PlanRoom() = default;
+DCEM_INLINE WideBvh::PlanRoom::PlanRoom(const PlanRoom&) {}
+DCEM_INLINE WideBvh::PlanRoom::PlanRoom(PlanRoom&&) noexcept = default;
+DCEM_INLINE WideBvh::PlanRoom& WideBvh::PlanRoom::operator=(const PlanRoom&) {
+  return *this;
+}
+DCEM_INLINE WideBvh::PlanRoom& WideBvh::PlanRoom::operator=(PlanRoom&&) noexcept = default;
+DCEM_INLINE WideBvh::PlanRoom::~PlanRoom() = default;
+
+DCEM_INLINE detail::WidePlan& WideBvh::PlanRoom::plan() {
+  if (!plan_) plan_ = std::make_unique<detail::WidePlan>();
+  return *plan_;
+}
+
 DCEM_INLINE std::size_t WideBvh::rebuild_subtree(std::uint32_t node, double wanted_share) {
   if (!detail::is_used_node(arrays_, node)) throw std::invalid_argument("node " + std::to_string(node) + " of none");
-  detail::WidePlan& plan = plan_;
+  detail::WidePlan& plan = plan_room_.plan();
   plan.make(arrays_, node, settings_.threads, settings_.divide_by_size);
   if (plan.empty()) return 0;
   const std::uint32_t deepest = detail::depth_in_level(arrays_, node) + plan.levels() - 1;

@@ -239,5 +239,3 @@ inline Aabb<float> WideArrays::rounded_out(const Aabb<double>& box) const {
 }
 
 }  // namespace dcem
-
-#include "dcem/accel/wide/update/leaf_writer.hpp"

@@ -16,6 +16,7 @@
 #include "dcem/accel/wide/build/quads.hpp"
 #include "dcem/accel/wide/build/reinsertion_optimizer.hpp"
 #include "dcem/accel/wide/settings.hpp"
+#include "dcem/accel/wide/update/leaf_writer.hpp"
 #include "dcem/core/thread_pool.hpp"
 
 namespace dcem {

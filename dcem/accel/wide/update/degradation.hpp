@@ -63,19 +63,10 @@ class DegradationLog {
   std::span<const std::uint32_t> refreshed() const { return refreshed_; }
 
   /// From now on; what is tracked anew counts as built now.
-  void watch(const TrackedMeasures& tracked, const WideArrays& arrays) {
-    if (tracked == tracked_) return;
-    tracked_ = tracked;
-    renew(arrays);
-  }
+  void watch(const TrackedMeasures& tracked, const WideArrays& arrays);
 
   /// Everything has been built anew.
-  void renew(const WideArrays& arrays) {
-    touched_.clear();
-    is_touched_.assign(tracked_.any() ? arrays.nodes.size() : 0, 0);
-    degradation_.clear();
-    refresh(arrays);
-  }
+  void renew(const WideArrays& arrays);
 
   /// The children of a node have changed, or its box.
   void touch(std::uint32_t node) {
@@ -91,104 +82,30 @@ class DegradationLog {
   }
 
   /// Marks all nodes that were touched, and those above them.
-  void mark_paths(const WideArrays& arrays) {
-    is_marked_.resize(arrays.nodes.size(), 0);
-    for (std::uint32_t node : touched_) {
-      if (!is_used_node(arrays, node)) continue;  // an edit has set it free
-      while (is_marked_[node] == 0) {
-        is_marked_[node] = 1;
-        marked_.push_back(node);
-        if (node != 0) node = arrays.lane_of_node[node].node();
-      }
-    }
-  }
+  void mark_paths(const WideArrays& arrays);
   bool is_marked(std::uint32_t node) const { return is_marked_[node] != 0; }
-  void unmark() {
-    for (const std::uint32_t node : marked_) is_marked_[node] = 0;
-    marked_.clear();
-  }
+  void unmark();
   void forget_touches() {
     for (const std::uint32_t node : touched_) is_touched_[node] = 0;
     touched_.clear();
   }
 
   /// Brings the measures up to date.
-  void refresh(const WideArrays& arrays) {
-    refreshed_.clear();
-    if (tracked_.measures() && !arrays.nodes.empty()) {
-      degradation_.resize(arrays.nodes.size());
-      mark_paths(arrays);
-      if (degradation_[0].is_new() || is_marked(0)) refresh_from(arrays, 0);
-      unmark();
-    }
-    forget_touches();
-  }
+  void refresh(const WideArrays& arrays);
 
   /// After a part has been built anew: that part, and what lies above it in its level.
-  void renew_below(const WideArrays& arrays, std::uint32_t node) {
-    if (!tracked_.measures()) return;
-    degradation_.resize(arrays.nodes.size());
-    renew_level(arrays, node);
-    while (!is_level_root(arrays, node)) {
-      node = arrays.lane_of_node[node].node();
-      refresh_node(arrays, node);
-    }
-  }
+  void renew_below(const WideArrays& arrays, std::uint32_t node);
 
  private:
-  void refresh_from(const WideArrays& arrays, std::uint32_t node) {
-    for (const WideChild child : arrays.nodes[node].child) {
-      if (child.is_none() || child.is_leaf()) continue;
-      if (is_marked(child.index()) || degradation_[child.index()].is_new()) refresh_from(arrays, child.index());
-    }
-    refresh_node(arrays, node);
-    refreshed_.push_back(node);
-  }
-  void renew_level(const WideArrays& arrays, std::uint32_t node) {
-    degradation_[node] = {};
-    for (const WideChild child : arrays.nodes[node].child) {
-      if (is_level_node(arrays, child)) renew_level(arrays, child.index());
-    }
-    refresh_node(arrays, node);
-  }
+  void refresh_from(const WideArrays& arrays, std::uint32_t node);
+  void renew_level(const WideArrays& arrays, std::uint32_t node);
 
   /// From the children of the node and from the measures of its children. What was noted at build stays.
-  void refresh_node(const WideArrays& arrays, std::uint32_t node) {
-    const WideNode& held = arrays.nodes[node];
-    const std::array<float, simd_lanes> areas_m2 = BoxLanes(held).half_areas();
-    const bool is_new = degradation_[node].is_new();
-    Degradation sum;
-    sum.area_ratio_at_build = degradation_[node].area_ratio_at_build;
-    sum.inner_nodes = 1;
-    double children_m2 = 0.0;
-    for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-      const WideChild child = held.child[lane];
-      if (child.is_none()) continue;
-      const auto area_m2 = static_cast<double>(areas_m2[lane]);
-      children_m2 += area_m2;
-      sum.area_m2 += (child.is_leaf() ? arrays.costs.leaf : arrays.costs.node) * area_m2;
-      if (!is_level_node(arrays, child)) continue;
-      const Degradation& below = degradation_[child.index()];
-      sum.area_m2 += below.area_m2;
-      sum.ratio_growth_sum += below.ratio_growth_sum;
-      sum.inner_nodes += below.inner_nodes;
-    }
-    sum.area_at_build_m2 = is_new ? sum.area_m2 : degradation_[node].area_at_build_m2;
-    if (tracked_.deformation) {
-      const double ratio = area_ratio(arrays, node, children_m2);
-      if (is_new) sum.area_ratio_at_build = ratio > 0.0 ? ratio : 1.0;
-      sum.ratio_growth_sum += ratio / sum.area_ratio_at_build - 1.0;
-    }
-    degradation_[node] = sum;
-  }
+  void refresh_node(const WideArrays& arrays, std::uint32_t node);
 
   /// Surface of a node over that of its children; 1 where that has none. Bounded, so that points beside boxes of
   /// 1e15 m overflow no sum.
-  static double area_ratio(const WideArrays& arrays, std::uint32_t node, double children_m2) {
-    if (!(children_m2 > 0.0)) return 1.0;
-    const Aabb<float> box = node == 0 ? arrays.nodes[0].box() : arrays.box_at(arrays.lane_of_node[node]);
-    return std::min(static_cast<double>(box.half_area()) / children_m2, 1e60);
-  }
+  static double area_ratio(const WideArrays& arrays, std::uint32_t node, double children_m2);
 
   TrackedMeasures tracked_;
   std::vector<Degradation> degradation_;  ///< per node
@@ -199,3 +116,7 @@ class DegradationLog {
 }  // namespace detail
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/accel/wide/update/degradation_bodies.hpp"
+#endif

@@ -1,5 +1,5 @@
 #pragma once
-/// How the leaves of a `WideArrays` are written from their triangles; included by arrays.hpp.
+/// How the leaves of a `WideArrays` are written from their triangles: for those who build and edit trees.
 #include <algorithm>
 #include <array>
 #include <bit>

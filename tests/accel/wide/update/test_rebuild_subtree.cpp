@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "dcem/accel/wide/build/plan.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_traffic.hpp"
 
