@@ -162,6 +162,7 @@ class BasicSimulator {
     ReceiverRoom* room = nullptr;
     std::span<const SequenceList> joined{};
   };
+  struct ReceiverSearch;
 
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
   Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
@@ -246,6 +247,7 @@ class BasicSimulator {
 #include "dcem/sim/detail/simulator_maps.hpp"
 #include "dcem/sim/detail/simulator_memory.hpp"
 #include "dcem/sim/detail/simulator_moving.hpp"
+#include "dcem/sim/detail/simulator_search.hpp"
 #include "dcem/sim/detail/simulator_setup.hpp"
 #include "dcem/sim/detail/simulator_standing.hpp"
 

@@ -35,15 +35,15 @@ struct HalfPack {
   static constexpr float beside_m = 2e-3F;  ///< edges are taken to be longer by this at both ends
   static constexpr int halvings = 5;
 
-  struct Found {
-    LaneMeeting near;
-    Float8 slope, slope_error;
-  };
   LanePoints at(const Float8& place_m) const {
     return {first.x + place_m * along.x, first.y + place_m * along.y, first.z + place_m * along.z};
   }
   std::uint32_t hidden_by_own_faces(const NearHalf& near) const;
-  Found look_from(const NearHalf& near, const LanePoints& point) const;
+  LaneSlope look_from(const NearHalf& near, const LanePoints& point) const {
+    return {
+        near.lanes, static_cast<float>(near.place_m), static_cast<float>(near.distance_m), near.error_m, point, along,
+        image};
+  }
   std::uint32_t missing(const NearHalf& near, const MirrorWindow* window, const Vec3& origin_m) const;
   static std::uint32_t beside(const MirrorWindow& window, const Vec3& origin_m, const LanePoints& from,
                               const LanePoints& to, const Float8& error_m);
@@ -107,22 +107,6 @@ inline std::uint32_t HalfPack::hidden_by_own_faces(const NearHalf& near) const {
   return hidden;
 }
 
-inline HalfPack::Found HalfPack::look_from(const NearHalf& near, const LanePoints& point) const {
-  const LanePoints away = near.lanes.from_start(point);
-  Found found{{near.lanes, static_cast<float>(near.place_m), static_cast<float>(near.distance_m), away, near.error_m},
-              Float8(0.0F),
-              Float8(0.0F)};
-  const LanePoints in = near.lanes.across(away, found.near.place_m), out = image - point;
-  const auto per_length = [](const LanePoints& way) {
-    return Float8(1.0F) / simd::square_root(way.x * way.x + way.y * way.y + way.z * way.z);
-  };
-  const auto along_edge = [&](const LanePoints& way) { return way.x * along.x + way.y * along.y + way.z * along.z; };
-  const Float8 per_in = per_length(in), per_out = per_length(out), error(2.0F * near.error_m);
-  found.slope = along_edge(in) * per_in - along_edge(out) * per_out;
-  found.slope_error = Float8(2.0F) * ((found.near.beside_m + error) * per_in + error * per_out) + 2e-6F;
-  return found;
-}
-
 /// The lanes in which a way, both of whose ends may be off, crosses a mirror's plane beside the box around it, or not
 /// at all.
 inline std::uint32_t HalfPack::beside(const MirrorWindow& window, const Vec3& origin_m, const LanePoints& from,
@@ -153,7 +137,7 @@ inline std::uint32_t HalfPack::missing(const NearHalf& near, const MirrorWindow*
   Float8 low(0.0F), high = length_m;
   for (int step = 0; step < halvings; ++step) {
     const Float8 middle = Float8(0.5F) * (low + high);
-    const Found here = look_from(near, at(middle));
+    const LaneSlope here = look_from(near, at(middle));
     high = simd::select(here.slope_error < here.slope, middle, high);
     low = simd::select(here.slope < -here.slope_error, middle, low);
   }
@@ -178,10 +162,10 @@ inline std::uint32_t HalfPack::meeting(const NearHalf& near, const MirrorWindow*
   std::uint32_t left = lanes & ~(near.lanes.behind(near.lanes.from_start(first), near.error_m) &
                                  near.lanes.behind(near.lanes.from_start(last), near.error_m));
   if (left == 0) return 0;
-  const Found start = look_from(near, first);
+  const LaneSlope start = look_from(near, first);
   left &= ~(start.slope_error < start.slope).bits();
   if (left == 0) return 0;
-  const Found end = look_from(near, last);
+  const LaneSlope end = look_from(near, last);
   left &= ~(end.slope < -end.slope_error).bits();
   if (left == 0) return 0;
   left &= ~hidden_by_own_faces(near);

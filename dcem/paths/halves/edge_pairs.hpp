@@ -73,15 +73,11 @@ class EdgePairs {
     float error_m;                        ///< how far coordinates may be off
   };
 
-  /// At a point of each transmitter's edge: where the way on to the receiver meets the receiver's, the slope, and how
-  /// far that may be off.
-  struct Found {
-    LaneMeeting near;
-    Float8 slope, slope_error;
-  };
-
   Near near_edge(WedgeId id, const Vec3& receiver_m) const;
-  Found look_from(const Near& near, const LanePoints& point, const LanePoints& along) const;
+  LaneSlope look_from(const Near& near, const LanePoints& point, const LanePoints& along) const {
+    return {
+        near.edge, near.place_m, near.distance_m, near.error_m, point, along, LanePoints(transmitter_m_ - origin_m_)};
+  }
   std::uint32_t may_join(const Near& near, const Pack& far) const;
   bool settle(const Vec3& receiver_m, EdgePair& pair) const;
 
@@ -130,21 +126,6 @@ inline EdgePairs::Near EdgePairs::near_edge(WedgeId id, const Vec3& receiver_m) 
           LaneScene::error_m(reach_m + static_cast<double>(far_reach_m_))};
 }
 
-inline EdgePairs::Found EdgePairs::look_from(const Near& near, const LanePoints& point, const LanePoints& along) const {
-  const LanePoints away = near.edge.from_start(point);
-  Found found{{near.edge, near.place_m, near.distance_m, away, near.error_m}, Float8(0.0F), Float8(0.0F)};
-  const LanePoints in = near.edge.across(away, found.near.place_m);
-  const LanePoints out = LanePoints(transmitter_m_ - origin_m_) - point;
-  const auto per_length = [](const LanePoints& way) {
-    return Float8(1.0F) / simd::square_root(way.x * way.x + way.y * way.y + way.z * way.z);
-  };
-  const auto along_edge = [&](const LanePoints& way) { return way.x * along.x + way.y * along.y + way.z * along.z; };
-  const Float8 per_in = per_length(in), per_out = per_length(out), error(2.0F * near.error_m);
-  found.slope = along_edge(in) * per_in - along_edge(out) * per_out;
-  found.slope_error = Float8(2.0F) * ((found.near.beside_m + error) * per_in + error * per_out) + 2e-6F;
-  return found;
-}
-
 /// The lanes of those edges that the shortest way may meet after the receiver's. Lanes are asked for what they are not,
 /// so that NaN, of points in one, passes.
 inline std::uint32_t EdgePairs::may_join(const Near& near, const Pack& far) const {
@@ -152,10 +133,10 @@ inline std::uint32_t EdgePairs::may_join(const Near& near, const Pack& far) cons
   std::uint32_t lanes = far.lanes & ~(edge.behind(edge.from_start(far.first), near.error_m) &
                                       edge.behind(edge.from_start(far.last), near.error_m));
   if (lanes == 0) return 0;
-  const Found first = look_from(near, far.first, far.along);
+  const LaneSlope first = look_from(near, far.first, far.along);
   lanes &= ~(first.slope_error < first.slope).bits();
   if (lanes == 0) return 0;
-  const Found last = look_from(near, far.last, far.along);
+  const LaneSlope last = look_from(near, far.last, far.along);
   lanes &= ~(last.slope < -last.slope_error).bits();
   if (lanes == 0) return 0;
   Float8 low(0.0F), high = far.length_m;
@@ -166,7 +147,7 @@ inline std::uint32_t EdgePairs::may_join(const Near& near, const Pack& far) cons
                      far.along);
   };
   for (int step = 0; step < halvings; ++step) {
-    const Found here = look_between();
+    const LaneSlope here = look_between();
     const Float8 at = Float8(0.5F) * (low + high);
     high = simd::select(here.slope_error < here.slope, at, high);
     low = simd::select(here.slope < -here.slope_error, at, low);

@@ -66,6 +66,27 @@ struct LaneMeeting {
   }
 };
 
+/// How the length of the shortest ways over an edge, on to eight points and from there to others, changes as the points
+/// move along lines of their own: cos(in) − cos(out) (paths/solve/wedge_method.hpp).
+struct LaneSlope {
+  LaneMeeting near;           ///< where these ways meet the edge
+  Float8 slope, slope_error;  ///< per length; and how far that may be off
+
+  /// `along`: unit vectors of the lines; `goal`: where the ways lead on to. All count from one origin, as `edge` does.
+  LaneSlope(const LaneEdge& edge, float own_place_m, float own_distance_m, float error_m, const LanePoints& points,
+            const LanePoints& along, const LanePoints& goal)
+      : near(edge, own_place_m, own_distance_m, edge.from_start(points), error_m), slope(0.0F), slope_error(0.0F) {
+    const LanePoints in = edge.across(edge.from_start(points), near.place_m), out = goal - points;
+    const auto per_length = [](const LanePoints& way) {
+      return Float8(1.0F) / simd::square_root(way.x * way.x + way.y * way.y + way.z * way.z);
+    };
+    const auto along_line = [&](const LanePoints& way) { return way.x * along.x + way.y * along.y + way.z * along.z; };
+    const Float8 per_in = per_length(in), per_out = per_length(out), error(2.0F * error_m);
+    slope = along_line(in) * per_in - along_line(out) * per_out;
+    slope_error = Float8(2.0F) * ((near.beside_m + error) * per_in + error * per_out) + 2e-6F;
+  }
+};
+
 }  // namespace DCEM_ISA
 
 }  // namespace dcem

@@ -74,7 +74,6 @@ template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_receiver(
     const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, PathCache* cache,
     const Proposals& proposals) const {
-  const Tracer tracer(scene_, index_);
   const DeviceState state = state_of(receiver);
   Solved solved;
   if (!state.present) {
@@ -84,59 +83,30 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   if (transmitters.link.empty()) return solved;
   SearchCounters counters;
   const LinkEnd end = link_end(state, counters.solver.traversal);
-  const PathSearchSettings search = search_settings(transmitters.embedded);
-  std::vector<std::optional<LinkEnd>> others;
-  const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
-  const KeptHalf* known = nullptr;
-  if (plan_.joined > 0 && proposals.joined.empty()) {
-    known = transmitters.half_of(receiver.id, end, joins_triples(search));
-    if (known == nullptr) look_from(scene_, search, *outlines_, *lanes_, end, *proposals.room);
-  }
-  const auto halves = [&] {
-    const ReceiverRoom& room = *proposals.room;
-    return LinkHalves{*outlines_, *lanes_, transmitters.halves, known ? known->half() : room.half,
-                      known && known->lists() ? *known->lists() : room.lists};
-  };
-  const SphereKey key{receiver.id, frame_.index};
+  const ReceiverSearch search(*this, receiver, end, transmitters, proposals);
   // Rays, and all sequences there are, are tried on all links in one go; sequences of halves link by link.
-  const bool goes_apart = plan_.joined > 0 && !needs_rays(search) && cache == nullptr;
+  const bool samples = needs_rays(search.search), goes_apart = plan_.joined > 0 && !samples && cache == nullptr;
   std::vector<LinkPaths> found;
-  if (!goes_apart) {
-    std::vector<SequenceList> own;
-    if (plan_.joined > 0 && proposals.joined.empty()) own = join_halves(scene_, search, halves(), ends);
-    found = find_paths(tracer, search, end, key, ends, counters, cache, transmitters.reached,
-                       own.empty() ? proposals.joined : std::span<const SequenceList>(own));
-  }
-  const auto find_apart = [&](std::size_t transmitter, WorkCounters& work) {
-    SearchCounters of_link;
-    SequenceList own;
-    if (proposals.joined.empty()) own = join_link(scene_, search, halves(), transmitter);
-    const SequenceList& sequences = proposals.joined.empty() ? own : proposals.joined[transmitter];
-    std::vector<LinkPaths> paths =
-        find_paths(tracer, search, end, key, ends.subspan(transmitter, 1), of_link, nullptr,
-                   std::span(transmitters.reached).subspan(transmitter, 1), std::span(&sequences, 1));
-    detail::add_search_work(of_link, work);
-    return std::move(paths.front());
-  };
+  if (!goes_apart) found = search.find_together(cache, counters);
   const Evaluator field = evaluator();
   const RadioEnd to = detail::radio_end(receiver, state);
   const std::vector<FacetId> seen = facets_seen_from(receiver, end, transmitters, proposals.room);
   std::vector<std::size_t> present;
-  for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
-    if (ends[transmitter]) present.push_back(transmitter);
+  for (std::size_t transmitter = 0; transmitter < search.transmitter_ends.size(); ++transmitter) {
+    if (search.transmitter_ends[transmitter]) present.push_back(transmitter);
   }
   solved.links.resize(present.size());
   std::vector<WorkCounters> spent(present.size());
   const auto solve_link = [&](std::size_t place, unsigned) {
     const std::size_t transmitter = present[place];
     WorkCounters& work = spent[place];
-    LinkPaths paths = goes_apart ? find_apart(transmitter, work) : std::move(found[transmitter]);
+    LinkPaths paths = goes_apart ? search.find_apart(transmitter, work) : std::move(found[transmitter]);
     DiffusePower diffuse = diffuse_power(receiver, {end, to}, seen, transmitters, transmitter, work);
     LinkResult& link = solved.links[place];
     link = make_link(std::move(paths), std::move(diffuse), transmitters.number(transmitter),
-                     {*ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field);
+                     {*search.transmitter_ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field);
     link.receiver = index;
-    link.complete = !needs_rays(search) || search.max_interactions == 0;
+    link.complete = !samples || search.search.max_interactions == 0;
     work.paths += link.paths.size();
   };
   if (goes_apart || settings_.propagation.diffuse.enabled) {
