@@ -11,10 +11,10 @@ namespace dcem {
 namespace {
 
 /// Null where this library does not hold them.
-const detail::WideKernels* kernels_of(InstructionSet set) {
-  if (set == InstructionSet::baseline) return &detail::wide_kernels_baseline();
+const detail::EngineKernels* kernels_of(InstructionSet set) {
+  if (set == InstructionSet::baseline) return &detail::engine_kernels_baseline();
 #if defined(DCEM_X86_KERNELS)
-  return set == InstructionSet::avx2 ? &detail::wide_kernels_avx2() : &detail::wide_kernels_avx512();
+  return set == InstructionSet::avx2 ? &detail::engine_kernels_avx2() : &detail::engine_kernels_avx512();
 #else
   return nullptr;
 #endif
@@ -24,15 +24,15 @@ bool is_usable(InstructionSet set) {
   return is_supported(set) && kernels_of(set) != nullptr;
 }
 
-const detail::WideKernels* best_kernels() {
+const detail::EngineKernels* best_kernels() {
   for (const InstructionSet set : {InstructionSet::avx512, InstructionSet::avx2}) {
     if (is_usable(set)) return kernels_of(set);
   }
   return kernels_of(InstructionSet::baseline);
 }
 
-std::atomic<const detail::WideKernels*>& chosen_kernels() {
-  static std::atomic<const detail::WideKernels*> chosen{best_kernels()};
+std::atomic<const detail::EngineKernels*>& chosen_kernels() {
+  static std::atomic<const detail::EngineKernels*> chosen{best_kernels()};
   return chosen;
 }
 
@@ -41,7 +41,11 @@ std::atomic<const detail::WideKernels*>& chosen_kernels() {
 namespace detail {
 
 const WideKernels& wide_kernels() {
-  return *chosen_kernels().load(std::memory_order_relaxed);
+  return chosen_kernels().load(std::memory_order_relaxed)->wide;
+}
+
+const ConeKernels& cone_kernels() {
+  return chosen_kernels().load(std::memory_order_relaxed)->cone;
 }
 
 }  // namespace detail
@@ -55,7 +59,7 @@ void select_instruction_set(InstructionSet set) {
     throw std::invalid_argument("instruction set " + std::string(name_of(set)) +
                                 ": this processor, or this build, does "
                                 "not have it; it has up to " +
-                                std::string(name_of(best_kernels()->instruction_set)));
+                                std::string(name_of(best_kernels()->wide.instruction_set)));
   }
   chosen_kernels() = kernels_of(set);
 }

@@ -1,11 +1,18 @@
 #pragma once
-/// The walks through the wide tree, compiled several times in one library.
+/// The walks through the wide tree, and those of cones, compiled several times in one library.
 #include "dcem/accel/wide/trace/kernels.hpp"
+#include "dcem/paths/halves/cone_kernels.hpp"
 
 namespace dcem::detail {
 
-const WideKernels& wide_kernels_baseline();
-const WideKernels& wide_kernels_avx2();
-const WideKernels& wide_kernels_avx512();
+/// For one level of instructions.
+struct EngineKernels {
+  WideKernels wide;
+  ConeKernels cone;
+};
+
+const EngineKernels& engine_kernels_baseline();
+const EngineKernels& engine_kernels_avx2();
+const EngineKernels& engine_kernels_avx512();
 
 }  // namespace dcem::detail

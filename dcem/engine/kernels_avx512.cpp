@@ -1,11 +1,12 @@
-// The walks through the wide tree, compiled for x86-64-v4.
+// The walks through the wide tree, and those of cones, compiled for x86-64-v4.
 #include "dcem/accel/wide/trace/kernel_table.hpp"
 #include "dcem/engine/kernels.hpp"
 
 namespace dcem::detail {
 
-const WideKernels& wide_kernels_avx512() {
-  return kernel_table;
+const EngineKernels& engine_kernels_avx512() {
+  static constexpr EngineKernels kernels{kernel_table, cone_kernel_table};
+  return kernels;
 }
 
 }  // namespace dcem::detail

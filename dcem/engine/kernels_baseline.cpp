@@ -1,11 +1,12 @@
-// The walks through the wide tree, compiled for whatever the compiler assumes.
+// The walks through the wide tree, and those of cones, compiled for whatever the compiler assumes.
 #include "dcem/accel/wide/trace/kernel_table.hpp"
 #include "dcem/engine/kernels.hpp"
 
 namespace dcem::detail {
 
-const WideKernels& wide_kernels_baseline() {
-  return kernel_table;
+const EngineKernels& engine_kernels_baseline() {
+  static constexpr EngineKernels kernels{kernel_table, cone_kernel_table};
+  return kernels;
 }
 
 }  // namespace dcem::detail

@@ -31,7 +31,7 @@ def main(library, nm, objdump):
             if not symbol:
                 continue
             found += 1
-            own = f"isa_{level[1]}" in symbol[2] or f"wide_kernels_{level[1]}" in symbol[2]
+            own = f"isa_{level[1]}" in symbol[2] or f"engine_kernels_{level[1]}" in symbol[2]
             if not own:
                 wrong.append(f"{name} defines {symbol[2]}")
     wrong += [f"the library holds {instruction}" for instruction in fused(library, objdump)]

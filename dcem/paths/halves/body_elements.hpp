@@ -33,8 +33,9 @@ class BodyElements {
   /// in a cone.
   template <typename Visit>
   void for_each_edge_in(const Part& part, std::span<const HalfSpace> cone, const Vec3& apex, Visit&& visit) const {
+    const ConeTarget target = edge_target(apex, 0.0F);
     for (const Pack& pack : std::span(packs_).subspan(part.first_pack, part.pack_count)) {
-      std::uint32_t left = pack.used & pack.lanes.meeting(cone, apex, 0.0F);
+      std::uint32_t left = pack.used & parts_met<false>(pack.parts, cone, target);
       for (; left != 0; left &= left - 1) visit(pack.edges[static_cast<std::size_t>(std::countr_zero(left))]);
     }
   }
@@ -43,7 +44,7 @@ class BodyElements {
   static constexpr BodyId none{0xffffffffU};
 
   struct Pack {
-    PartLanes lanes;
+    EightParts parts = no_parts();
     std::array<WedgeId, simd_lanes> edges;
     std::uint32_t used = 0;
   };

@@ -17,13 +17,9 @@
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/plane.hpp"
+#include "dcem/paths/halves/cone_kernels.hpp"
 
 namespace dcem {
-
-/// The half space normal·x ≥ offset.
-struct HalfSpace {
-  float x, y, z, offset;
-};
 
 /// Whether some point within a radius of a point may lie in a cone.
 inline bool may_hold(std::span<const HalfSpace> cone, const Vec3& point, float radius_m) {
@@ -114,8 +110,8 @@ class ConeClusters {
     items_.clear();
     arrange(items, centre);
     const std::size_t clusters = items_.size() / simd_lanes, groups = (clusters + simd_lanes - 1) / simd_lanes;
-    clusters_.assign(groups, Boxes{});
-    groups_.assign((groups + simd_lanes - 1) / simd_lanes, Boxes{});
+    clusters_.assign(groups, EightBoxes{});
+    groups_.assign((groups + simd_lanes - 1) / simd_lanes, EightBoxes{});
     boxes_.clear();
     for (std::size_t group = 0; group < groups; ++group) {
       Aabb<double> all;
@@ -126,11 +122,11 @@ class ConeClusters {
           const std::uint32_t item = items_[cluster * simd_lanes + lane];
           if (item != nothing) box.extend(box_of(item));
         }
-        clusters_[group].set(cluster % simd_lanes, box);
+        set(clusters_[group], cluster % simd_lanes, box);
         all.extend(box);
       }
-      groups_[group / simd_lanes].set(group % simd_lanes, all);
-      boxes_.push_back(groups_[group / simd_lanes].at(group % simd_lanes));
+      set(groups_[group / simd_lanes], group % simd_lanes, all);
+      boxes_.push_back(at(groups_[group / simd_lanes], group % simd_lanes));
     }
     item_boxes_.clear();
   }
@@ -138,9 +134,9 @@ class ConeClusters {
   template <typename BoxOf>
   void build_for_items(std::size_t count, BoxOf&& box_of) {
     build(count, box_of);
-    item_boxes_.assign(items_.size() / simd_lanes, Boxes{});
+    item_boxes_.assign(items_.size() / simd_lanes, EightBoxes{});
     for (std::size_t at = 0; at < items_.size(); ++at) {
-      if (items_[at] != nothing) item_boxes_[at / simd_lanes].set(at % simd_lanes, box_of(items_[at]));
+      if (items_[at] != nothing) set(item_boxes_[at / simd_lanes], at % simd_lanes, box_of(items_[at]));
     }
   }
 
@@ -165,58 +161,30 @@ class ConeClusters {
   /// The items in the order of the clusters, eight to a cluster, the last places of which may hold `nothing`.
   std::span<const std::uint32_t> items() const { return items_; }
 
-  /// Calls `visit(first)` for each cluster that a cone may reach: its items stand from `first` on.
-  template <typename Visit>
-  void for_each_in(std::span<const HalfSpace> cone, Visit&& visit) const {
-    for (std::size_t upper = 0; upper < groups_.size(); ++upper) {
-      for (std::uint32_t met = groups_[upper].met_by(cone); met != 0; met &= met - 1) {
-        const std::size_t group = upper * simd_lanes + static_cast<std::size_t>(std::countr_zero(met));
-        for (std::uint32_t inside = clusters_[group].met_by(cone); inside != 0; inside &= inside - 1) {
-          visit((group * simd_lanes + static_cast<std::size_t>(std::countr_zero(inside))) * simd_lanes);
-        }
-      }
-    }
-  }
+  BoxTree tree() const { return {groups_, clusters_}; }
 
   /// Calls `visit(item)` for each item that a cone may reach, where they can be asked.
   template <typename Visit>
   void for_each_item_in(std::span<const HalfSpace> cone, Visit&& visit) const {
-    for_each_in(cone, [&](std::size_t first) {
-      for (std::uint32_t met = item_boxes_[first / simd_lanes].met_by(cone); met != 0; met &= met - 1) {
-        visit(items_[first + static_cast<std::size_t>(std::countr_zero(met))]);
-      }
-    });
+    const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) {
+      for (; lanes != 0; lanes &= lanes - 1) visit(items_[first + static_cast<std::size_t>(std::countr_zero(lanes))]);
+    };
+    detail::cone_kernels().boxes(tree(), item_boxes_, cone, told_to(visit_eight));
   }
 
  private:
-  /// Eight boxes as centres and half sizes.
-  struct Boxes {
-    std::array<std::array<float, simd_lanes>, 3> centre{}, half{};
-    std::uint32_t used = 0;
-
-    void set(std::size_t lane, const Aabb<double>& box) {
-      const Box own = box_of(box);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        centre[axis][lane] = own.centre[axis];
-        half[axis][lane] = own.half[axis];
-      }
-      used |= 1U << lane;
+  static void set(EightBoxes& boxes, std::size_t lane, const Aabb<double>& box) {
+    const Box own = box_of(box);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      boxes.centre[axis][lane] = own.centre[axis];
+      boxes.half[axis][lane] = own.half[axis];
     }
-    Box at(std::size_t lane) const {
-      return {{centre[0][lane], centre[1][lane], centre[2][lane]}, {half[0][lane], half[1][lane], half[2][lane]}};
-    }
-    std::uint32_t met_by(std::span<const HalfSpace> cone) const {
-      const Float8 x(centre[0]), y(centre[1]), z(centre[2]), dx(half[0]), dy(half[1]), dz(half[2]);
-      std::uint32_t met = used;
-      for (const HalfSpace& plane : cone) {
-        const Float8 reach = x * plane.x + y * plane.y + z * plane.z + dx * std::abs(plane.x) + dy * std::abs(plane.y) +
-                             dz * std::abs(plane.z);
-        met &= (Float8(plane.offset) <= reach).bits();
-        if (met == 0) break;
-      }
-      return met;
-    }
-  };
+    boxes.used |= 1U << lane;
+  }
+  static Box at(const EightBoxes& boxes, std::size_t lane) {
+    const auto& [centre, half, used] = boxes;
+    return {{centre[0][lane], centre[1][lane], centre[2][lane]}, {half[0][lane], half[1][lane], half[2][lane]}};
+  }
 
   /// Halves along the longest side, at whole clusters and, where there are many, at whole groups.
   void arrange(std::span<std::uint32_t> items, const std::vector<Vec3>& centre) {
@@ -243,7 +211,7 @@ class ConeClusters {
   }
 
   std::vector<std::uint32_t> items_;
-  std::vector<Boxes> clusters_, groups_, item_boxes_;
+  std::vector<EightBoxes> clusters_, groups_, item_boxes_;
   std::vector<Box> boxes_;
 };
 

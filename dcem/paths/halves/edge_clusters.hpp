@@ -27,38 +27,41 @@ class EdgeClusters {
       return box;
     });
     const std::span<const std::uint32_t> items = clusters_.items();
-    lanes_.assign(items.size() / simd_lanes, {});
+    eights_.assign(items.size() / simd_lanes, no_parts());
     for (std::size_t at = 0; at < items.size(); ++at) {
       if (items[at] == ConeClusters::nothing) continue;
       const EdgePart& part = parts[items[at]];
-      lanes_[at / simd_lanes].set(at % simd_lanes, part, wedge_of(part), origin_m);
+      set_part(eights_[at / simd_lanes], at % simd_lanes, part, wedge_of(part), origin_m);
     }
   }
 
   /// From now on the parts are those that another end sees, counted from where cones are.
   void see_from(const Vec3& end) {
-    for (PartLanes& lanes : lanes_) lanes.see_from(end);
+    for (EightParts& parts : eights_) dcem::see_from(parts, end);
   }
 
   /// Boxes that hold all parts.
   std::span<const ConeClusters::Box> boxes() const { return clusters_.boxes(); }
 
   /// Calls `visit(part)` for parts on which the point that diffracts between the end and an apex may lie in a cone: as
-  /// `PartLanes::meeting` has it.
+  /// `parts_met` has it.
   template <bool end_moves = false, typename Visit>
   void for_each_in(std::span<const HalfSpace> cone, const Vec3& apex, float moved_m, Visit&& visit) const {
-    clusters_.for_each_in(cone, [&](std::size_t first) {
-      std::uint32_t left = lanes_[first / simd_lanes].template meeting<end_moves>(cone, apex, moved_m);
-      for (; left != 0; left &= left - 1) {
-        const std::uint32_t item = clusters_.items()[first + static_cast<std::size_t>(std::countr_zero(left))];
+    const std::span<const std::uint32_t> items = clusters_.items();
+    const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) {
+      for (; lanes != 0; lanes &= lanes - 1) {
+        const std::uint32_t item = items[first + static_cast<std::size_t>(std::countr_zero(lanes))];
         if (item != ConeClusters::nothing) visit(item);
       }
-    });
+    };
+    const detail::ConeKernels& kernels = detail::cone_kernels();
+    const auto walk = end_moves ? kernels.parts_of_moving_end : kernels.parts;
+    walk(clusters_.tree(), eights_, cone, edge_target(apex, moved_m), told_to(visit_eight));
   }
 
  private:
   ConeClusters clusters_;
-  std::vector<PartLanes> lanes_;
+  std::vector<EightParts> eights_;
 };
 
 }  // namespace dcem

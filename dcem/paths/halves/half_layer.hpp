@@ -39,18 +39,10 @@ struct HalfLayer : SeenLayer {
   void for_each_edge_in(std::span<const HalfSpace> cone, const Vec3& apex_m, Visit&& visit) const;
 
  private:
-  using Lanes = std::array<float, simd_lanes>;
-  /// Eight images, and what each of them sees through its mirror: as many half spaces as a mirror of four sides has.
-  struct ImageLanes {
-    static constexpr std::size_t plane_count = 5;
-    std::array<Lanes, 3> place{};
-    std::array<std::array<Lanes, 4>, plane_count> planes{};
-  };
-
   Vec3 origin_m_{0.0};  ///< of the numbers in single precision
   ConeClusters image_clusters_;
   EdgeClusters edge_clusters_;
-  std::vector<ImageLanes> image_lanes_;
+  std::vector<EightImages> eight_images_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -68,10 +60,10 @@ inline void HalfLayer::lay_out_images(const Scene& scene, const Vec3& end_m, con
     return Aabb<double>{images_m[mirror] - origin_m_, images_m[mirror] - origin_m_};
   });
   const std::span<const std::uint32_t> items = image_clusters_.items();
-  image_lanes_.assign(items.size() / simd_lanes, {});
+  eight_images_.assign(items.size() / simd_lanes, {});
   constexpr float everywhere = -1e30F;
   for (std::size_t at = 0; at < items.size(); ++at) {
-    ImageLanes& eight = image_lanes_[at / simd_lanes];
+    EightImages& eight = eight_images_[at / simd_lanes];
     const std::size_t lane = at % simd_lanes;
     for (auto& plane : eight.planes) plane[3][lane] = everywhere;
     if (items[at] == ConeClusters::nothing) continue;
@@ -80,7 +72,7 @@ inline void HalfLayer::lay_out_images(const Scene& scene, const Vec3& end_m, con
       eight.place[static_cast<std::size_t>(axis)][lane] = static_cast<float>(image[axis]);
     }
     const std::span<const HalfSpace> cone = cones[items[at]];
-    for (std::size_t side = 0; side < std::min(ImageLanes::plane_count, cone.size()); ++side) {
+    for (std::size_t side = 0; side < std::min(EightImages::plane_count, cone.size()); ++side) {
       eight.planes[side][0][lane] = cone[side].x;
       eight.planes[side][1][lane] = cone[side].y;
       eight.planes[side][2][lane] = cone[side].z;
@@ -103,27 +95,16 @@ template <typename Visit>
 void HalfLayer::for_each_image_in(std::span<const HalfSpace> cone, const Vec3& point_m, float radius_m,
                                   Visit&& visit) const {
   const Vec3 point = point_m - origin_m_;
-  const auto px = static_cast<float>(point.x), py = static_cast<float>(point.y), pz = static_cast<float>(point.z);
-  const float room_m = radius_m + 1e-6F * static_cast<float>(glm::length(point));
-  image_clusters_.for_each_in(cone, [&](std::size_t first) {
-    const ImageLanes& eight = image_lanes_[first / simd_lanes];
-    const Float8 x(eight.place[0]), y(eight.place[1]), z(eight.place[2]);
-    const Float8 error_m = Float8(1e-6F) * (simd::absolute(x) + simd::absolute(y) + simd::absolute(z));
-    std::uint32_t left = 0xffU;
-    for (const HalfSpace& plane : cone) {
-      left &= ~(x * plane.x + y * plane.y + z * plane.z + error_m < Float8(plane.offset)).bits();
-      if (left == 0) return;
-    }
-    for (const auto& plane : eight.planes) {
-      const Float8 inside = Float8(plane[0]) * px + Float8(plane[1]) * py + Float8(plane[2]) * pz + room_m;
-      left &= ~(inside < Float8(plane[3])).bits();
-      if (left == 0) return;
-    }
-    for (; left != 0; left &= left - 1) {
-      const std::uint32_t item = image_clusters_.items()[first + static_cast<std::size_t>(std::countr_zero(left))];
+  const ConeTarget target{static_cast<float>(point.x), static_cast<float>(point.y), static_cast<float>(point.z),
+                          1e-6F * static_cast<float>(glm::length(point)), radius_m};
+  const std::span<const std::uint32_t> items = image_clusters_.items();
+  const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const std::uint32_t item = items[first + static_cast<std::size_t>(std::countr_zero(lanes))];
       if (item != ConeClusters::nothing) visit(item);
     }
-  });
+  };
+  detail::cone_kernels().images(image_clusters_.tree(), eight_images_, cone, target, told_to(visit_eight));
 }
 
 template <typename Visit>
