@@ -193,6 +193,7 @@ class BasicSimulator {
   Solved solve_again(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                      ReceiverRoom* room);
   void look_from_receiver(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;
+  void look_anew(Following& following, ReceiverRoom& room) const;
   void look_for_triples(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;
   std::vector<PathContribution> paths_of_moving(FollowedLink& link, const KeptHalf& half) const;
   bool joins_anew(const Following& following, const detail::ReceiverMemory& memory, const LinkToFollow& link) const;

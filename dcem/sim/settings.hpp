@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -99,6 +100,10 @@ struct SimulationSettings {
   WideTreeSettings tree{};     ///< how the tree is built, and kept while the scene moves. Never changes a result
   unsigned threads = 0;        ///< 0: all cores. Never changes a result
   bool share_map_work = true;  ///< work that is the same at all points of a map is done once. Never changes a result
+  /// Of so many receivers, the first ones of the scene, it is kept from frame to frame what they see, where the cache
+  /// is exact: 2 to 5 MB each. Links of others are worked out from scratch where anything has changed. Never changes a
+  /// result.
+  std::size_t most_remembered_receivers = std::numeric_limits<std::size_t>::max();
 };
 
 /// Rays per receiver in a frame with history.

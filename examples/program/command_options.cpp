@@ -111,7 +111,7 @@ void add_resources(CLI::App& command, std::optional<unsigned>& threads, std::opt
           "Refuse what is foreseen to take more (K, M and G: 1024 each; default: the machine's memory): grids, lists, "
           "links "
           "and maps before anything is computed, paths.npz as soon as its paths are too many; not every byte is "
-          "foreseen")
+          "foreseen. What receivers see is remembered in half of it, of others it is worked out again")
       ->type_name("BYTES");
 }
 
@@ -333,6 +333,11 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
           "Heights of the ground, an ASCII grid of ESRI in UTM (default: flat); not for sionna")
       ->type_name("FILE");
   command.add_flag("--quiet", options.quiet, "No report on the screen; report.json has it");
+  command.parse_complete_callback([&command, &options] {
+    for (const CLI::Option* option : command.get_options([](const CLI::Option* one) { return one->count() > 0; })) {
+      options.given.push_back(option->get_name());
+    }
+  });
 }
 
 void add_keys_options(CLI::App& command, KeysOptions& options) {

@@ -48,7 +48,11 @@ std::string value_name(const CLI::Option& option) {
 }
 
 bool takes_list(const CLI::Option& option) {
-  return value_name(option).find(',') != std::string::npos;
+  return value_name(option).find(',') != std::string::npos && !choices_of(option).empty();
+}
+
+bool takes_file(const CLI::Option& option) {
+  return value_name(option) == "FILE" || value_name(option) == "SCENARIO.json";
 }
 
 bool takes_folder(const CLI::Option& option) {
@@ -98,7 +102,7 @@ std::string bash_values(const CLI::App& command) {
       text += "_dcem_list \"" + choices + "\"; ";
     } else if (!choices.empty()) {
       text += "COMPREPLY=($(compgen -W \"" + choices + "\" -- \"$word\")); ";
-    } else {
+    } else if (!takes_file(*option)) {  // without an answer bash offers files
       text += "compopt +o default; ";
     }
     text += "return ;;\n";
@@ -112,9 +116,11 @@ std::string bash_script(const CLI::App& app) {
   for (const CLI::App* command : commands_of(app)) {
     commands.push_back(command->get_name());
     values += bash_values(*command);
-    std::string words = option_words(*command), positionals;
-    for (const CLI::Option* option : positionals_of(*command)) positionals = joined(choices_of(*option));
-    options += "    " + command->get_name() + ") options=\"" + words + "\" words=\"" + positionals + "\" ;;\n";
+    const std::vector<const CLI::Option*> positionals = positionals_of(*command);
+    const std::string first = positionals.empty() ? "" : joined(choices_of(*positionals.front()));
+    options += "    " + command->get_name() + ") options=\"" + option_words(*command) + '"';
+    if (!first.empty()) options += "; ((COMP_CWORD == 2)) && words=\"" + first + '"';
+    options += " ;;\n";
   }
   return "# Completion of dcem for bash, made by 'dcem completion bash'.\n"
          "_dcem_list() {  # words divided by commas: the last one is completed\n"
@@ -148,7 +154,7 @@ std::string zsh_action(const CLI::Option& option) {
   if (takes_folder(option)) return "_files -/";
   if (takes_list(option)) return "_values -s , key " + choices;
   if (!choices.empty()) return '(' + choices + ')';
-  return option.get_positional() ? "_files" : "";
+  return option.get_positional() || takes_file(option) ? "_files" : "";
 }
 
 /// A text between single quotes.
@@ -222,6 +228,8 @@ std::string fish_options(const CLI::App& command, const std::string& condition) 
       text += " -x -a '(__fish_complete_directories)'";
     } else if (takes_list(*option)) {
       text += " -x -a '(__fish_complete_list , \"printf %s\\\\\\\\n " + joined(choices) + "\")'";
+    } else if (takes_file(*option)) {
+      text += " -r -F";
     } else if (takes_value(*option)) {
       text += " -x";
       if (!choices.empty()) text += " -a " + fish_quoted(joined(choices));

@@ -1,5 +1,9 @@
 /// `dcem import`: other people's scenes made into scenarios.
+#include <algorithm>
+#include <array>
 #include <iostream>
+#include <string>
+#include <string_view>
 
 #include "options.hpp"
 
@@ -12,11 +16,27 @@ io::SumoFiles sumo_files(const ImportOptions& options) {
   return files;
 }
 
+/// The kinds on which an option has an effect, where that is not all of them.
+struct KindsOfOption {
+  std::string_view option, kinds;
+};
+constexpr std::array kinds_of_options{KindsOfOption{"--poly", "sumo"},
+                                      KindsOfOption{"--fcd", "sumo"},
+                                      KindsOfOption{"--additional", "sumo"},
+                                      KindsOfOption{"--default-height-m", "sumo or osm"},
+                                      KindsOfOption{"--level-height-m", "sumo or osm"},
+                                      KindsOfOption{"--tree-height-m", "sumo or osm"},
+                                      KindsOfOption{"--touching", "sumo, osm or gemv2"},
+                                      KindsOfOption{"--snap-tolerance-m", "sumo, osm or gemv2"},
+                                      KindsOfOption{"--smallest-house-sqm", "sumo, osm or gemv2"},
+                                      KindsOfOption{"--ground-margin-m", "sumo, osm or gemv2"}};
+
 /// An option that does nothing is a mistake.
 void check_kind(const ImportOptions& options) {
-  if (options.kind == "sumo") return;
-  const bool has_any = !options.polygons.empty() || !options.trace.empty() || !options.additional.empty();
-  if (has_any) throw UsageError("--poly, --fcd and --additional have no effect on '" + options.kind + "'", "kind sumo");
+  for (const auto& [option, kinds] : kinds_of_options) {
+    if (kinds.find(options.kind) != std::string_view::npos || std::ranges::count(options.given, option) == 0) continue;
+    throw UsageError(std::string(option) + " has no effect on '" + options.kind + "'", "kind " + std::string(kinds));
+  }
 }
 
 io::ImportReport import_kind(const ImportOptions& options) {

@@ -74,6 +74,7 @@ struct ImportOptions {
   std::string polygons, trace;          ///< of sumo alone
   std::vector<std::string> additional;  ///< of sumo alone
   std::string touching = "union";       ///< or snap
+  std::vector<std::string> given;       ///< the options that the command line has
   io::ImportSettings settings;
   bool quiet = false;
 };

@@ -52,15 +52,22 @@ std::string script_of(const TemporaryFolder& folder, const std::string& shell) {
   return outcome.output;
 }
 
-/// What bash offers behind these words, the last of which is not yet finished.
-std::string offered(const TemporaryFolder& folder, const std::string& line) {
-  const std::string command = "cd " + quoted(folder.path()) + " && bash -c 'compopt() { :; }; source dcem.bash; " +
-                              "COMP_WORDS=(dcem " + line + "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _dcem; " +
-                              "echo \"${COMPREPLY[*]}\"' > offered";
+/// What bash offers behind these words, the last of which is not yet finished; `told` of it is printed.
+std::string offered(const TemporaryFolder& folder, const std::string& line,
+                    const std::string& told = "${COMPREPLY[*]}") {
+  const std::string command = "cd " + quoted(folder.path()) +
+                              " && bash -c 'files=yes; compopt() { [[ \"$*\" != \"+o default\" ]] || files=; }; " +
+                              "source dcem.bash; COMP_WORDS=(dcem " + line +
+                              "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _dcem; " + "echo \"" + told + "\"' > offered";
   CHECK(std::system(command.c_str()) == 0);
   std::string words = file_bytes(folder / "offered");
   if (!words.empty()) words.pop_back();
   return words;
+}
+
+/// Whether the shell is left to offer files.
+bool offers_files(const TemporaryFolder& folder, const std::string& line) {
+  return offered(folder, line).empty() && offered(folder, line, "$files") == "yes";
 }
 
 bool has_program(const std::string& name) {
@@ -112,6 +119,14 @@ TEST_CASE("an option that would change nothing is refused, not ignored") {
   }
   write_scenario(folder, R"({"id":"probe","positions_m":[[1,2,3]]})");
   check_refused(folder, "map street.json --output asc", "--output has no effect");
+  for (const std::string option : {"--level-height-m 4", "--default-height-m 4", "--tree-height-m 4",
+                                   "--poly street.json", "--fcd street.json", "--additional street.json"}) {
+    check_refused(folder, "import gemv2 . -o made " + option, option.substr(0, option.find(' ')) + " has no effect");
+  }
+  for (const char* option :
+       {"--touching snap", "--ground-margin-m 4", "--snap-tolerance-m 1", "--smallest-house-sqm 4"}) {
+    check_refused(folder, "import sionna street.json -o made " + std::string(option), "has no effect on 'sionna'");
+  }
   check_refused(folder, "run street.json --output links,map", "map has no effect on 'dcem run'");
   check_refused(folder, "completion tcsh", "tcsh");
   // Where rays are shot they have an effect.
@@ -205,7 +220,12 @@ TEST_CASE("bash completes commands, options, words and lists of words") {
   CHECK(offered(folder, "run street.json --output links,pd") == "links,pdp");
   CHECK(offered(folder, "map street.json --output links,dop").empty());
   CHECK(offered(folder, "completion \"\"") == "bash zsh fish");
-  CHECK(offered(folder, "run str").empty());  // the shell then offers files
+  CHECK(offered(folder, "import \"\"") == "sumo gemv2 sionna osm");
+  CHECK(offers_files(folder, "run str"));
+  CHECK(offers_files(folder, "import sumo ne"));
+  CHECK(offers_files(folder, "import sumo net.xml --poly po"));
+  CHECK(offers_files(folder, "merge one two --scenario st"));
+  CHECK_FALSE(offers_files(folder, "run street.json --threads \"\""));
 }
 
 TEST_CASE("zsh and fish read their scripts") {

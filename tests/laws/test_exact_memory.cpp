@@ -3,6 +3,8 @@
 /// held against another search, too.
 #include <doctest/doctest.h>
 
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -88,11 +90,14 @@ struct Tally {
 };
 
 /// Follows a drive with and without memory; bodies come and go, and some frames are as the one before.
-void compare(std::uint64_t seed, const Case& orders, Tally& tally) {
+void compare(std::uint64_t seed, const Case& orders, Tally& tally,
+             std::size_t remembered = std::numeric_limits<std::size_t>::max()) {
   constexpr std::size_t frames = 14;
   Draw draw(seed);
   const Scene scene = busy_town(draw, frames);
-  Simulator remembering(scene, settings_of(orders, CacheMode::exact));
+  SimulationSettings settings = settings_of(orders, CacheMode::exact);
+  settings.most_remembered_receivers = remembered;
+  Simulator remembering(scene, settings);
   Simulator from_scratch(scene, settings_of(orders, CacheMode::off));
   REQUIRE(remembering.cache() == CacheMode::exact);
   std::vector<bool> away(scene.bodies().size(), false);
@@ -134,6 +139,17 @@ TEST_CASE("memory changes no bit of drives through random towns") {
                        << " taken over");
   CHECK(tally.paths > 10'000);
   CHECK(tally.taken_over > 500);  // or nothing was remembered
+}
+
+TEST_CASE("nor does it where only some receivers are remembered, or none") {
+  const std::vector<Case> cases{{2, 2, 1, 2}, {2, 0, 2, 2, true}, {2, 0, 1, 3}};
+  Tally tally;
+  std::uint64_t seed = 100;
+  for (const Case& orders : cases) {
+    for (const std::size_t remembered : {0U, 1U, 3U}) compare(++seed, orders, tally, remembered);
+  }
+  CHECK(tally.paths > 3'000);
+  CHECK(tally.taken_over > 100);  // what nothing has changed is taken over all the same
 }
 
 }  // namespace test_exact_memory

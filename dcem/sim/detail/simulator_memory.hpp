@@ -102,6 +102,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   TraversalCounters traversal;
   const LinkEnd end = link_end(state, traversal);
   if (memory.end && memory.end->ignored_body != end.ignored_body) memory.links.clear();
+  const bool is_kept = index < settings_.most_remembered_receivers;
   const bool stands = detail::same_bits(memory.end, end), is_same = detail::same_bits(memory.state, state);
   memory.end = end;
   memory.state = state;
@@ -127,7 +128,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
       continue;
     }
     const std::size_t number = transmitters.number(transmitter);
-    const bool rests = stands && link.result && transmitter_rests_[number] != 0;
+    const bool rests = is_kept && stands && link.result && transmitter_rests_[number] != 0;
     if (transmitter_rests_[number] == 0) link.pooled.forget();
     if (stays(transmitter)) {
       solved.cache.taken_over += link.result->paths.size();
@@ -140,7 +141,11 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   }
   if (!to_follow.empty()) {
     Following following(*this, transmitters, receiver, end, radio);
-    look_from_receiver(following, memory, *room, stands);
+    if (is_kept) {
+      look_from_receiver(following, memory, *room, stands);
+    } else {
+      look_anew(following, *room);
+    }
     following.in_view = facets_seen_from(receiver, end, transmitters, room);
     SearchCounters counters;
     counters.solver.traversal += traversal;

@@ -30,6 +30,15 @@ void BasicSimulator<Surface, Index>::look_from_receiver(Following& following, de
   following.half = &memory.half.half();
 }
 
+/// The same of a receiver of which nothing is kept.
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::look_anew(Following& following, ReceiverRoom& room) const {
+  const KeptHalf* const known = following.as_transmitter;
+  following.half = known != nullptr ? &known->half() : &room.half;
+  following.lists = known != nullptr ? known->lists() : &room.lists;
+  if (known == nullptr) look_from(scene_, following.search, *outlines_, *lanes_, following.end, room);
+}
+
 /// The same where sequences of three elements are joined: what a receiver that stands reaches over its mirrors is kept.
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::look_for_triples(Following& following, detail::ReceiverMemory& memory,
