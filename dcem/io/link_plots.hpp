@@ -48,8 +48,11 @@ class LinkPlots {
   /// The three that papers print of a drive: received power, rms delay spread and Doppler, for `write_panels`.
   std::vector<LineChart> panels() const;
 
-  /// "mast to car".
-  std::string name() const { return names_.transmitter + " to " + names_.receiver; }
+  /// What titles end with: a word on what the pictures may lack. Empty: nothing.
+  void set_note(std::string note) { note_ = std::move(note); }
+
+  /// "mast to car", and the note.
+  std::string name() const { return with_note(names_.transmitter + " to " + names_.receiver); }
 
   /// Power over time and delay. Of more than 1000 frames, neighbours are joined to their mean power; of more than 280
   /// bins, neighbours to their sum; the title says so. Taps more than 70 dB below the
@@ -93,8 +96,10 @@ class LinkPlots {
   LineChart count_chart() const;
   LineChart chart(const char* what, const char* label, const char* unit) const;
   std::string title(const std::string& what) const;
+  std::string with_note(const std::string& text) const { return note_.empty() ? text : text + "; " + note_; }
 
   LinkNames names_;
+  std::string note_;
   double bin_s_;
   PdpMode mode_;
   std::vector<double> times_s_;

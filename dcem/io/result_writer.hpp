@@ -82,9 +82,9 @@ class ResultWriter {
   /// `OutputError`, be it of the frame before.
   void write_lines(LinePieces lines);
   void write_lines(std::string_view lines);
-  /// After the last frame, be it the last that was announced or not: writes what is complete only now. Throws
-  /// `OutputError`.
-  void finish();
+  /// After the last frame, be it the last that was announced or not: writes what is complete only now. `note` ends the
+  /// titles of pictures: what they may lack. Throws `OutputError`.
+  void finish(const std::string& note = {});
 
  private:
   struct Sheet {

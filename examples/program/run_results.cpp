@@ -4,8 +4,10 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/sampling_text.hpp"
 #include "dcem/sim/discovery.hpp"
 #include "dcem/sim/link_choice.hpp"
 
@@ -101,7 +103,8 @@ io::RunSummary& RunResults::finish(std::size_t frames) {
     summary_.add_late_warning("output.plots: one frame alone has its power delay profile and no pictures over time");
   }
   for (const std::string& line : watch_.warnings()) summary_.add_late_warning(line);
-  writer_.finish();
+  const std::vector<std::string> notes = io::sampling_notes(sampling_);
+  writer_.finish(notes.empty() ? std::string() : notes.front());
   finish_viewer(viewer_.get(), summary_);
   summary_.set_work_times(work_times() - begun_);
   return summary_;

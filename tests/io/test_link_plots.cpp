@@ -197,6 +197,25 @@ TEST_CASE("a link that never carries anything still has a chart of its power, an
   CHECK_NOTHROW(io::detail::plan_line_charts({&profile, 1}));
 }
 
+TEST_CASE("every picture of a link that may lack something says so in its title, once") {
+  const Scene scene = small_scene();
+  const LinkResult link = link_of({path_of(1e-8, 1e-6), reflected(1, 5.1e-6, 3e-6)});
+  io::LinkPlots plots = small_plots();
+  for (int frame = 0; frame < 2000; ++frame) plots.add(scene, 0.1 * frame, &link);
+  CHECK(plots.name() == "a to b");
+  plots.set_note("sampled: 10 rays");
+  CHECK(plots.name() == "a to b; sampled: 10 rays");
+  Names titles{plots.profile().value().title, plots.taps().value().title, plots.profile_at(3).title};
+  for (const io::LineChart& chart : plots.charts()) titles.push_back(chart.title);
+  CHECK(titles.size() > 5);
+  for (const std::string& title : titles) {
+    CAPTURE(title);
+    CHECK(title.starts_with("a to b: "));
+    CHECK(title.ends_with("; sampled: 10 rays"));
+    CHECK(title.find("sampled") == title.rfind("sampled"));
+  }
+}
+
 TEST_CASE("the profile keeps the power of every bin, and where frames or bins are joined, their mean and their sum") {
   const Scene scene = small_scene();
   const auto sum_mw = [](const io::HeatMap& map) {

@@ -290,6 +290,9 @@ TEST_CASE("an object of half a kilometre is noticed, and what scatters while nob
   wanted.objects =
       R"({"id": "car1", "box_m": [4400, 1.8, 1.5], "material": "wall", "motion": {"position_m": [0, -50, 0.1]}})";
   CHECK(contains(warning_of(wanted), "village.json:1: objects[0]: the object is 4400 x 1.800 x 1.500 m in size"));
+  // All woods of a town are one object.
+  wanted.objects = R"({"id": "woods", "box_m": [4400, 9, 6], "foliage": true, "motion": {"position_m": [0, -50, 0]}})";
+  CHECK(warnings_of(wanted).empty());
   wanted.objects.clear();
   wanted.material = R"({"model": "constant", "reflection": 0.7, "scattering": 0.4})";
   CHECK(contains(warning_of(wanted),

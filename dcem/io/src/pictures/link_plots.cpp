@@ -115,7 +115,7 @@ void LinkPlots::count_paths(std::vector<std::string>&& ids, Figures& figures) {
 }
 
 std::string LinkPlots::title(const std::string& what) const {
-  return name() + ": " + what;
+  return with_note(names_.transmitter + " to " + names_.receiver + ": " + what);
 }
 
 template <typename Value>
@@ -292,8 +292,8 @@ std::optional<HeatMap> LinkPlots::profile() const {
   each_strong_tap(
       [&](double time_s, const PdpTap& tap) { power[grid.cell(time_s, bin_number(tap, bin_s_))] += tap.power_ratio; });
   HeatMap map = empty_picture(grid, bin_s_);
-  map.title = title("power delay profile, " + bin_text(static_cast<double>(grid.bins_per_row) * bin_s_));
-  if (figures_.size() > grid.columns) map.title += ", frames joined";
+  map.title = title("power delay profile, " + bin_text(static_cast<double>(grid.bins_per_row) * bin_s_) +
+                    (figures_.size() > grid.columns ? ", frames joined" : ""));
   for (std::size_t cell = 0; cell < power.size(); ++cell) {
     const bool holds = power[cell] > 0.0;
     const double mean = holds ? power[cell] / frames[cell % grid.columns] : 0.0;

@@ -139,8 +139,9 @@ void PlotCollector::write_over_time(const Link& link) {
   }
 }
 
-void PlotCollector::write() {
-  for (const Link& link : links_) {
+void PlotCollector::write(const std::string& note) {
+  for (Link& link : links_) {
+    link.plots.set_note(note);
     if (link.plots.frames() > 1) write_over_time(link);
     // Of the frames that there are: a run may have been ended before its last.
     const std::size_t frame = profile_frame_.value_or(link.plots.frames() / 2);

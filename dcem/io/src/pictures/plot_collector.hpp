@@ -23,7 +23,8 @@ class PlotCollector {
 
   /// Throws std::invalid_argument where the bins of `output.pdp` are too narrow.
   void add(const FrameResult& frame);
-  void write();
+  /// `note`: as `LinkPlots::set_note` has it.
+  void write(const std::string& note);
 
  private:
   struct Link {

@@ -113,12 +113,12 @@ void ResultWriter::write_lines(std::string_view lines) {
   links_.write(lines);
 }
 
-void ResultWriter::finish() {
+void ResultWriter::finish(const std::string& note) {
   writing_->wait();
   if (paths_.gzip != nullptr) paths_.gzip->finish();
   if (responses_) responses_->write();
   if (arrays_) arrays_->write();
-  if (plots_) plots_->write();
+  if (plots_) plots_->write(note);
   for (const auto& file : exports_) file->finish();
 }
 

@@ -103,7 +103,8 @@ void BodyLoader::load() {
   if (result_.scene.facets().empty()) scene.at("obj").fail("no face has an area; expected at least one");
   warn(scene.at("obj"), mesh_doubts(scenery.mesh));
   for (Object& object : objects_) {
-    warn(object.value, object_doubts(object.mesh));
+    const bool is_foliage = object.mesh.material_names == std::vector{foliage_material};
+    if (!is_foliage) warn(object.value, object_doubts(object.mesh));  // all woods of a town are one object
     reported_at(object.value, [&] { result_.scene.add_object(object.id, object.mesh, std::move(object.motion)); });
   }
   if (result_.traffic) add_traffic();
