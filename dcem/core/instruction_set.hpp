@@ -16,7 +16,8 @@
 
 namespace dcem {
 
-/// Levels for which the tracing of rays is compiled. Results do not depend on them, to the last bit.
+/// Levels for which the tracing of rays, and what joins halves of paths, is compiled. Results do not depend on them, to
+/// the last bit.
 enum class InstructionSet : std::uint8_t {
   baseline,  ///< whatever the compiler assumes; on x86-64 its first generation
   avx2,      ///< x86-64-v3: registers of eight single-precision numbers
@@ -54,18 +55,18 @@ inline bool is_supported(InstructionSet set) {
 
 #if defined(DCEM_ENGINE)
 
-/// The level that traces rays in this program: at first the highest one that the processor has.
+/// The level that is used in this program: at first the highest one that the processor has.
 InstructionSet instruction_set();
 
-/// Has rays traced by another level from now on. Throws std::invalid_argument where the processor does not have it. Not
-/// while rays are traced on other threads.
+/// Uses another level from now on. Throws std::invalid_argument where the processor does not have it. Not while rays
+/// are traced or paths are looked for on other threads.
 void select_instruction_set(InstructionSet set);
 
 #else
 
 inline namespace DCEM_ISA {
 
-/// The level that this file is compiled for, and that traces rays.
+/// The level that this file is compiled for, and that is used.
 inline InstructionSet instruction_set() {
   return compiled_instruction_set;
 }

@@ -111,7 +111,7 @@ void add_resources(CLI::App& command, std::optional<unsigned>& threads, std::opt
           "Refuse what is foreseen to take more (K, M and G: 1024 each; default: the machine's memory): grids, lists, "
           "links "
           "and maps before anything is computed, paths.npz as soon as its paths are too many; not every byte is "
-          "foreseen. What receivers see is remembered in half of it, of others it is worked out again")
+          "foreseen. Half of it may hold what receivers see from frame to frame; beyond, that is worked out anew")
       ->type_name("BYTES");
 }
 
@@ -144,9 +144,9 @@ void add_common_options(CLI::App& command, ScenarioOptions& options) {
                   "Turns the sphere of rays, and draws seeded phases; for sampled discovery and diffuse power alone")
       ->type_name("S");
   command
-      .add_option_function<std::string>(
-          "--instructions", choose_instructions,
-          "Instructions that trace rays (default: the best that the processor has); never changes a result")
+      .add_option_function<std::string>("--instructions", choose_instructions,
+                                        "Instructions that trace rays and join paths (default: the best that the "
+                                        "processor has); never changes a result")
       ->check(CLI::IsMember({"baseline", "avx2", "avx512"}))
       ->type_name("LEVEL");
   add_progress(command, options.progress, options.quiet);

@@ -23,7 +23,7 @@ struct KindsOfOption {
 constexpr std::array kinds_of_options{KindsOfOption{"--poly", "sumo"},
                                       KindsOfOption{"--fcd", "sumo"},
                                       KindsOfOption{"--additional", "sumo"},
-                                      KindsOfOption{"--default-height-m", "sumo or osm"},
+                                      KindsOfOption{"--default-height-m", "sumo, osm or gemv2"},
                                       KindsOfOption{"--level-height-m", "sumo or osm"},
                                       KindsOfOption{"--tree-height-m", "sumo or osm"},
                                       KindsOfOption{"--touching", "sumo, osm or gemv2"},

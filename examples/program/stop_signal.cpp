@@ -19,7 +19,7 @@ bool is_watched = false;  ///< somebody sits at a terminal; known before signals
 extern "C" void on_stop_signal(int signal) {
   if (!is_awaited || received != 0) ::_exit(128 + signal);
   received = signal;
-  constexpr std::string_view word = "\nending when the frame is done; a second time: at once\n";
+  constexpr std::string_view word = "\nending when what is begun is done; a second signal ends at once\n";
   if (is_watched && ::write(STDERR_FILENO, word.data(), word.size()) < 0) return;  // then nobody hears of it
 }
 

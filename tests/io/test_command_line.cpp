@@ -119,9 +119,16 @@ TEST_CASE("an option that would change nothing is refused, not ignored") {
   }
   write_scenario(folder, R"({"id":"probe","positions_m":[[1,2,3]]})");
   check_refused(folder, "map street.json --output asc", "--output has no effect");
-  for (const std::string option : {"--level-height-m 4", "--default-height-m 4", "--tree-height-m 4",
-                                   "--poly street.json", "--fcd street.json", "--additional street.json"}) {
+  for (const std::string option : {"--level-height-m 4", "--tree-height-m 4", "--poly street.json", "--fcd street.json",
+                                   "--additional street.json"}) {
     check_refused(folder, "import gemv2 . -o made " + option, option.substr(0, option.find(' ')) + " has no effect");
+  }
+  // What has an effect gets as far as the folder, which holds nothing of GEMV2.
+  for (const char* option :
+       {"--default-height-m 4", "--touching snap", "--ground-margin-m 4", "--snap-tolerance-m 1"}) {
+    const Outcome outcome = dcem_program(folder, "import gemv2 . -o made " + std::string(option));
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.error.find("has no effect") == std::string::npos);
   }
   for (const char* option :
        {"--touching snap", "--ground-margin-m 4", "--snap-tolerance-m 1", "--smallest-house-sqm 4"}) {

@@ -1,6 +1,5 @@
 #pragma once
 /// What an end reaches directly and over some of its mirrors, laid out by what is reached.
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>

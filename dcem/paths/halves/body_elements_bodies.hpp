@@ -27,7 +27,7 @@ DCEM_INLINE void BodyElements::lay_out(const Scene& scene, const SeenLayer& laye
       packs_.back().edges[lane] = layer.edges[edge];
       packs_.back().used |= 1U << lane;
       const Wedge& wedge = scene.wedge(layer.edges[edge]).edge;
-      set_part(packs_.back().parts, lane, whole_edge(0, wedge, end_m), wedge, origin_m);
+      set_part(packs_.back().parts, lane, whole_edge(0, wedge, end_m), wedge.start_m - origin_m, edge_direction(wedge));
       lane = (lane + 1) % simd_lanes;
     }
     part.pack_count = static_cast<std::uint32_t>(packs_.size()) - part.first_pack;

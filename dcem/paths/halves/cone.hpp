@@ -163,12 +163,19 @@ class ConeClusters {
 
   BoxTree tree() const { return {groups_, clusters_}; }
 
+  /// Calls `visit(item)` for those of eight items, from `first` on, whose bits are set.
+  template <typename Visit>
+  void for_each_of(std::size_t first, std::uint32_t lanes, Visit&& visit) const {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const std::uint32_t item = items_[first + static_cast<std::size_t>(std::countr_zero(lanes))];
+      if (item != nothing) visit(item);
+    }
+  }
+
   /// Calls `visit(item)` for each item that a cone may reach, where they can be asked.
   template <typename Visit>
   void for_each_item_in(std::span<const HalfSpace> cone, Visit&& visit) const {
-    const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) {
-      for (; lanes != 0; lanes &= lanes - 1) visit(items_[first + static_cast<std::size_t>(std::countr_zero(lanes))]);
-    };
+    const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) { for_each_of(first, lanes, visit); };
     detail::cone_kernels().boxes(tree(), item_boxes_, cone, told_to(visit_eight));
   }
 

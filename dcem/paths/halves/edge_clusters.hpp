@@ -1,6 +1,5 @@
 #pragma once
 /// Parts of edges seen from one end, in clusters.
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,7 +30,8 @@ class EdgeClusters {
     for (std::size_t at = 0; at < items.size(); ++at) {
       if (items[at] == ConeClusters::nothing) continue;
       const EdgePart& part = parts[items[at]];
-      set_part(eights_[at / simd_lanes], at % simd_lanes, part, wedge_of(part), origin_m);
+      const Wedge& wedge = wedge_of(part);
+      set_part(eights_[at / simd_lanes], at % simd_lanes, part, wedge.start_m - origin_m, edge_direction(wedge));
     }
   }
 
@@ -47,12 +47,8 @@ class EdgeClusters {
   /// `parts_met` has it.
   template <bool end_moves = false, typename Visit>
   void for_each_in(std::span<const HalfSpace> cone, const Vec3& apex, float moved_m, Visit&& visit) const {
-    const std::span<const std::uint32_t> items = clusters_.items();
     const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) {
-      for (; lanes != 0; lanes &= lanes - 1) {
-        const std::uint32_t item = items[first + static_cast<std::size_t>(std::countr_zero(lanes))];
-        if (item != ConeClusters::nothing) visit(item);
-      }
+      clusters_.for_each_of(first, lanes, visit);
     };
     const detail::ConeKernels& kernels = detail::cone_kernels();
     const auto walk = end_moves ? kernels.parts_of_moving_end : kernels.parts;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "dcem/core/simd.hpp"
@@ -59,10 +58,9 @@ inline EightParts no_parts() {
   return parts;
 }
 
-/// The numbers count from `origin_m`.
-inline void set_part(EightParts& parts, std::size_t lane, const EdgePart& part, const Wedge& wedge,
-                     const Vec3& origin_m) {
-  const Vec3 direction = edge_direction(wedge), start = wedge.start_m - origin_m;
+/// Of the line from `start`, counted from where cones are.
+inline void set_part(EightParts& parts, std::size_t lane, const EdgePart& part, const Vec3& start,
+                     const Vec3& direction) {
   for (int axis = 0; axis < 3; ++axis) {
     parts.start[static_cast<std::size_t>(axis)][lane] = static_cast<float>(start[axis]);
     parts.direction[static_cast<std::size_t>(axis)][lane] = static_cast<float>(direction[axis]);

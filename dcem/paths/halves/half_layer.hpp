@@ -2,7 +2,6 @@
 /// The mirrors and edges that an end may see, its images, and the cones behind them: of the scenery, or of what moves.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -97,12 +96,8 @@ void HalfLayer::for_each_image_in(std::span<const HalfSpace> cone, const Vec3& p
   const Vec3 point = point_m - origin_m_;
   const ConeTarget target{static_cast<float>(point.x), static_cast<float>(point.y), static_cast<float>(point.z),
                           1e-6F * static_cast<float>(glm::length(point)), radius_m};
-  const std::span<const std::uint32_t> items = image_clusters_.items();
   const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) {
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const std::uint32_t item = items[first + static_cast<std::size_t>(std::countr_zero(lanes))];
-      if (item != ConeClusters::nothing) visit(item);
-    }
+    image_clusters_.for_each_of(first, lanes, visit);
   };
   detail::cone_kernels().images(image_clusters_.tree(), eight_images_, cone, target, told_to(visit_eight));
 }

@@ -4,7 +4,6 @@
 ///
 /// A half belongs to a device in a frame and serves all its links. What moves hides nothing in it: so the scenery's
 /// part is worked out once for an end that stands, and only what moves is looked at in every frame.
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>

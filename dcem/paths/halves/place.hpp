@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "dcem/paths/halves/common_cone.hpp"
 #include "dcem/paths/halves/sight.hpp"
 
 namespace dcem {

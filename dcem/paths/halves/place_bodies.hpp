@@ -1,6 +1,7 @@
 #pragma once
 /// Bodies of place.hpp.
 #include "dcem/core/build_mode.hpp"
+#include "dcem/paths/halves/common_cone.hpp"
 #include "dcem/paths/halves/place.hpp"
 
 namespace dcem {

@@ -63,7 +63,7 @@ class EdgeCandidates {
   }
 
  private:
-  using Lanes = std::array<float, simd_lanes>;
+  using Lanes = EightFloats;
   /// Eight times normal·x − offset.
   struct PlaneLanes {
     std::array<Lanes, 3> normal{};
@@ -83,13 +83,14 @@ class EdgeCandidates {
       1.6e-6F;  ///< of the largest number: four sums of four numbers, each rounded to 6e-8
 
   struct Pack {
-    std::array<Lanes, 3> start{}, along{};
-    Lanes from{}, to{}, place{}, distance{}, error{};
+    EightParts parts;
+    Lanes error{};
 
     Met meet(const Point& point) const {
-      const Float8 dx = Float8(point.x) - Float8(start[0]), dy = Float8(point.y) - Float8(start[1]),
-                   dz = Float8(point.z) - Float8(start[2]);
-      const Float8 ex(along[0]), ey(along[1]), ez(along[2]), own_place(place), own_distance(distance);
+      const Float8 sx(parts.start[0]), sy(parts.start[1]), sz(parts.start[2]);
+      const Float8 dx = Float8(point.x) - sx, dy = Float8(point.y) - sy, dz = Float8(point.z) - sz;
+      const Float8 ex(parts.direction[0]), ey(parts.direction[1]), ez(parts.direction[2]);
+      const Float8 own_place(parts.place), own_distance(parts.distance);
       const Float8 at = dx * ex + dy * ey + dz * ez;
       const Float8 x = dx - at * ex, y = dy - at * ey, z = dz - at * ez;
       const Float8 sum = own_distance + simd::square_root(x * x + y * y + z * z);
@@ -98,8 +99,8 @@ class EdgeCandidates {
       const Float8 off = Float8(error) * (Float8(1.0F) + simd::absolute(between) * inverse);
       const Float8 room = off + beside_m;
       // Asked for so that NaN, of both ends on the edge's line, passes.
-      const std::uint32_t out = ((met + room < Float8(from)) | (Float8(to) + room < met)).bits();
-      return {Float8(start[0]) + met * ex, Float8(start[1]) + met * ey, Float8(start[2]) + met * ez, off, ~out & 0xffU};
+      const std::uint32_t out = ((met + room < Float8(parts.from)) | (Float8(parts.to) + room < met)).bits();
+      return {sx + met * ex, sy + met * ey, sz + met * ez, off, ~out & 0xffU};
     }
   };
 
@@ -143,14 +144,7 @@ class EdgeCandidates {
   }
   void set(Pack& pack, std::size_t lane, const Vec3& start_m, const Vec3& along, const EdgePart& part) const {
     const Vec3 start = start_m - origin_m_;
-    for (int axis = 0; axis < 3; ++axis) {
-      pack.start[static_cast<std::size_t>(axis)][lane] = static_cast<float>(start[axis]);
-      pack.along[static_cast<std::size_t>(axis)][lane] = static_cast<float>(along[axis]);
-    }
-    pack.from[lane] = part.from;
-    pack.to[lane] = part.to;
-    pack.place[lane] = part.place;
-    pack.distance[lane] = part.distance;
+    set_part(pack.parts, lane, part, start, along);
     const auto largest = static_cast<float>(glm::length(start)) + std::abs(part.place) + part.distance +
                          std::abs(part.from) + std::abs(part.to);
     pack.error[lane] = rounding * (largest + 100.0F);

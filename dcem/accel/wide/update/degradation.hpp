@@ -10,7 +10,6 @@
 ///
 /// Both stay within a level (wide/levels.hpp): edits of one cannot mend the other. An object counts in the level above
 /// as one entry. What is not tracked costs nothing.
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>

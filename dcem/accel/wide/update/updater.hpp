@@ -2,7 +2,6 @@
 /// Keeps a wide tree fit while the scene moves: follows what moved, and mends what that has degraded, at the least
 /// price that will do.
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
