@@ -70,6 +70,9 @@ class AtomicFile {
   bool resting_ = false, closed_ = false;
 };
 
+/// Removes the files that this process is writing and that have no name yet: of a program that is about to end at once.
+void remove_unfinished_files() noexcept;
+
 class FolderClaim;
 
 /// Several files of one folder that appear together: none has its final name before `commit()`. One object at a time,

@@ -2,9 +2,11 @@
 /// Two maps of the same places, such as a computed and a measured one, or an exact and a sampled run.
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "dcem/io/heat_map.hpp"
 #include "dcem/io/line_chart.hpp"
 
 namespace dcem::io {
@@ -40,5 +42,9 @@ MapComparison compare_maps(const MapColumn& first, const MapColumn& second);
 /// Charts for `write_line_charts`: the distribution of |a − b|/|b|, whose last bin holds everything above 2, and that
 /// of a − b in dB. Precondition: at least one place has two values.
 std::vector<LineChart> comparison_charts(const MapComparison& comparison, const std::string& title);
+
+/// A picture of a − b in dB where the places are those of a regular grid, up to four million cells of which one in
+/// fifty is there; nothing otherwise, and where no place has two values.
+std::optional<HeatMap> difference_map(const MapColumn& first, const MapColumn& second, const std::string& title);
 
 }  // namespace dcem::io

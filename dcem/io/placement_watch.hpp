@@ -33,12 +33,18 @@ class PlacementWatch {
 
  private:
   using Shell = std::pair<BodyId, std::uint32_t>;
+  struct ShellFacts {
+    std::optional<MaterialId> material;  ///< of one of its facets
+    bool is_foliage = false;
+    bool transmits = false;  ///< somewhere
+  };
   enum class Problem { far_outside, under_ground, shut_in, shut_in_alone, drives_through };
   /// What is wrong with whom, and the rest of the sentence.
   struct Sighting {
     Problem problem;
     std::string subject, detail;
-    double extent_m = 0.0;  ///< the detail is that of the frame with the largest one
+    double extent_m = 0.0;      ///< the detail is that of the frame with the largest one
+    bool may_be_meant = false;  ///< where it is so in all frames
     std::vector<std::size_t> frames;
   };
 
@@ -47,6 +53,7 @@ class PlacementWatch {
     Problem problem;
     std::string subject, detail;
     double extent_m = 0.0;
+    bool may_be_meant = false;
   };
   using Notes = std::vector<Note>;
 
@@ -62,9 +69,12 @@ class PlacementWatch {
   void take(Note&& note);
   bool is_far(const Vec3& position_m, const std::string& subject, Notes& notes) const;
   bool is_under_ground(const Vec3& position_m) const;
-  bool ground_is_hit(const Vec3& from_m, const Vec3& direction, double farthest_m) const;
+  bool ground_is_hit(const Vec3& from_m, const Vec3& direction) const;
+  bool wall_is_near(const Vec3& from_m, const Vec3& aside) const;
+  bool ground_goes_on(const Vec3& position_m) const;
   /// Shells around a device that let nothing through, but those of what it rides on or is mounted on.
   std::vector<Shell> closed_shells(const DeviceState& of) const;
+  const ShellFacts& facts_of(const Shell& shell) const;
   bool lets_through(const Shell& shell) const;
   bool moves_along(BodyId one, BodyId other) const;
   double share_of_receivers_in(const Shell& shell, const std::set<Shell>& own) const;
@@ -77,10 +87,11 @@ class PlacementWatch {
   Aabb<double> box_;                            ///< of the scenery
   std::vector<std::optional<Vec3>> middles_m_;  ///< of all bodies, in their own coordinates
   const Frame* frame_ = nullptr;                ///< while it is looked at
-  std::vector<std::vector<Shell>> rooms_;       ///< by transmitter: shells that hold it or carry it …
-  std::set<Shell> all_rooms_;                   ///< … and those of all
-  mutable std::mutex mutex_;                    ///< of `transmits_`
-  mutable std::map<Shell, bool> transmits_;
+  std::size_t looks_ = 0;
+  std::vector<std::vector<Shell>> rooms_;  ///< by transmitter: shells that hold it or carry it …
+  std::set<Shell> all_rooms_;              ///< … and those of all
+  mutable std::mutex mutex_;               ///< of `shell_facts_`
+  mutable std::map<Shell, ShellFacts> shell_facts_;
   std::vector<Sighting> sightings_;  ///< in the order in which they were seen first
   std::map<std::pair<Problem, std::string>, std::size_t> numbers_;
 };

@@ -27,6 +27,9 @@ std::string progress_line(const std::string& label, std::uint64_t done, std::uin
 std::string progress_json(const std::string& stage, std::uint64_t done, std::optional<std::uint64_t> total,
                           double elapsed_s);
 
+/// `{"warning":"…"}`, for programs that read progress.
+std::string warning_json(const std::string& warning);
+
 /// `duration_s` as "m:ss" or "h:mm:ss", rounded to whole seconds.
 std::string format_duration(double duration_s);
 
@@ -46,7 +49,7 @@ class ProgressBar {
   void advance(std::uint64_t pieces = 1);
 
   /// Replaces the bar by a last line, "label: 100 of 100 in 0:12", and ends it; work that was cut short reads
-  /// "label: stopped at 40 of 100 after 0:05". Of JSON the last line says what is done. Later calls do nothing.
+  /// "label: stopped at 40 of 100 after 0:05". Of JSON the last line says what is done, once. Later calls do nothing.
   void finish();
 
   [[nodiscard]] std::uint64_t done() const { return done_.load(std::memory_order_relaxed); }
@@ -64,8 +67,9 @@ class ProgressBar {
   const Clock::time_point start_ = Clock::now();
   std::atomic<std::uint64_t> done_{0};
   std::atomic<std::int64_t> next_draw_ns_{0};  // nanoseconds since start_
-  std::mutex mutex_;                           // guards the stream and the two members below
+  std::mutex mutex_;                           // guards the stream and the members below
   std::size_t shown_width_ = 0;
+  std::optional<std::uint64_t> shown_done_;  // by the last JSON line
   bool finished_ = false;
 };
 

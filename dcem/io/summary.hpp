@@ -2,8 +2,10 @@
 /// What a run did and what it took: `summary.json`, and the table on the console at its end.
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -64,6 +66,7 @@ class RunSummary {
   void add_late_warning(std::string line) { late_warnings_.push_back(std::move(line)); }
   /// What is missing on links that were searched again.
   void set_sampling(SamplingReport report) { sampling_ = std::move(report); }
+  const SamplingReport& sampling() const { return sampling_; }
   /// Where the run is a part of one.
   void set_shard(ShardFacts shard) { shard_ = std::move(shard); }
   /// What the frames, and writing them, have taken.
@@ -79,6 +82,8 @@ class RunSummary {
   /// `scene`, `settings`, `warnings`, `sampling` (null where nothing is left to rays), `totals`, `frames`. Times differ
   /// from run to run; everything else is the same for the same input.
   [[nodiscard]] std::string json() const;
+  /// The same in parts, a frame at a time.
+  void write_json(const std::function<void(std::string_view)>& write) const;
 
   /// What is known only after the last frame; one line each.
   [[nodiscard]] std::vector<std::string> late_warnings() const;
@@ -105,6 +110,7 @@ class RunSummary {
 
 /// What the summary of a former result says of it.
 struct FormerResult {
+  std::string scenario;  ///< its name
   std::string identity;
   std::vector<std::string> files;  ///< names that were written; empty where it does not say
   bool is_interrupted = false;

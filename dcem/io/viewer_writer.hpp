@@ -28,6 +28,7 @@ struct ViewerFacts {
   double frequency_hz = 0.0;
   std::size_t first_frame = 0;           ///< number of the first frame of the run
   std::size_t map_values_per_frame = 0;  ///< of all maps over grids; 0: none
+  std::vector<std::string> notes{};      ///< on the results, a line each
 };
 
 class ViewerFrames;
@@ -47,9 +48,9 @@ class ViewerWriter {
   /// `has_noise` says what its ratio is: SINR, or SIR.
   void add(std::span<const RadioMap> maps, const CombinedMap& combined, bool has_noise);
 
-  /// After the last frame: writes the file. Returns what was left out, a line each, as the page has it.
-  /// Throws `OutputError`.
-  std::vector<std::string> finish();
+  /// After the last frame: writes the file, with `notes` on the results among what the page says. Returns what was left
+  /// out, a line each, as the page has it. Throws `OutputError`.
+  std::vector<std::string> finish(std::vector<std::string> notes = {});
 
  private:
   AtomicFile& file_;

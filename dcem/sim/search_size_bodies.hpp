@@ -212,7 +212,8 @@ DCEM_INLINE std::string rough_duration(double duration_s) {
   for (const Unit& unit : units) {
     if (duration_s >= 2.0 * unit.length_s) return rough_number(duration_s / unit.length_s) + " " + unit.name;
   }
-  return rough_number(duration_s) + " seconds";
+  const std::string seconds = rough_number(duration_s);
+  return seconds + (seconds == "1" ? " second" : " seconds");
 }
 
 }  // namespace dcem

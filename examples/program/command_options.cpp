@@ -184,17 +184,17 @@ std::vector<std::string> words_of(const std::string& list) {
 
 namespace {
 
-/// Formats of a picture, each once. Throws UsageError.
-std::vector<std::string> picture_words(const std::string& list) {
-  std::vector<std::string> words = words_of(list);
+/// Throws UsageError for a word that is none of the known ones, or that is there twice.
+void require_outputs(const std::string& list, const std::vector<std::string>& known, const std::string& command) {
+  const std::vector<std::string> words = words_of(list);
   for (const std::string& word : words) {
-    if (!io::picture_format(word)) {
-      throw UsageError("--output: '" + word + "' is no format of a picture", "some of " + comma_list(picture_formats));
+    if (std::ranges::find(known, word) == known.end()) {
+      throw UsageError("--output: '" + word + "' is no file of 'dcem " + command + "'", "some of " + comma_list(known));
+    }
+    if (std::ranges::count(words, word) > 1) {
+      throw UsageError("--output " + list + ": '" + word + "' is there twice", "each word once");
     }
   }
-  std::sort(words.begin(), words.end());
-  words.erase(std::unique(words.begin(), words.end()), words.end());
-  return words;
 }
 
 }  // namespace
@@ -204,10 +204,7 @@ void add_run_options(CLI::App& command, ScenarioOptions& options) {
   add_cache_option(command, options);
   add_folder_option(command, options.folder, "out/<scenario name>");
   const auto choose = [&](const std::string& list) {
-    for (const std::string& word : words_of(list)) {
-      if (word == "map")
-        throw UsageError("--output: map has no effect on 'dcem run'", "some of " + comma_list(run_outputs));
-    }
+    require_outputs(list, run_outputs, "run");
     options.overrides.output = list;
   };
   command
@@ -239,7 +236,13 @@ void add_merge_options(CLI::App& command, MergeOptions& options) {
 void add_map_options(CLI::App& command, ScenarioOptions& options) {
   add_common_options(command, options);
   add_folder_option(command, options.folder, "out/<scenario name>");
-  command.add_option("--output", options.map_output, "Files of each map, in place of those that the scenario asks for")
+  const auto choose = [&](const std::string& list) {
+    require_outputs(list, map_outputs, "map");
+    options.map_output = list;
+  };
+  command
+      .add_option_function<std::string>("--output", choose,
+                                        "Files of each map, in place of those that the scenario asks for")
       ->type_name(list_type(map_outputs));
 }
 
@@ -267,8 +270,12 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
   add_folder_option(command, options.folder, "out/compare");
   command
       .add_option_function<std::string>(
-          "--output", [&](const std::string& list) { options.formats = picture_words(list); },
-          "Formats of the chart (default: svg)")
+          "--output",
+          [&](const std::string& list) {
+            require_outputs(list, picture_formats, "compare");
+            options.formats = words_of(list);
+          },
+          "Formats of the pictures (default: svg)")
       ->type_name(list_type(picture_formats));
   command.add_option("--column", options.column, "The power to compare (default: power_incoherent_dbm)")
       ->type_name("NAME");

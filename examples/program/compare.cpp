@@ -32,6 +32,14 @@ void print(const io::MapComparison& comparison) {
   std::cout << table.str();
 }
 
+/// Where the places are those of a grid: the differences as a map.
+void draw_map(const std::optional<io::HeatMap>& map, const CompareOptions& options, io::OutputFolder& folder) {
+  if (!map) return;
+  for (const std::string& word : options.formats) {
+    io::write_heat_map(*map, folder.open("difference." + word), io::picture_format(word).value());
+  }
+}
+
 /// The chart in each format. A build that draws none says so, and the table alone is what there is.
 void draw(const io::MapComparison& comparison, const std::string& title, const CompareOptions& options,
           io::OutputFolder& folder) {
@@ -66,7 +74,9 @@ void compare_maps(const CompareOptions& options) {
                          "no place has a value here and in " + options.first + "; expected maps of the same places");
   }
   io::OutputFolder folder(options.folder.empty() ? "out/compare" : options.folder);
-  draw(comparison, title_of(options.first, options.second), options, folder);
+  const std::string title = title_of(options.first, options.second);
+  draw(comparison, title, options, folder);
+  if (io::can_draw()) draw_map(io::difference_map(first, second, title), options, folder);
   folder.commit();
   print(comparison);
 }

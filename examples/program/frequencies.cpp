@@ -7,6 +7,8 @@
 #include <string>
 
 #include "dcem/io/run_journal.hpp"
+#include "job.hpp"
+#include "run_on_ranks.hpp"
 
 namespace dcem::program {
 namespace {
@@ -14,7 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 
 bool has_begun(const ScenarioOptions& run) {
-  return fs::exists(fs::path(run.folder) / io::journal_name) || fs::exists(fs::path(run.folder) / "summary.json");
+  const auto is_there = [&](const fs::path& name) { return fs::exists(fs::path(run.folder) / name); };
+  return is_there(io::journal_name) || is_there("summary.json") || is_there(parts_folder);
+}
+
+/// Where nobody says where results go.
+fs::path folder_of(const ScenarioOptions& options) {
+  const fs::path folder = fs::path("out") / fs::path(options.scenario).stem();
+  return options.shard ? fs::path(folder) += shard_ending(*options.shard) : folder;
 }
 
 }  // namespace
@@ -26,8 +35,7 @@ std::string frequency_text(double frequency_hz) {
 
 std::vector<ScenarioOptions> by_frequency(const ScenarioOptions& options) {
   if (options.frequencies_hz.empty()) return {options};
-  const fs::path folder =
-      options.folder.empty() ? fs::path("out") / fs::path(options.scenario).stem() : fs::path(options.folder);
+  const fs::path folder = options.folder.empty() ? folder_of(options) : fs::path(options.folder);
   std::vector<ScenarioOptions> runs(options.frequencies_hz.size(), options);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     runs[i].frequencies_hz.clear();
@@ -37,11 +45,6 @@ std::vector<ScenarioOptions> by_frequency(const ScenarioOptions& options) {
   if (std::ranges::any_of(runs, has_begun))
     for (ScenarioOptions& run : runs) run.resume = run.resume && has_begun(run);
   return runs;
-}
-
-void require_one_frequency(const ScenarioOptions& options, const char* what) {
-  if (options.frequencies_hz.empty()) return;
-  throw UsageError("--frequency: " + std::string(what) + " has one frequency", "one, and such a run for each");
 }
 
 }  // namespace dcem::program

@@ -14,7 +14,4 @@ std::string frequency_text(double frequency_hz);
 /// folder of its own, named "5.89GHz". With --resume a run that has not begun begins, where another one has.
 std::vector<ScenarioOptions> by_frequency(const ScenarioOptions& options);
 
-/// Throws UsageError where `what` ("a part of a run") is to be of several frequencies.
-void require_one_frequency(const ScenarioOptions& options, const char* what);
-
 }  // namespace dcem::program

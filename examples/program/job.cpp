@@ -62,6 +62,10 @@ std::string part_name(const ReceiverPart& part) {
   return std::to_string(part.part) + "-of-" + std::to_string(part.of);
 }
 
+std::string shard_ending(const ReceiverPart& part) {
+  return ".shard-" + part_name(part);
+}
+
 std::string points_text(const std::string& kind, const std::string& id, std::size_t points) {
   return kind + " '" + id + "': " + std::to_string(points) + " points";
 }
@@ -73,12 +77,13 @@ Job prepare_job(const ScenarioOptions& options) {
   const std::size_t vehicles = job.scenario.scene.slot_count();
   require_memory(options, std::to_string(vehicles) + " vehicles at a time", vehicles, vehicle_bytes);
   job.frames = parse_frames(options.frames, job.scenario.time.frames);
+  require_memory(options, std::to_string(job.frames.count()) + " frames", job.frames.count(), sizeof(io::FrameFigures));
   io::require_attached_devices(job.scenario, job.frames.first, job.frames.last);
   if (options.threads) job.scenario.settings.threads = *options.threads;
   job.scenario.settings.links.receivers = options.shard;
   job.scenario.settings.most_remembered_receivers = most_remembered_receivers(options, job.frames.count());
   if (job.folder.empty()) job.folder = std::filesystem::path("out") / job.scenario.name;
-  if (options.folder.empty() && options.shard) job.folder += ".shard-" + part_name(*options.shard);
+  if (options.folder.empty() && options.shard) job.folder += shard_ending(*options.shard);
   return job;
 }
 
@@ -162,7 +167,10 @@ void warn_of_slow_search(Job& job, const Simulator& simulator, const Device& rec
 
 void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options) {
   if (options.quiet) return;
-  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
+  const bool is_json = options.progress == io::ProgressMode::json;
+  for (const std::string& warning : warnings) {
+    std::cerr << (is_json ? io::warning_json(warning) : "warning: " + warning) + '\n';
+  }
 }
 
 std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
@@ -173,9 +181,9 @@ std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Jo
   return std::make_unique<io::ViewerWriter>(folder, simulator.scene(), facts, job.scenario.output.viewer);
 }
 
-void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary) {
+void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary, const std::vector<std::string>& notes) {
   if (viewer == nullptr) return;
-  for (const std::string& notice : viewer->finish()) summary.add_late_warning("viewer.html: " + notice);
+  for (const std::string& notice : viewer->finish(notes)) summary.add_late_warning("viewer.html: " + notice);
 }
 
 io::RunIdentity run_identity(const Job& job, const ScenarioOptions& options) {
@@ -212,11 +220,17 @@ void require_effect(const ScenarioOptions& options, const Simulator& simulator) 
   throw UsageError("--seed" + why, "--discovery sampled as well, or no --seed");
 }
 
-ResultFolder::ResultFolder(std::filesystem::path folder, const char* summary, const char* other_summary)
+ResultFolder::ResultFolder(std::filesystem::path folder, const std::string& scenario, const char* summary,
+                           const char* other_summary)
     : files_(std::move(folder)),
       summary_(summary),
       former_(io::read_former_result(files_.path() / summary)),
-      other_(io::read_former_result(files_.path() / other_summary)) {}
+      other_(io::read_former_result(files_.path() / other_summary)) {
+  if (!other_ || other_->scenario.empty() || other_->scenario == scenario) return;
+  throw io::InputError((files_.path() / other_summary).string(), "belongs to the results of scenario '" +
+                                                                     other_->scenario + "', not of '" + scenario +
+                                                                     "'; expected another folder (-o)");
+}
 
 void ResultFolder::require_free(const std::string& name) const {
   if (!other_ || std::find(other_->files.begin(), other_->files.end(), name) == other_->files.end()) return;
@@ -227,7 +241,7 @@ void ResultFolder::require_free(const std::string& name) const {
 void ResultFolder::commit(io::RunSummary& summary, const std::string& identity) {
   io::AtomicFile& file = files_.open(summary_);
   summary.set_files(identity, files_.names());
-  file.write(summary.json());
+  summary.write_json([&](std::string_view part) { file.write(part); });
   std::vector<std::string> former = former_ ? former_->files : std::vector<std::string>{};
   if (other_) {
     const auto is_others = [&](const std::string& name) {

@@ -48,7 +48,8 @@ std::size_t links_at_most(const Simulator& simulator);
 /// that are searched for.
 void warn_of_slow_search(Job& job, const Simulator& simulator, const Device& receiver, std::size_t links);
 
-/// One line per warning on the error stream, unless the user wants quiet. Called when nothing in the input can be wrong
+/// One line per warning on the error stream, an object where progress is told in JSON; nothing where the user wants
+/// quiet. Called when nothing in the input can be wrong
 /// any more, because an error is to be the only line.
 void print_warnings(const std::vector<std::string>& warnings, const ScenarioOptions& options);
 
@@ -56,8 +57,8 @@ void print_warnings(const std::vector<std::string>& warnings, const ScenarioOpti
 std::unique_ptr<io::ViewerWriter> make_viewer(io::OutputFolder& folder, const Job& job, const Simulator& simulator,
                                               std::size_t map_values_per_frame = 0);
 
-/// Writes the page; what it leaves out is a warning of the summary.
-void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary);
+/// Writes the page, with these notes; what it leaves out is a warning of the summary.
+void finish_viewer(io::ViewerWriter* viewer, io::RunSummary& summary, const std::vector<std::string>& notes);
 
 /// How progress is shown, which is not at all when the user wants quiet.
 io::ProgressMode progress_mode(const ScenarioOptions& options);
@@ -67,6 +68,9 @@ io::RunIdentity run_identity(const Job& job, const ScenarioOptions& options);
 
 /// As part of the name of a folder: "0-of-4".
 std::string part_name(const ReceiverPart& part);
+
+/// What ends the name of the folder of a part, where nobody says where it is: ".shard-0-of-4".
+std::string shard_ending(const ReceiverPart& part);
 
 /// That of a part of the run.
 io::RunIdentity part_identity(io::RunIdentity whole, const ReceiverPart& part);
@@ -78,7 +82,9 @@ void require_effect(const ScenarioOptions& options, const Simulator& simulator);
 class ResultFolder {
  public:
   /// `summary` is the name of the command's own summary, `other_summary` that of the command that may share the folder.
-  ResultFolder(std::filesystem::path folder, const char* summary, const char* other_summary);
+  /// Throws InputError where that one has the results of another scenario there.
+  ResultFolder(std::filesystem::path folder, const std::string& scenario, const char* summary,
+               const char* other_summary);
 
   io::OutputFolder& files() { return files_; }
   const std::optional<io::FormerResult>& former() const { return former_; }

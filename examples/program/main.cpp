@@ -11,6 +11,7 @@
 #include "dcem/io/optional_libraries.hpp"
 #include "dcem/io/picture_format.hpp"
 #include "failure.hpp"
+#include "help_text.hpp"
 #include "options.hpp"
 #include "ranks.hpp"
 #include "run_on_ranks.hpp"
@@ -103,6 +104,7 @@ void check_job(int argument_count, char** arguments) {
 int run(int argument_count, char** arguments) {
   end_on_signals();
   CLI::App app("Electromagnetic ray tracing in scenes that move", "dcem");
+  app.formatter(std::make_shared<HelpText>());
   Options options;
   add_commands(app, options);
   try {

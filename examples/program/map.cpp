@@ -223,7 +223,7 @@ std::size_t map_frames(const Job& job, const ScenarioOptions& options, const Map
   return job.frames.last;
 }
 
-/// Each once, in the order of the enumeration.
+/// In the order of the enumeration.
 void add_format(io::PictureFormat format, std::vector<io::PictureFormat>& formats) {
   if (!io::can_draw() && format != io::PictureFormat::png) {
     throw UsageError("--output " + std::string(io::word_of(format)) + ": " + std::string(io::no_drawing),
@@ -231,10 +231,9 @@ void add_format(io::PictureFormat format, std::vector<io::PictureFormat>& format
   }
   formats.push_back(format);
   std::sort(formats.begin(), formats.end());
-  formats.erase(std::unique(formats.begin(), formats.end()), formats.end());
 }
 
-/// `dcem map --output csv,png,html`: which files of each map are wanted, and whether the page is.
+/// `dcem map --output csv,png,html`: which files of each map are wanted, and whether the page is. All words are known.
 void choose_outputs(const std::string& list, io::OutputSettings& output) {
   output.map = {false, false, false, std::vector<io::PictureFormat>{}};
   output.html = false;
@@ -247,11 +246,8 @@ void choose_outputs(const std::string& list, io::OutputSettings& output) {
     const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == word; });
     if (kind != kinds.end()) {
       *kind->second = true;
-    } else if (const auto format = io::picture_format(word)) {
-      add_format(*format, *output.map.pictures);
     } else {
-      throw UsageError("--output: '" + word + "' is no file of a map",
-                       "some of csv, png, npz, asc, svg, pdf, kml and html");
+      add_format(io::picture_format(word).value(), *output.map.pictures);
     }
   }
   if (output.html && !io::viewer_is_built_in()) {
@@ -305,7 +301,7 @@ void map_one(const ScenarioOptions& options) {
   if (options.map_output) require_files(orders, job.scenario.output);
   Simulator simulator = make_simulator(job, options);
   require_effect(options, simulator);
-  ResultFolder folder(job.folder, "map_summary.json", "summary.json");
+  ResultFolder folder(job.folder, job.scenario.name, "map_summary.json", "summary.json");
   if (job.scenario.output.html) folder.require_free("viewer.html");
   warn_of_plain_pictures(job);
   if (const auto hint = io::slow_map_hint(simulator.settings().propagation, simulator.plan(),
@@ -331,7 +327,7 @@ void map_one(const ScenarioOptions& options) {
   if (is_cut) summary.set_interruption({signal_name(stop.signal()), next_frame, job.frames.last});
   {
     const io::ProgressStage stage("writing results", progress_mode(options));
-    finish_viewer(viewer.get(), summary);
+    finish_viewer(viewer.get(), summary, io::sampling_notes(summary.sampling()));
     summary.set_work_times(work_times() - begun);
     folder.commit(summary, run_identity(job, options).text());
   }

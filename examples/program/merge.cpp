@@ -1,9 +1,11 @@
 /// `dcem merge`: the parts of a run as one, with the bytes that the run has as a whole.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <utility>
 #include <vector>
 
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/frames_ahead.hpp"
 #include "dcem/io/input_error.hpp"
@@ -15,6 +17,8 @@
 
 namespace dcem::program {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The command line that the whole run would have had.
 ScenarioOptions whole_run(const MergeOptions& options, const io::ShardFacts& facts) {
@@ -80,7 +84,7 @@ Merger::Merger(Job& job, const ScenarioOptions& options, std::size_t devices, io
       devices_(devices),
       identity_(std::move(identity)),
       simulator_(make_simulator(job.scenario.scene, job.scenario.settings, options)),  // the job keeps its scene
-      results_(job.folder, "summary.json", "map_summary.json") {
+      results_(job.folder, job.scenario.name, "summary.json", "map_summary.json") {
   require_effect(options, simulator_);
   prepare_results(job, simulator_, results_);
   print_warnings(job.scenario.warnings, options);
@@ -103,15 +107,44 @@ void Merger::merge(std::span<const std::filesystem::path> folders) {
   if (!options_.quiet) std::cout << summary.table(job_.folder) << std::flush;
 }
 
-void merge_shards(const MergeOptions& options) {
-  const std::vector<std::filesystem::path> folders(options.shards.begin(), options.shards.end());
+namespace {
+
+/// Where parts are of several frequencies: the folders that each of them has for one of these; otherwise the folder
+/// itself, which has no name then.
+std::vector<fs::path> frequencies_of(const fs::path& shard) {
+  std::error_code ignored;
+  if (fs::exists(shard / "summary.json", ignored)) return {{}};
+  std::vector<fs::path> names;
+  for (const auto& entry : fs::directory_iterator(shard, ignored)) {
+    if (fs::exists(entry.path() / "summary.json", ignored)) names.push_back(entry.path().filename());
+  }
+  std::sort(names.begin(), names.end());
+  return names.empty() ? std::vector<fs::path>{{}} : names;
+}
+
+void merge_one(const MergeOptions& options, const fs::path& frequency) {
+  std::vector<fs::path> folders(options.shards.begin(), options.shards.end());
+  if (!frequency.empty()) {
+    for (fs::path& folder : folders) folder /= frequency;
+  }
   const std::vector<io::ShardFolder> shards = io::read_shards(folders);
-  const ScenarioOptions whole = whole_run(options, shards.front().facts);
+  ScenarioOptions whole = whole_run(options, shards.front().facts);
+  if (!frequency.empty()) {
+    const fs::path folder =
+        options.folder.empty() ? fs::path("out") / fs::path(whole.scenario).stem() : fs::path(whole.folder);
+    whole.folder = (folder / frequency).string();
+  }
   Job job = prepare_job(whole);
   require_folder_of_its_own(job, shards);
   const std::size_t devices = job.scenario.scene.receivers().size();
   expand_grids(job.scenario, whole);
   Merger(job, whole, devices, run_identity(job, whole)).merge(folders);
+}
+
+}  // namespace
+
+void merge_shards(const MergeOptions& options) {
+  for (const fs::path& frequency : frequencies_of(options.shards.front())) merge_one(options, frequency);
 }
 
 }  // namespace dcem::program

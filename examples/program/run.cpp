@@ -130,7 +130,7 @@ void run_alone(const ScenarioOptions& options) {
   Simulator simulator = make_simulator(job, options);
   require_effect(options, simulator);
   const io::RunIdentity identity = run_identity(job, options);
-  ResultFolder folder(job.folder, "summary.json", "map_summary.json");
+  ResultFolder folder(job.folder, job.scenario.name, "summary.json", "map_summary.json");
   if (options.resume && holds_result(folder, identity)) {
     std::cerr << job.folder.string() << ": the run is complete; nothing is left to resume\n";
     return;

@@ -66,7 +66,6 @@ class JobOnRanks {
 
  private:
   void prepare() {
-    require_one_frequency(options_, "a run of several processes");
     job_ = prepare_job(options_);
     devices_ = job_.scenario.scene.receivers().size();
     expand_grids(job_.scenario, options_);
@@ -129,7 +128,9 @@ class JobOnRanks {
 
 void run_on_ranks(const ScenarioOptions& options) {
   const Ranks ranks;
-  ranks.say_together([&] { JobOnRanks(options, ranks).run(); });
+  ranks.say_together([&] {
+    for (const ScenarioOptions& one : by_frequency(options)) JobOnRanks(one, ranks).run();
+  });
 }
 
 void refuse_on_ranks(const std::string& command) {

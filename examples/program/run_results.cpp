@@ -105,7 +105,7 @@ io::RunSummary& RunResults::finish(std::size_t frames) {
   for (const std::string& line : watch_.warnings()) summary_.add_late_warning(line);
   const std::vector<std::string> notes = io::sampling_notes(sampling_);
   writer_.finish(notes.empty() ? std::string() : notes.front());
-  finish_viewer(viewer_.get(), summary_);
+  finish_viewer(viewer_.get(), summary_, notes);
   summary_.set_work_times(work_times() - begun_);
   return summary_;
 }

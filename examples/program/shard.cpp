@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/frames_ahead.hpp"
 #include "dcem/io/link_lines.hpp"
@@ -115,7 +116,7 @@ io::RunJournal begin_journal(const std::filesystem::path& folder, const io::RunI
 
 void solve_part(const PartOrder& order, Simulator& simulator, const StopRequest& stop) {
   const io::RunIdentity identity = part_identity(order.whole, order.part);
-  ResultFolder results(order.folder, "summary.json", "map_summary.json");
+  ResultFolder results(order.folder, order.job.scenario.name, "summary.json", "map_summary.json");
   if (order.options.resume && is_there(order, results, identity)) {
     if (!order.options.quiet)
       std::cerr << order.folder.string() << ": the part is complete; nothing is left to resume\n";
@@ -139,8 +140,10 @@ void solve_part(const PartOrder& order, Simulator& simulator, const StopRequest&
   if (!order.options.quiet) std::cout << run.summary().table(order.folder) << std::flush;
 }
 
-void run_shard(const ScenarioOptions& options) {
-  require_one_frequency(options, "a part of a run");
+namespace {
+
+/// Of one frequency.
+void run_one(const ScenarioOptions& options) {
   Job job = prepare_job(options);
   expand_grids(job.scenario, options);
   Simulator simulator = make_simulator(job, options);
@@ -152,6 +155,12 @@ void run_shard(const ScenarioOptions& options) {
   print_warnings(job.scenario.warnings, options);
   const StopRequest stop;
   solve_part({job, options, job.folder, run_identity(job, options), *options.shard}, simulator, stop);
+}
+
+}  // namespace
+
+void run_shard(const ScenarioOptions& options) {
+  for (const ScenarioOptions& one : by_frequency(options)) run_one(one);
 }
 
 }  // namespace dcem::program

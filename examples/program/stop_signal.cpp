@@ -1,10 +1,16 @@
 #include "stop_signal.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "dcem/io/atomic_file.hpp"
 
 namespace dcem::program {
 namespace {
@@ -15,18 +21,46 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_alw
               "a signal handler may touch nothing else");
 
 bool is_watched = false;  ///< somebody sits at a terminal; known before signals come
+int to_ender = -1;        ///< what a thread of its own reads, which ends the program; known before signals come
 
 extern "C" void on_stop_signal(int signal) {
-  if (!is_awaited || received != 0) ::_exit(128 + signal);
+  if (!is_awaited || received != 0) {
+    const auto number = static_cast<char>(signal);
+    if (to_ender < 0 || ::write(to_ender, &number, 1) != 1) ::_exit(128 + signal);
+    return;
+  }
   received = signal;
   constexpr std::string_view word = "\nending when what is begun is done; a second signal ends at once\n";
   if (is_watched && ::write(STDERR_FILENO, word.data(), word.size()) < 0) return;  // then nobody hears of it
+}
+
+/// Removes what is half written, which a signal handler must not do, and ends the program.
+void end_when_told(int from_handler) {
+  char number = SIGTERM;
+  while (::read(from_handler, &number, 1) < 0 && errno == EINTR) {
+  }
+  io::remove_unfinished_files();
+  ::_exit(128 + number);
+}
+
+/// Without the thread, where the system gives none, hidden files stay until the next run in their folder.
+void begin_to_listen() {
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) return;
+  try {
+    std::thread(end_when_told, ends[0]).detach();
+    to_ender = ends[1];
+  } catch (const std::system_error&) {
+    ::close(ends[0]);
+    ::close(ends[1]);
+  }
 }
 
 }  // namespace
 
 void end_on_signals() {
   is_watched = ::isatty(STDERR_FILENO) == 1;
+  begin_to_listen();
   for (const int signal : {SIGINT, SIGTERM}) {
     struct sigaction action {};
     if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;

@@ -15,8 +15,8 @@ class Interrupted : public std::runtime_error {
   int signal_;
 };
 
-/// From now on either signal ends the program at once, with exit code 128 + number; unless it was ignored from the
-/// start, as for programs in the background of a script.
+/// From now on either signal ends the program at once, with exit code 128 + number, and removes what is half written;
+/// unless it was ignored from the start, as for programs in the background of a script.
 void end_on_signals();
 
 /// While an object lives, the first signal is a request that the work looks for; the second ends the program at once.

@@ -115,7 +115,8 @@ TEST_CASE("an option that would change nothing is refused, not ignored") {
   check_refused(folder, "verify street.json -o out", "-o");
   check_refused(folder, "verify street.json --output links", "--output");
   for (const char* key : {"links", "map", "pdp", ""}) {
-    check_refused(folder, "map street.json --output 'csv," + std::string(key) + "'", "is no file of a map");
+    check_refused(folder, "map street.json --output 'csv," + std::string(key) + "'",
+                  "is no file of 'dcem map'; expected some of csv, png, npz");
   }
   write_scenario(folder, R"({"id":"probe","positions_m":[[1,2,3]]})");
   check_refused(folder, "map street.json --output asc", "--output has no effect");
@@ -134,7 +135,14 @@ TEST_CASE("an option that would change nothing is refused, not ignored") {
        {"--touching snap", "--ground-margin-m 4", "--snap-tolerance-m 1", "--smallest-house-sqm 4"}) {
     check_refused(folder, "import sionna street.json -o made " + std::string(option), "has no effect on 'sionna'");
   }
-  check_refused(folder, "run street.json --output links,map", "map has no effect on 'dcem run'");
+  check_refused(folder, "run street.json --output links,map",
+                "--output: 'map' is no file of 'dcem run'; expected some of paths, links");
+  check_refused(folder, "run street.json --output foo",
+                "'foo' is no file of 'dcem run'; expected some of paths, links");
+  check_refused(folder, "run street.json --output paths,links,paths",
+                "'paths' is there twice; expected each word once");
+  check_refused(folder, "map street.json --output png,png", "'png' is there twice; expected each word once");
+  check_refused(folder, "run street.json --fast --twice", "not expected: --fast --twice");
   check_refused(folder, "completion tcsh", "tcsh");
   // Where rays are shot they have an effect.
   const Outcome sampled =
@@ -165,6 +173,44 @@ TEST_CASE("what is foreseen to take more than --memory-limit is refused, with bo
   }
   check_refused(folder, "run street.json --output cfr --memory-limit 1M",
                 "the responses of this run need 1638 kB; expected at most 1049 kB, the limit of memory");
+}
+
+TEST_CASE("the lines of --help fit a terminal, and name every option") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  for (const char* command : {"--help", "run --help", "map --help", "import --help", "--help-all"}) {
+    std::istringstream lines(dcem_program(folder, command).output);
+    for (std::string line; std::getline(lines, line);) {
+      CAPTURE(line);
+      // Words of an option that are one word for the shell are not broken.
+      CHECK((line.size() <= 105 || line.find(' ', 105) == std::string::npos));
+    }
+  }
+}
+
+TEST_CASE("a folder holds results of one scenario, whichever command writes there") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, R"({"id":"ue","positions_m":[[1,2,3]]})");
+  std::filesystem::copy_file(folder / "street.json", folder / "other.json");
+  REQUIRE(dcem_program(folder, "run street.json -o out --quiet").exit_code == 0);
+  check_refused(
+      folder, "map other.json -o out",
+      "out/summary.json: belongs to the results of scenario 'street', not of 'other'; expected another folder (-o)");
+  REQUIRE(dcem_program(folder, "map street.json -o out --quiet").exit_code == 0);
+  check_refused(folder, "run other.json -o out", "out/map_summary.json: belongs to the results of scenario 'street'");
+}
+
+TEST_CASE("a run of more frames than memory has room for is refused before it begins") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, R"({"id":"ue","position_m":[1,2,3]})");
+  std::string text = file_bytes(folder / "street.json");
+  const std::size_t begin = text.find("\"frames\"");
+  REQUIRE(begin != std::string::npos);
+  text.replace(begin, text.find_first_of(",}", begin) - begin, "\"frames\": 1000000000");
+  write(folder / "street.json", text);
+  check_refused(folder, "run street.json", "1000000000 frames need ");
 }
 
 TEST_CASE("--output of a map picks its files") {

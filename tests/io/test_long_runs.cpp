@@ -238,6 +238,7 @@ TEST_CASE("a second Ctrl-C ends at once, and the next run clears away what is le
   CHECK((code == 130 || code == 143));
   CHECK_FALSE(std::filesystem::exists(folder / "out/summary.json"));
   CHECK_FALSE(std::filesystem::exists(folder / "out/links.csv"));
+  for (const std::string& name : names_in(folder / "out")) CHECK(name.find(".part") == std::string::npos);
   write_scenario(folder, moving_receiver);
   REQUIRE(dcem_program(folder, "run street.json -o out").exit_code == 0);
   CHECK(names_in(folder / "out") == std::vector<std::string>{"links.csv", "paths.jsonl", "pdp.csv", "summary.json"});

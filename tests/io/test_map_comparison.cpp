@@ -51,6 +51,39 @@ TEST_CASE("maps are compared where both have a value, on linear power and in dB"
   CHECK(mean(comparison.relative) == doctest::Approx(0.5));
 }
 
+TEST_CASE("differences over a grid are a map of its cells, whatever the order of its places") {
+  const test::TemporaryFolder folder;
+  const auto first = read(folder, "x_m,y_m,p_dbm\n0,10,-60\n0.333333,10,-61\n0.666667,10,-62\n0,12,-63\n1,12,-65\n");
+  const auto second = read(folder, "x_m,y_m,p_dbm\n1,12,-66\n0,12,-63.5\n0.666667,10,\n0.333333,10,-60\n0,10,-60\n");
+  const auto map = io::difference_map(first, second, "two maps");
+  REQUIRE(map.has_value());
+  CHECK(map->columns == 4);
+  CHECK(map->rows == 2);
+  CHECK(map->origin_y_m == 10.0);
+  CHECK(map->spacing_x_m == doctest::Approx(1.0 / 3.0).epsilon(1e-5));
+  CHECK(map->spacing_y_m == 2.0);
+  const std::vector<double> expected{0.0, -1.0, 1e9, 1e9, 0.5, 1e9, 1e9, 1.0};
+  for (std::size_t cell = 0; cell < expected.size(); ++cell) {
+    CAPTURE(cell);
+    if (expected[cell] == 1e9)
+      CHECK(std::isnan(map->values[cell]));
+    else
+      CHECK(map->values[cell] == expected[cell]);
+  }
+  CHECK(map->range->low == -map->range->high);
+  CHECK(map->range->high == 1.0);
+}
+
+TEST_CASE("differences at scattered places, or along one line, are no map") {
+  const test::TemporaryFolder folder;
+  const auto scattered = read(folder, "x_m,y_m,p_dbm\n0,0,-60\n1.37,5.1,-61\n9.2,2.3,-62\n4.4,8.8,-62\n");
+  CHECK_FALSE(io::difference_map(scattered, scattered, "").has_value());
+  const auto line = read(folder, "x_m,y_m,p_dbm\n0,0,-60\n1,0,-61\n2,0,-62\n");
+  CHECK_FALSE(io::difference_map(line, line, "").has_value());
+  const auto far = read(folder, "x_m,y_m,p_dbm\n0,0,-60\n1,1,-61\n900000,900000,-62\n");
+  CHECK_FALSE(io::difference_map(far, far, "").has_value());
+}
+
 TEST_CASE("a field of two quotes is an empty one, and a quote within quotes is doubled") {
   const test::TemporaryFolder folder;
   const auto map = read(folder, "x_m,y_m,p_dbm,kinds\n0,0,\"\",\"a \"\"b\"\", c\"\n\"1\",0,\"-70\",\"\"\n");

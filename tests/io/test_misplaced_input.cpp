@@ -151,6 +151,37 @@ TEST_CASE("devices below everything, and under the ground, are named") {
   CHECK(contains(warning_of(wanted), "transmitter 'bs' has a broad surface above and nothing below and beside it"));
 }
 
+TEST_CASE("under a slope is under the ground; over it, in a cutting, and in a house on it is not") {
+  Wanted wanted;
+  ObjText slope;  // rises by one metre in five
+  slope.add_quad({Vec3(-100, -100, -20), Vec3(100, -100, 20), Vec3(100, 100, 20), Vec3(-100, 100, -20)});
+  slope.add_quad({Vec3(-300, -100, -60), Vec3(-100, -100, -20), Vec3(-100, 100, -20), Vec3(-300, 100, -60)});
+  slope.add_box(Vec3(-80, 40, -16), Vec3(-60, 80, 0));  // down the slope
+  wanted.obj = slope.text();
+  wanted.transmitter_m = "[0, 0, 8]";
+  for (const double depth_m : {0.5, 2.0, 15.0}) {
+    CAPTURE(depth_m);
+    wanted.receiver_m = "[10, 5, " + std::to_string(2.0 - depth_m) + "]";
+    CHECK(contains(warning_of(wanted), "receiver 'ue' has a broad surface above and nothing below"));
+  }
+  wanted.receiver_m = "[10, 5, 3.5]";
+  CHECK(warnings_of(wanted).empty());
+  wanted.receiver_m = "[-70, 60, -8]";  // in the house, which stands on the slope and has a floor of its own
+  wanted.material = R"({"model": "constant", "reflection": 0.7, "penetration_loss_db": 10})";
+  CHECK(warnings_of(wanted).empty());
+}
+
+TEST_CASE("a vehicle under the ground is named, also one that stands") {
+  Wanted wanted;
+  wanted.objects = R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall", "motion": {"position_m": [1, 3, -2]}})";
+  CHECK(contains(warning_of(wanted), "object 'car1' has a broad surface above and nothing below and beside it"));
+  wanted.objects = R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall", "motion": {"position_m": [1, 3, -9]}})";
+  CHECK(contains(warning_of(wanted), "object 'car1' is up to 3.25 m below everything in the scenery"));
+  wanted.objects =
+      R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall", "motion": {"position_m": [1, 3, -0.1]}})";
+  CHECK(warnings_of(wanted).empty());  // wheels in the ground
+}
+
 TEST_CASE("a room without a floor is no ground") {
   Wanted wanted;
   ObjText hall;
@@ -199,6 +230,26 @@ TEST_CASE("a vehicle that drives through a house is named with its frames, and o
                  "lets nothing through; is its way meant? (frames 4 to 7)"));
   wanted.objects = R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall",
                        "motion": {"position_m": [1, 15.3, 0.1], "velocity_mps": [5, 0, 0]}})";
+  CHECK(warnings_of(wanted).empty());
+}
+
+TEST_CASE("what goes through a wall that waves pass is named; what stays inside of it, or drives under trees, is not") {
+  Wanted wanted;
+  wanted.frames = 12;
+  wanted.material = R"({"model": "constant", "reflection": 0.7, "penetration_loss_db": 10})";
+  wanted.objects = R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall",
+                       "motion": {"position_m": [1, 30.3, 0.1], "velocity_mps": [5, 0, 0]}})";
+  CHECK(contains(warning_of(wanted),
+                 "object 'car1' is with its middle inside a closed part of the scenery (of 'wall'); is its way meant? "
+                 "(frames 4 to 7)"));
+  wanted.objects = R"({"id": "robot", "box_m": [0.5, 0.5, 1.5], "material": "wall",
+                       "motion": {"position_m": [22, 30.3, 0.1], "velocity_mps": [1, 0, 0]}})";
+  CHECK(warnings_of(wanted).empty());
+  wanted.material = R"({"model": "constant", "reflection": 0.7})";
+  wanted.objects = R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall",
+                       "motion": {"position_m": [1, 5, 0.1], "velocity_mps": [5, 0, 0]}},
+                      {"id": "trees", "box_m": [30, 9, 6], "foliage": true, "motion": {"position_m": [20, 5, 0]}})";
+  wanted.receiver_m = "[20, 6, 2]";  // in their shade
   CHECK(warnings_of(wanted).empty());
 }
 
@@ -278,18 +329,53 @@ TEST_CASE("a mesh in millimetres, in degrees, or with another axis up is noticed
     for (const std::string& line : all) joined += line + "\n";
     return joined;
   };
-  CHECK(contains(doubts(city(Vec3(1000.0))), "is it in millimetres (unit_m 0.001)?"));
+  CHECK(contains(doubts(city(Vec3(1000.0))), "is it in millimetres (unit_m 0.001) or"));
+  CHECK(contains(doubts(city(Vec3(100.0))), "or centimetres (unit_m 0.01)?"));
   CHECK(contains(doubts(city(Vec3(1.3e-5, 9e-6, 1.0))), "are x and y in degrees?"));
   CHECK(contains(doubts(city(Vec3(1.0), true)), "flat along y; does another axis of the file point up (up)?"));
   CHECK_FALSE(contains(doubts(city(Vec3(1.0))), "mesh is"));
   CHECK_FALSE(contains(doubts(village()), "mesh is"));
 }
 
+TEST_CASE(
+    "an office in centimetres, in millimetres or on its side is noticed; one in metres, a tunnel or an alley is not") {
+  const auto doubts = [](const ObjText& obj) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "office.obj") << obj.text();
+    std::string joined;
+    for (const std::string& line : io::inspect_obj(folder / "office.obj").warnings) joined += line + "\n";
+    return joined;
+  };
+  const auto office = [](const Vec3& scale, bool y_up) {
+    ObjText obj(scale, y_up);
+    obj.add_box(Vec3(0), Vec3(14, 9, 2.8));
+    for (int desk = 0; desk < 4; ++desk) obj.add_box(Vec3(3.0 * desk + 1, 3, 0), Vec3(3.0 * desk + 2.5, 4, 0.75));
+    return obj;
+  };
+  CHECK(doubts(office(Vec3(1.0), false)).empty());
+  CHECK(contains(doubts(office(Vec3(100.0), false)),
+                 "office.obj: the mesh is 1400 x 900 x 280 m in size with a ceiling over all of it; is it in "
+                 "centimetres (unit_m 0.01)"));
+  CHECK(contains(doubts(office(Vec3(1000.0), false)), "is it in millimetres (unit_m 0.001)"));
+  CHECK(contains(doubts(office(Vec3(1.0), true)), "flat along y; does another axis of the file point up (up)?"));
+  ObjText tunnel;
+  for (int part = 0; part < 5; ++part) tunnel.add_box(Vec3(20.0 * part, 0, 0), Vec3(20.0 * part + 20, 4.4, 6.5));
+  CHECK(doubts(tunnel).empty());
+  ObjText alley;  // wider than a storey is high
+  alley.add_ground(Vec3(0, 0, 0), Vec3(60, 26, 0));
+  for (int house = 0; house < 3; ++house) {
+    alley.add_box(Vec3(20.0 * house, 0, 0), Vec3(20.0 * house + 19, 10, 15));
+    alley.add_box(Vec3(20.0 * house, 16, 0), Vec3(20.0 * house + 19, 26, 15));
+  }
+  CHECK(doubts(alley).empty());
+}
+
 TEST_CASE("an object of half a kilometre is noticed, and what scatters while nobody adds it up") {
   Wanted wanted;
   wanted.objects =
       R"({"id": "car1", "box_m": [4400, 1.8, 1.5], "material": "wall", "motion": {"position_m": [0, -50, 0.1]}})";
-  CHECK(contains(warning_of(wanted), "village.json:1: objects[0]: the object is 4400 x 1.800 x 1.500 m in size"));
+  CHECK(
+      contains(warning_of(wanted), "village.json:1: objects[0]: the object 'car1' is 4400 x 1.800 x 1.500 m in size"));
   // All woods of a town are one object.
   wanted.objects = R"({"id": "woods", "box_m": [4400, 9, 6], "foliage": true, "motion": {"position_m": [0, -50, 0]}})";
   CHECK(warnings_of(wanted).empty());

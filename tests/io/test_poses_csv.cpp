@@ -90,7 +90,7 @@ TEST_CASE("what is wrong with a table is refused with the line") {
   CHECK(holds(error_of(""), "poses.csv: is empty; expected a header"));
   CHECK(holds(error_of("\n0,a,1,2,3,0\n"), "is empty"));
   CHECK(holds(error_of("t_s,id,x_m,y_m,z_m,yaw_dg\n"),
-              "poses.csv:1: unknown column 'yaw_dg'; the nearest known one is 'yaw_deg'"));
+              "poses.csv:1: unknown column 'yaw_dg' (did you mean 'yaw_deg'?); expected one of t_s, "));
   CHECK(holds(error_of("t_s,id,x_m,y_m,z_m\n"), "poses.csv:1: the column 'yaw_deg' is missing"));
   CHECK(holds(error_of("t_s,id,x_m,y_m,z_m,yaw_deg,x_m\n"), "poses.csv:1: column 'x_m' is there twice"));
   CHECK(holds(error_of(header + "0,a,1,2,3,0\n"), "poses.csv:2: 6 fields; expected 8"));

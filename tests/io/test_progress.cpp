@@ -125,6 +125,8 @@ TEST_CASE("for programs progress is one object a line") {
   CHECK(text.find('\r') == std::string::npos);
   CHECK(text.find(R"({"stage":"frames","done":5,"total":5,)", text.rfind('{')) != std::string::npos);
   CHECK(text.ends_with("}\n"));
+  CHECK(std::count(text.begin(), text.end(), '\n') == 3);  // what is told at once is not told again at the end
+  CHECK(dcem::io::warning_json("a \"b\"\n\xff") == "{\"warning\":\"a \\\"b\\\"\\n\xef\xbf\xbd\"}");
 }
 
 TEST_CASE("a stage of unknown length is shown from its start, and gone at its end") {

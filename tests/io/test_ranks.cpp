@@ -74,6 +74,18 @@ TEST_CASE("any number of processes leaves the bytes of the run as a whole") {
   }
 }
 
+TEST_CASE("several processes do several frequencies, one after the other, with the bytes of one process") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  if (!has_ranks(folder)) return;
+  const std::string run = "run " + town + " --frames 0:2 --output links --frequency 5.89e9,30e9 --quiet --threads 1";
+  REQUIRE(dcem_program(folder, run + " -o whole").exit_code == 0);
+  REQUIRE(on_ranks(folder, 2, run + " -o shared").exit_code == 0);
+  for (const char* frequency : {"5.89GHz", "30GHz"}) {
+    check_same_files(folder / "shared" / frequency, folder / "whole" / frequency);
+  }
+}
+
 TEST_CASE("rays and what they remember are the same on three processes") {
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;

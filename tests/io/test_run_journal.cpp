@@ -252,9 +252,9 @@ TEST_CASE("the journal of another run is refused, and it is said what differs") 
   CHECK(refused(identity) == "nothing was thrown");
   CHECK(contains(refused({"1.2.4", 77, "--frames 0:5"}), "another version of dcem; expected this one (1.2.4)"));
   CHECK(refused({"1.2.3", 78, "--frames 0:5"}).starts_with("drive.json: is not as it was"));
-  CHECK(contains(refused({"1.2.3", 77, "--frames 0:6"}),
-                 "run.journal: is of a run with other options; expected those "
-                 "of that run (--frames 0:5)"));
+  CHECK(contains(
+      refused({"1.2.3", 77, "--frames 0:6"}),
+      "run.journal: is of a run with other options (--frames 0:5) than this one (--frames 0:6); expected the same"));
   std::ofstream(folder / "run.journal") << "something else";
   CHECK(contains(refused(identity), "is no journal"));
   CHECK(RunIdentity(identity).text() != RunIdentity{"1.2.3", 78, "--frames 0:5"}.text());

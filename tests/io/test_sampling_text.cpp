@@ -34,7 +34,8 @@ TEST_CASE("a warning names what is sampled, how it was checked, and what is miss
   CHECK(io::sampling_warning(report(), "paths of more than 3 interactions") ==
         "sampled: paths of more than 3 interactions are looked for by 2000 rays, which found 60 % of the paths of 3 "
         "links "
-        "searched again with 20000 rays; powers lack 0.04 dB in the median, 1.2 dB at most; on 1 no path was found "
+        "searched again with 20000 rays; powers lack 0.04 dB in the median, 1.2 dB on the worst link; on 1 no path was "
+        "found "
         "though "
         "there is one");
   SamplingReport exact = report();

@@ -95,7 +95,7 @@ TEST_CASE("what is wrong with a type is refused with line, id and attribute") {
   CHECK(holds(error_of("<a><vType id=\"t\" height=\"1.5m\"/></a>"), "vType 't': height: found '1.5m'"));
   CHECK(holds(error_of("<a><vType id=\"t\" height=\"nan\"/></a>"), "height: found 'nan'"));
   CHECK(holds(error_of("<a><vType id=\"t\" vClass=\"buss\"/></a>"),
-              "unknown class 'buss'; the nearest known one is 'bus'"));
+              "unknown class 'buss' (did you mean 'bus'?); expected one of "));
   CHECK(holds(error_of("<a><vType id=\"t\"/>"), "damaged XML"));
   CHECK(holds(error_of("<a/>"), "holds no vType"));
   CHECK(holds(error_of("<!DOCTYPE a><a/>"), "document type declaration"));

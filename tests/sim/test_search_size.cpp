@@ -118,6 +118,7 @@ TEST_CASE("left to itself, discovery begins no search that does not end") {
 }
 
 TEST_CASE("durations are told in units that a person counts in") {
+  CHECK(rough_duration(1.0) == "1 second");
   CHECK(rough_duration(45.0) == "45 seconds");
   CHECK(rough_duration(600.0) == "10 minutes");
   CHECK(rough_duration(5.0 * 3600.0) == "5 hours");

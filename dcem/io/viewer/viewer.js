@@ -87,6 +87,8 @@ class Viewer {
     document.title = `${head.scenario} – DCEM`;
     $("title").textContent = head.scenario;
     $("frequency").textContent = frequencyText(head.frequency_hz);
+    for (const note of head.notes) make("li", note, $("notes"));
+    $("notes_section").hidden = head.notes.length === 0;
     for (const notice of head.notices) make("li", notice, $("notices"));
     this.makeMaterials();
     this.canvas.addEventListener("click", (event) => this.click(event));

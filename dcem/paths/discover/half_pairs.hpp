@@ -7,10 +7,10 @@
 /// (paths/discover/half_packs.hpp). What is refused cannot be a path, so nothing is lost; what is left the solver
 /// decides.
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "dcem/paths/discover/edge_reach.hpp"
+#include "dcem/paths/discover/search_counters.hpp"
 #include "dcem/paths/sequence.hpp"
 #include "dcem/scene/scene.hpp"
 
@@ -20,12 +20,6 @@ namespace dcem {
 struct ReachingEnd {
   Vec3 position_m{0.0};
   std::span<const EdgeReach::Edge> edges;
-};
-
-/// What joining two ends took.
-struct PairCounters {
-  std::uint64_t boxes_asked = 0;  ///< of groups of edges
-  std::uint64_t packs_asked = 0;  ///< eight pairs at once
 };
 
 /// Appends the chains over two edges within some limits, from the receiver outwards, each once, without those that

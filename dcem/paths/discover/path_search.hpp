@@ -15,6 +15,7 @@
 #include "dcem/paths/discover/half_pairs.hpp"
 #include "dcem/paths/discover/path_cache.hpp"
 #include "dcem/paths/discover/ray_launcher.hpp"
+#include "dcem/paths/discover/search_counters.hpp"
 #include "dcem/paths/discover/search_settings.hpp"
 #include "dcem/paths/halves/covered.hpp"
 #include "dcem/paths/solve/path_solver.hpp"
@@ -30,14 +31,6 @@ inline ChainLimits chain_limits(const PathSearchSettings& settings) {
 struct LinkPaths {
   std::vector<Path> paths;
   bool line_of_sight = false;  ///< the direct segment crosses nothing: the direct path is among the paths
-};
-
-struct SearchCounters {
-  std::uint64_t rays = 0;
-  std::uint64_t sequences_proposed = 0;
-  PairCounters pairs;
-  SolverCounters solver;
-  CacheCounters cache;
 };
 
 /// What turns a sphere of rays: the name of the device that shoots it, and the frame.

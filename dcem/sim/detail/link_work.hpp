@@ -7,7 +7,7 @@
 #include "dcem/core/units.hpp"
 #include "dcem/field/diffuse/diffuse_contribution.hpp"
 #include "dcem/field/radio_end.hpp"
-#include "dcem/paths/discover/cache_counters.hpp"
+#include "dcem/paths/discover/search_counters.hpp"
 #include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/detail/gather_links.hpp"

@@ -44,6 +44,11 @@ std::optional<Vec3> middle_of(const SurfaceMesh& mesh) {
   return box.empty() ? std::nullopt : std::optional(0.5 * (box.min + box.max));
 }
 
+/// As a vehicle could stand on it.
+bool lies_flat(const WorldFacet& facet) {
+  return std::abs(facet.plane.normal.z) > 0.7;
+}
+
 std::string metres(double length_m) {
   return length_m < 1000.0 ? format_fixed(length_m, length_m < 10.0 ? 2 : 0) + " m"
                            : format_fixed(length_m / 1000.0, length_m < 1e5 ? 1 : 0) + " km";
@@ -61,6 +66,7 @@ PlacementWatch::PlacementWatch(std::string file, const Simulator& simulator, std
 void PlacementWatch::look(const Frame& frame) {
   if (box_.empty()) return;
   frame_ = &frame;
+  ++looks_;
   note_rooms();
   look_at_each(rooms_.size(), [&](std::size_t number, Notes& notes) { look_at_transmitter(number, notes); });
   look_at_each(std::min(receivers_.size(), most_watched),
@@ -158,19 +164,25 @@ void PlacementWatch::look_at_object(BodyId body, Notes& notes) const {
   const Pose& pose = state.placement.pose;
   const Vec3 middle_m = pose.position_m + rotation_matrix(pose) * *middles_m_[body.value];
   const std::string subject = (scene.body(body).is_slot ? "vehicle " : "object ") + in_quotes(scene.body_name(body));
-  if (is_far(middle_m, subject, notes) || glm::length(state.placement.velocity.linear_mps) < moving_mps) return;
+  const std::size_t noted = notes.size();
+  look_at_place(middle_m, subject, notes);
+  if (notes.size() > noted) return;
+  const bool moves = glm::length(state.placement.velocity.linear_mps) >= moving_mps;
   for (const ShellAtPoint& at : simulator_.shells_at(middle_m)) {
     const Shell shell{at.body, at.number};
-    const bool is_room = all_rooms_.contains(shell);
-    if (at.body == body || at.is_on_it || is_room || lets_through(shell) || moves_along(body, at.body)) continue;
-    notes.push_back(
-        {Problem::drives_through, subject, "is with its middle inside " + name_of(shell) + "; is its way meant?"});
+    const bool is_elsewhere = at.body != body && !at.is_on_it && !moves_along(body, at.body);
+    if (!is_elsewhere || all_rooms_.contains(shell) || facts_of(shell).is_foliage) continue;
+    // People are inside of houses that they can be heard in, all the time; who comes out went through the wall.
+    const bool may_be_inside = lets_through(shell) && !scene.body(body).is_slot;
+    if (!moves && !may_be_inside) continue;
+    notes.push_back({Problem::drives_through, subject,
+                     "is with its middle inside " + name_of(shell) + "; is its way meant?", 0.0, may_be_inside});
   }
 }
 
 void PlacementWatch::take(Note&& note) {
   const auto [number, is_new] = numbers_.try_emplace({note.problem, note.subject}, sightings_.size());
-  if (is_new) sightings_.push_back({note.problem, note.subject, note.detail, note.extent_m, {}});
+  if (is_new) sightings_.push_back({note.problem, note.subject, note.detail, note.extent_m, note.may_be_meant, {}});
   Sighting& sighting = sightings_[number->second];
   if (note.extent_m > sighting.extent_m) {
     sighting.detail = std::move(note.detail);
@@ -179,52 +191,84 @@ void PlacementWatch::take(Note&& note) {
   if (sighting.frames.empty() || sighting.frames.back() != frame_->index) sighting.frames.push_back(frame_->index);
 }
 
-/// Whether the scenery has a surface that lies rather flat, from a point in a direction.
-bool PlacementWatch::ground_is_hit(const Vec3& from_m, const Vec3& direction, double farthest_m) const {
+/// Whether the scenery has a surface that a vehicle could stand on, or its underside, from a point in a direction.
+bool PlacementWatch::ground_is_hit(const Vec3& from_m, const Vec3& direction) const {
   const Scene& scene = simulator_.scene();
   const auto counts = [&](const TriangleHit& hit) {
     const WorldFacet& facet = scene.facet(scene.facet_of_triangle(hit.triangle));
-    const bool is_flat = std::abs(facet.plane.normal.z) > 0.7 || direction.z == 0.0;
-    return facet.body == BodyId{} && hit.t <= farthest_m && is_flat;
+    return facet.body == BodyId{} && lies_flat(facet);
   };
   return simulator_.index().visit_hits(Ray<double>{from_m, direction}, HitFilter{}, counts, nullptr);
 }
 
+/// Whether what comes first in a horizontal direction is a wall. Under a slope it is the slope.
+bool PlacementWatch::wall_is_near(const Vec3& from_m, const Vec3& aside) const {
+  const Scene& scene = simulator_.scene();
+  const auto is_scenery = [&](const TriangleHit& hit) {
+    return scene.facet(scene.facet_of_triangle(hit.triangle)).body == BodyId{};
+  };
+  double nearest_m = room_m;
+  bool is_wall = false;
+  simulator_.index().visit_hits(
+      Ray<double>{from_m, aside}, HitFilter{},
+      [&](const TriangleHit& hit) {
+        if (hit.t > nearest_m || !is_scenery(hit)) return false;
+        nearest_m = hit.t;
+        is_wall = !lies_flat(scene.facet(scene.facet_of_triangle(hit.triangle)));
+        return false;
+      },
+      nullptr);
+  return is_wall;
+}
+
 /// A ground is broad. A room has walls, a tunnel on two sides, and under a bridge or a canopy it is not far to the sky.
+/// Down a slope the ground may end above a point that is as high as one under the ground, but not on all sides.
 bool PlacementWatch::is_under_ground(const Vec3& position_m) const {
   constexpr double slope = 1e-3;  // no direction along a wall
-  constexpr double anywhere_m = 1e9;
   const Vec3 up(slope, 2.0 * slope, 1.0);
-  if (ground_is_hit(position_m, -up, anywhere_m) || !ground_is_hit(position_m, up, anywhere_m)) return false;
-  for (const Vec3& aside : {Vec3(1, slope, 0), Vec3(-1, slope, 0), Vec3(slope, 1, 0), Vec3(slope, -1, 0)}) {
-    if (ground_is_hit(position_m, aside, room_m)) return false;
-    if (!ground_is_hit(position_m + broad_m * aside, up, anywhere_m)) return false;
-  }
-  return true;
+  if (ground_is_hit(position_m, -up) || !ground_is_hit(position_m, up)) return false;
+  const std::array<Vec3, 4> sides{Vec3(1, slope, 0), Vec3(-1, slope, 0), Vec3(slope, 1, 0), Vec3(slope, -1, 0)};
+  if (std::ranges::any_of(sides, [&](const Vec3& aside) { return wall_is_near(position_m, aside); })) return false;
+  return std::ranges::all_of(sides, [&](const Vec3& aside) { return ground_goes_on(position_m + broad_m * aside); });
+}
+
+/// Whether there is ground over or under a point: to the side of one that is under the ground.
+bool PlacementWatch::ground_goes_on(const Vec3& position_m) const {
+  constexpr double slope = 1e-3;
+  const Vec3 up(slope, 2.0 * slope, 1.0);
+  return ground_is_hit(position_m, up) || ground_is_hit(position_m, -up);
 }
 
 std::vector<PlacementWatch::Shell> PlacementWatch::closed_shells(const DeviceState& of) const {
   std::vector<Shell> shells;
   for (const ShellAtPoint& at : simulator_.shells_at(of.position_m)) {
-    if (at.is_on_it || of.ignored_body == at.body || lets_through({at.body, at.number})) continue;
-    shells.emplace_back(at.body, at.number);
+    const Shell shell{at.body, at.number};
+    if (at.is_on_it || of.ignored_body == at.body || lets_through(shell) || facts_of(shell).is_foliage) continue;
+    shells.push_back(shell);
   }
   return shells;
 }
 
-bool PlacementWatch::lets_through(const Shell& shell) const {
-  if (simulator_.settings().propagation.max_transmissions == 0) return false;
+/// A shell of foliage is of nothing else.
+const PlacementWatch::ShellFacts& PlacementWatch::facts_of(const Shell& shell) const {
   const std::lock_guard lock(mutex_);
-  const auto known = transmits_.find(shell);
-  if (known != transmits_.end()) return known->second;
+  const auto [entry, is_new] = shell_facts_.try_emplace(shell);
+  if (!is_new) return entry->second;
   const Scene& scene = simulator_.scene();
   const auto [first, last] = scene.triangle_range(shell.first);
-  bool transmits = false;
-  for (std::uint32_t triangle = first; triangle < last && !transmits; ++triangle) {
-    transmits =
-        scene.shell_of_triangle(triangle) == shell.second && scene.facet(scene.facet_of_triangle(triangle)).transmits;
+  for (std::uint32_t triangle = first; triangle < last; ++triangle) {
+    if (scene.shell_of_triangle(triangle) != shell.second) continue;
+    const WorldFacet& facet = scene.facet(scene.facet_of_triangle(triangle));
+    ShellFacts& facts = entry->second;
+    if (!facts.material) facts.material = facet.material;
+    facts.is_foliage = facet.is_foliage;
+    facts.transmits = facts.transmits || facet.transmits;
   }
-  return transmits_[shell] = transmits;
+  return entry->second;
+}
+
+bool PlacementWatch::lets_through(const Shell& shell) const {
+  return simulator_.settings().propagation.max_transmissions > 0 && facts_of(shell).transmits;
 }
 
 /// As a person in a bus does.
@@ -261,26 +305,24 @@ double PlacementWatch::share_of_receivers_in(const Shell& shell, const std::set<
   return asked == 0 ? 1.0 : static_cast<double>(inside) / static_cast<double>(asked);
 }
 
-/// The body or the material, and why nothing passes.
+/// The body or the material, and why nothing passes where nothing does.
 std::string PlacementWatch::name_of(const Shell& shell) const {
   const Scene& scene = simulator_.scene();
   const bool all_block = simulator_.settings().propagation.max_transmissions == 0;
-  const std::string why =
-      all_block ? ", which nothing may pass with max_transmissions 0" : ", which lets nothing through";
+  const std::string why = all_block             ? ", which nothing may pass with max_transmissions 0"
+                          : lets_through(shell) ? ""
+                                                : ", which lets nothing through";
   if (shell.first.value != 0) return in_quotes(scene.body_name(shell.first)) + why;
-  const auto [first, last] = scene.triangle_range(shell.first);
-  for (std::uint32_t triangle = first; triangle < last; ++triangle) {
-    if (scene.shell_of_triangle(triangle) != shell.second) continue;
-    const MaterialId material = scene.facet(scene.facet_of_triangle(triangle)).material;
-    return "a closed part of the scenery (of " + in_quotes(scene.material(material).name) + ")" + why;
-  }
-  return "a closed part of the scenery" + why;
+  const std::optional<MaterialId> material = facts_of(shell).material;
+  const std::string of = material ? " (of " + in_quotes(scene.material(*material).name) + ")" : "";
+  return "a closed part of the scenery" + of + why;
 }
 
 std::vector<std::string> PlacementWatch::warnings() const {
   std::vector<std::string> lines;
   std::map<Problem, std::size_t> named;
   for (const Sighting& sighting : sightings_) {
+    if (sighting.may_be_meant && sighting.frames.size() == looks_) continue;
     if (++named[sighting.problem] > most_named) continue;
     lines.push_back(file_ + ": " + sighting.subject + " " + sighting.detail + " (" + frame_ranges(sighting.frames) +
                     ")");

@@ -115,7 +115,8 @@ Inspection inspect_obj(const std::filesystem::path& file, const InspectionSettin
   inspection.materials = inspect_materials(obj, mesh, settings.frequency_hz);
   inspection.largest_facets = largest_facets(mesh);
   inspection.warnings = obj.warnings;
-  for (const std::string& doubt : mesh_doubts(obj.mesh)) inspection.warnings.push_back(file.string() + ": " + doubt);
+  for (const std::string& doubt : mesh_doubts(obj.mesh))
+    inspection.warnings.push_back(file.string() + ": the mesh " + doubt);
   return inspection;
 }
 

@@ -20,6 +20,12 @@ constexpr std::size_t most_columns = 1000;
 constexpr double most_range_db = 70.0;
 constexpr std::int64_t most_rows = 280, least_rows = 20;
 
+/// A millionth of a unit is nothing that a chart can show, but what is left of a difference would make an axis of
+/// 1e-15.
+double without_rounding(double value) {
+  return std::abs(value) < 1e-6 ? 0.0 : value;
+}
+
 std::string bin_text(double bin_s) {
   std::string text = "bins of ";
   append_number(text, std::round(bin_s * 1e15) / 1e6);
@@ -123,7 +129,7 @@ LineChart::Series LinkPlots::series(const char* name, double scale, Value&& valu
   LineChart::Series line{name, times_s_};
   for (const Figures& one : figures_) {
     const std::optional<double> number = one.statistics ? value(*one.statistics) : std::nullopt;
-    line.y.push_back(number ? scale * *number : nothing);
+    line.y.push_back(number ? without_rounding(scale * *number) : nothing);
   }
   return line;
 }

@@ -64,10 +64,12 @@ std::string hexadecimal(std::uint64_t number) {
   return digits;
 }
 
+constexpr std::string_view options_word = "options ";
+
 /// The first lines of a journal.
 std::array<std::string, 4> head_lines(const RunIdentity& identity) {
   return {"dcem-journal/2", "version " + identity.version, "inputs " + hexadecimal(identity.inputs),
-          "options " + identity.options};
+          std::string(options_word) + identity.options};
 }
 
 }  // namespace
@@ -239,8 +241,8 @@ void JournalReader::check_head(const RunIdentity& identity, const std::string& s
                                                                : "(otherwise all parts are to be run again)"));
   }
   if (found[3] != expected[3]) {
-    throw InputError(file_.string(), "is of a run with other options; expected those of that run (" +
-                                         found[3].substr(std::string("options ").size()) + ')');
+    throw InputError(file_.string(), "is of a run with other options (" + found[3].substr(options_word.size()) +
+                                         ") than this one (" + identity.options + "); expected the same");
   }
 }
 

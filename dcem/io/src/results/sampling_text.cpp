@@ -27,13 +27,14 @@ std::string again(const SamplingReport& report) {
   return report.exact ? "exactly" : "with " + std::to_string(report.reference_rays) + " rays";
 }
 
-/// "0.2 dB in the median, 15.5 dB at most"; empty where no link has a value.
+/// "0.2 dB in the median, 15.5 dB on the worst link"; empty where no link has a value.
 std::string missing(const SamplingReport& report) {
   const std::optional<double> median_db = report.missing_db(0.5);
   if (!median_db) return "";
   const bool is_quantile = report.links.size() >= least_for_a_quantile;
   const double high_db = *report.missing_db(is_quantile ? common_share : 1.0);
-  return decibels(*median_db) + " in the median, " + decibels(high_db) + (is_quantile ? " at 95 %" : " at most");
+  return decibels(*median_db) + " in the median, " + decibels(high_db) +
+         (is_quantile ? " at 95 %" : " on the worst link");
 }
 
 std::string rays_text(const SamplingReport& report) {

@@ -245,6 +245,12 @@ std::string RunSummary::diffuse_text(const FrameFigures& sum) const {
 }
 
 std::string RunSummary::json() const {
+  std::string text;
+  write_json([&](std::string_view part) { text += part; });
+  return text;
+}
+
+void RunSummary::write_json(const std::function<void(std::string_view)>& write) const {
   Json head{{"version", facts_.version},
             {"scenario", facts_.scenario},
             {"identity", identity_},
@@ -259,13 +265,12 @@ std::string RunSummary::json() const {
   std::string text = json_text(head);
   text.resize(text.rfind('}'));
   while (text.back() == '\n') text.pop_back();
-  text += ",\n  \"frames\": [";
-  // One by one: a day of frames as one document would need gigabytes.
+  write(text + ",\n  \"frames\": [");
+  // One by one: a day of frames as one document, or one text, would need gigabytes.
   for (const FrameFigures& frame : frames_) {
-    text += &frame == frames_.data() ? "\n    " : ",\n    ";
-    text += frame_json(frame, facts_.time.step_s).dump();
+    write((&frame == frames_.data() ? "\n    " : ",\n    ") + frame_json(frame, facts_.time.step_s).dump());
   }
-  return text + "\n  ]\n}\n";
+  write("\n  ]\n}\n");
 }
 
 std::string RunSummary::table(const std::filesystem::path& folder) const {
@@ -301,6 +306,7 @@ std::optional<FormerResult> read_former_result(const std::filesystem::path& summ
   const Json document = Json::parse(stream, nullptr, false);
   if (!document.is_object() || !document.contains("version") || !document.contains("totals")) return std::nullopt;
   FormerResult former;
+  if (document.contains("scenario") && document["scenario"].is_string()) former.scenario = document["scenario"];
   former.is_interrupted = document.contains("interrupted") && !document["interrupted"].is_null();
   if (document.contains("identity") && document["identity"].is_string()) former.identity = document["identity"];
   if (!document.contains("files") || !document["files"].is_array()) return former;

@@ -101,18 +101,19 @@ void BodyLoader::load() {
   add_materials();
   reported_at(scene.at("obj"), [&] { result_.scene.set_scenery(scenery.mesh); });
   if (result_.scene.facets().empty()) scene.at("obj").fail("no face has an area; expected at least one");
-  warn(scene.at("obj"), mesh_doubts(scenery.mesh));
+  warn(scene.at("obj"), "the mesh " + in_quotes(scene.at("obj").text()), mesh_doubts(scenery.mesh));
   for (Object& object : objects_) {
     const bool is_foliage = object.mesh.material_names == std::vector{foliage_material};
-    if (!is_foliage) warn(object.value, object_doubts(object.mesh));  // all woods of a town are one object
+    // All woods of a town are one object.
+    if (!is_foliage) warn(object.value, "the object " + in_quotes(object.id), object_doubts(object.mesh));
     reported_at(object.value, [&] { result_.scene.add_object(object.id, object.mesh, std::move(object.motion)); });
   }
   if (result_.traffic) add_traffic();
 }
 
-void BodyLoader::warn(const JsonValue& place, const std::vector<std::string>& doubts) {
+void BodyLoader::warn(const JsonValue& place, const std::string& subject, const std::vector<std::string>& doubts) {
   for (const std::string& doubt : doubts) {
-    result_.warnings.push_back(place.place() + ": " + place.path() + ": " + doubt);
+    result_.warnings.push_back(place.place() + ": " + place.path() + ": " + subject + " " + doubt);
   }
 }
 

@@ -147,7 +147,7 @@ class BodyLoader {
   MaterialKeys definition(const std::string& name) const;
   void add_materials();
   void check_frequency(const Material& material);
-  void warn(const JsonValue& place, const std::vector<std::string>& doubts);
+  void warn(const JsonValue& place, const std::string& subject, const std::vector<std::string>& doubts);
 
   const JsonObject& scenario_;
   std::filesystem::path folder_;

@@ -29,7 +29,7 @@ void CsvReader::read_header(OtherColumns others) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
       if (others == OtherColumns::ignored) continue;
-      fail("unknown column " + in_quotes(name) + "; the nearest known one is '" + nearest_name(name, names) + "'");
+      fail("unknown column " + in_quotes(name) + expected_names(name, names));
     }
     std::optional<std::size_t>& place = field_of_[static_cast<std::size_t>(found - names.begin())];
     if (place) fail("column " + in_quotes(name) + " is there twice; expected it once");

@@ -104,6 +104,13 @@ void give_up_temporary(const fs::path& temporary) {
   all.paths.erase(temporary);
 }
 
+void remove_unfinished_files() noexcept {
+  Temporaries& all = temporaries();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  std::error_code ignored;
+  for (const fs::path& file : all.paths) fs::remove(file, ignored);
+}
+
 FolderClaim::FolderClaim(const fs::path& folder)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
@@ -82,6 +83,10 @@ std::string progress_json(const std::string& stage, std::uint64_t done, std::opt
          ",\"remaining_s\":" + milliseconds_text(left_s) + "}";
 }
 
+std::string warning_json(const std::string& warning) {
+  return nlohmann::json{{"warning", warning}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 ProgressBar::ProgressBar(std::string label, std::uint64_t total, ProgressMode mode, std::ostream& stream)
     : label_(std::move(label)),
       total_(total),
@@ -116,7 +121,10 @@ void ProgressBar::advance(std::uint64_t pieces) {
 void ProgressBar::finish() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!shown_ || std::exchange(finished_, true)) return;
-  if (is_json_) return show({});
+  if (is_json_) {
+    if (shown_done_ != done()) show({});  // the last piece may have been told already
+    return;
+  }
   const std::string count = std::to_string(done()) + " of " + std::to_string(total_);
   const std::string duration = format_duration(elapsed_s());
   show(done() >= total_ ? label_ + ": " + count + " in " + duration
@@ -127,7 +135,8 @@ void ProgressBar::finish() {
 // Blanks wipe out what a longer line before left; plain text keeps log files and simple terminals readable.
 void ProgressBar::show(const std::string& line) {
   if (is_json_) {
-    stream_ << progress_json(label_, done(), total_, elapsed_s()) + '\n' << std::flush;
+    shown_done_ = done();
+    stream_ << progress_json(label_, *shown_done_, total_, elapsed_s()) + '\n' << std::flush;
     return;
   }
   const std::size_t width = character_count(line);

@@ -117,14 +117,15 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   });
 }
 
-std::string expected_names(std::string_view name, const std::vector<std::string>& candidates) {
+std::string expected_names(std::string_view name, const std::vector<std::string>& candidates, std::size_t most) {
   const std::string nearest = nearest_name(name, candidates);
   const std::size_t longer = std::max(name.size(), nearest.size());
   const bool is_near = 2 * edit_distance(name.substr(0, 4 * longest_quotation), nearest) <= longer + 1;
   std::string text = is_near ? " (did you mean " + in_quotes(nearest) + "?)" : "";
   text += candidates.size() == 1 ? "; expected " : "; expected one of ";
-  for (const std::string& candidate : candidates) text += (&candidate == &candidates.front() ? "" : ", ") + candidate;
-  return text;
+  const std::size_t named = std::min(most, candidates.size());
+  for (std::size_t number = 0; number < named; ++number) text += (number == 0 ? "" : ", ") + candidates[number];
+  return named == candidates.size() ? text : text + ", ... (" + std::to_string(candidates.size()) + " in all)";
 }
 
 std::string number_text(double value) {

@@ -63,8 +63,7 @@ class Surveyor {
     if (types_.find_size_m(vehicle.type) != nullptr) return;
     throw InputError(file, vehicle.line,
                      "vehicle " + in_quotes(vehicle.id) + ": type: " + in_quotes(vehicle.type) +
-                         " is in no file of vehicle_types; the nearest known one is " +
-                         in_quotes(nearest_name(vehicle.type, types_.ids())));
+                         " is in no file of vehicle_types" + expected_names(vehicle.type, types_.ids(), 20));
   }
 
   void note_presence(const FcdStep& step) {

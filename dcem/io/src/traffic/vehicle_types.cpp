@@ -123,8 +123,7 @@ class VehicleTypeFile : private XmlHandler {
     if (known != nullptr) return *known;
     std::vector<std::string> names;
     for (const ClassDefault& entry : class_defaults) names.emplace_back(entry.vehicle_class);
-    reader_.fail(about("vClass: unknown class " + in_quotes(name) + "; the nearest known one is '" +
-                       nearest_name(name, names) + "'"));
+    reader_.fail(about("vClass: unknown class " + in_quotes(name) + expected_names(name, names, 10)));
   }
 
   double length_m(const XmlAttributes& attributes, const char* attribute, double absent_m) const {

@@ -72,6 +72,7 @@ Json head_json(const Scene& scene, const ViewerFacts& facts, const ViewerFrames&
             {"first_frame", facts.first_frame},
             {"frames", frames.seen()},
             {"centre_m", {centre_m.x, centre_m.y, centre_m.z}},
+            {"notes", facts.notes},
             {"notices", frames.notices()},
             {"viridis", viridis_json()}};
   Json receivers;

@@ -31,7 +31,8 @@ void ViewerWriter::add(std::span<const RadioMap> maps, const CombinedMap& combin
   frames_->add(maps, combined, has_noise);
 }
 
-std::vector<std::string> ViewerWriter::finish() {
+std::vector<std::string> ViewerWriter::finish(std::vector<std::string> notes) {
+  facts_.notes = std::move(notes);
   write_viewer_page(file_, scene_, facts_, *frames_);
   file_.close();
   return frames_->notices();
