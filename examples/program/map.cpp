@@ -151,11 +151,12 @@ Device receiver_at(const ReceiverList& list, std::size_t point) {
 /// What rays lack at some of the points of a map.
 template <typename Places>
 SamplingReport check_points(const Simulator& simulator, const Frame& frame, const Places& places, const RadioMap& map) {
-  constexpr std::size_t most_points = 16;
+  constexpr std::size_t few_points = 16, many_points = 64;  // one in a hundred: it shall not take longer than the map
   std::vector<std::size_t> open;
   for (std::size_t point = 0; point < map.points.size(); ++point) {
     if (!map.points[point].obstructed) open.push_back(point);
   }
+  const std::size_t most_points = std::clamp(open.size() / 100, few_points, many_points);
   const std::size_t count = std::min(most_points, open.size());
   std::vector<Device> receivers;
   for (std::size_t number = 0; number < count; ++number) {

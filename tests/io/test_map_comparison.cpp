@@ -72,6 +72,11 @@ TEST_CASE("differences over a grid are a map of its cells, whatever the order of
   }
   CHECK(map->range->low == -map->range->high);
   CHECK(map->range->high == 1.0);
+  const auto lower = read(folder, "x_m,y_m,p_dbm\n0,10,-63\n0.333333,10,-63.4\n0,12,-63.5\n1,12,-70\n");
+  const auto one_sided = io::difference_map(lower, first, "what one lacks");
+  REQUIRE(one_sided.has_value());
+  CHECK(one_sided->range->low == -5.0);
+  CHECK(one_sided->range->high == 0.0);
 }
 
 TEST_CASE("differences at scattered places, or along one line, are no map") {

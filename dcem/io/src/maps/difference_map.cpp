@@ -56,13 +56,15 @@ double rounded_up(double value) {
   return 10.0 * power;
 }
 
-/// As far to either side, so that what is higher and what is lower can be told apart.
+/// As far to either side, so that what is higher and what is lower can be told apart; where next to nothing lies on one
+/// side, up to zero.
 ValueRange range_db(std::vector<double> values) {
-  constexpr double least_db = 0.1;
+  constexpr double least_db = 0.1, next_to_nothing = 0.02;
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  const double farthest = std::max(std::abs(quantile(values, 0.01)), std::abs(quantile(values, 0.99)));
-  const double end_db = rounded_up(std::max(least_db, farthest));
-  return {-end_db, end_db};
+  const double lower_db = std::max(0.0, -quantile(values, 0.01)), higher_db = std::max(0.0, quantile(values, 0.99));
+  const double end_db = rounded_up(std::max({least_db, lower_db, higher_db}));
+  return {lower_db <= next_to_nothing * higher_db && higher_db > 0.0 ? 0.0 : -end_db,
+          higher_db <= next_to_nothing * lower_db && lower_db > 0.0 ? 0.0 : end_db};
 }
 
 }  // namespace
