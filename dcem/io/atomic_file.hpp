@@ -70,8 +70,9 @@ class AtomicFile {
   bool resting_ = false, closed_ = false;
 };
 
-/// Removes the files that this process is writing and that have no name yet: of a program that is about to end at once.
-void remove_unfinished_files() noexcept;
+/// Ends the program at once, without anything that else is done at its end, and removes the files that it is writing
+/// and that have no name yet. None gets its name or is begun meanwhile.
+[[noreturn]] void end_without_unfinished_files(int exit_code) noexcept;
 
 class FolderClaim;
 

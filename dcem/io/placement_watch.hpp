@@ -32,19 +32,18 @@ class PlacementWatch {
   std::vector<std::string> warnings() const;
 
  private:
-  using Shell = std::pair<BodyId, std::uint32_t>;
+  using Shell = std::pair<BodyId, std::uint32_t>;  ///< its number within the body is counted from 1
   struct ShellFacts {
     std::optional<MaterialId> material;  ///< of one of its facets
     bool is_foliage = false;
     bool transmits = false;  ///< somewhere
   };
-  enum class Problem { far_outside, under_ground, shut_in, shut_in_alone, drives_through };
+  enum class Problem { far_outside, under_ground, shut_in, shut_in_alone, drives_through, goes_through };
   /// What is wrong with whom, and the rest of the sentence.
   struct Sighting {
     Problem problem;
     std::string subject, detail;
-    double extent_m = 0.0;      ///< the detail is that of the frame with the largest one
-    bool may_be_meant = false;  ///< where it is so in all frames
+    double extent_m = 0.0;  ///< the detail is that of the frame with the largest one
     std::vector<std::size_t> frames;
   };
 
@@ -53,7 +52,6 @@ class PlacementWatch {
     Problem problem;
     std::string subject, detail;
     double extent_m = 0.0;
-    bool may_be_meant = false;
   };
   using Notes = std::vector<Note>;
 
@@ -65,7 +63,8 @@ class PlacementWatch {
   void look_at_receiver(const Device& device, Notes& notes) const;
   void look_at_transmitter(std::size_t number, Notes& notes) const;
   void look_at_grid(const ReceiverGrid& grid, Notes& notes) const;
-  void look_at_object(BodyId body, Notes& notes) const;
+  void look_at_object(BodyId body, Notes& notes);
+  void look_at_way(BodyId body, const Vec3& middle_m, const std::string& subject, Notes& notes);
   void take(Note&& note);
   bool is_far(const Vec3& position_m, const std::string& subject, Notes& notes) const;
   bool is_under_ground(const Vec3& position_m) const;
@@ -76,6 +75,7 @@ class PlacementWatch {
   std::vector<Shell> closed_shells(const DeviceState& of) const;
   const ShellFacts& facts_of(const Shell& shell) const;
   bool lets_through(const Shell& shell) const;
+  bool is_foliage(BodyId body) const;
   bool moves_along(BodyId one, BodyId other) const;
   double share_of_receivers_in(const Shell& shell, const std::set<Shell>& own) const;
   std::string name_of(const Shell& shell) const;
@@ -87,12 +87,13 @@ class PlacementWatch {
   Aabb<double> box_;                            ///< of the scenery
   std::vector<std::optional<Vec3>> middles_m_;  ///< of all bodies, in their own coordinates
   const Frame* frame_ = nullptr;                ///< while it is looked at
-  std::size_t looks_ = 0;
-  std::vector<std::vector<Shell>> rooms_;  ///< by transmitter: shells that hold it or carry it …
-  std::set<Shell> all_rooms_;              ///< … and those of all
-  mutable std::mutex mutex_;               ///< of `shell_facts_`
-  mutable std::map<Shell, ShellFacts> shell_facts_;
-  std::vector<Sighting> sightings_;  ///< in the order in which they were seen first
+  std::vector<std::vector<Shell>> rooms_;       ///< by transmitter: shells that hold it or carry it …
+  std::set<Shell> all_rooms_;                   ///< … and those of all
+  /// By body: the houses that waves pass around it in the frame before; absent where it was not there.
+  std::vector<std::optional<std::vector<Shell>>> houses_before_;
+  mutable std::mutex mutex_;                                       ///< of `shell_facts_`
+  mutable std::map<BodyId, std::vector<ShellFacts>> shell_facts_;  ///< by number, from 1
+  std::vector<Sighting> sightings_;                                ///< in the order in which they were seen first
   std::map<std::pair<Problem, std::string>, std::size_t> numbers_;
 };
 

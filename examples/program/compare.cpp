@@ -2,6 +2,9 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "dcem/core/statistics.hpp"
 #include "dcem/io/atomic_file.hpp"
@@ -77,7 +80,9 @@ void compare_maps(const CompareOptions& options) {
   const std::string title = title_of(options.first, options.second);
   draw(comparison, title, options, folder);
   if (io::can_draw()) draw_map(io::difference_map(first, second, title), options, folder);
-  folder.commit();
+  std::vector<std::string> former;  // the map of a comparison before, where this one has none
+  for (const std::string& word : options.formats) former.push_back("difference." + word);
+  folder.commit(former);
   print(comparison);
 }
 

@@ -4,6 +4,8 @@
 
 namespace dcem::program {
 
+inline constexpr const char* what_help_lists = "what 'dcem --help' and 'dcem COMMAND --help' list";
+
 inline constexpr int exit_failed = 1;
 inline constexpr int exit_bad_input = 2;
 

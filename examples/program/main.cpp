@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "command_options.hpp"
 #include "completion.hpp"
@@ -94,6 +95,13 @@ void check_command(const CLI::App& app, int argument_count, char** arguments) {
   if (commands.empty()) throw UsageError("'" + std::string(arguments[1]) + "' is no command", command_names);
 }
 
+/// The library's own text has them from the last to the first.
+std::string unexpected_text(const std::vector<std::string>& arguments) {
+  std::string list;
+  for (const std::string& argument : arguments) list += (list.empty() ? "'" : ", '") + argument + "'";
+  return list + (arguments.size() == 1 ? " is" : " are") + " not expected";
+}
+
 /// What `mpirun` has started several times is done together, or not at all.
 void check_job(int argument_count, char** arguments) {
   const std::string command = argument_count < 2 ? "" : arguments[1];
@@ -112,6 +120,8 @@ int run(int argument_count, char** arguments) {
     check_job(argument_count, arguments);
     app.parse(argument_count, arguments);
     return 0;
+  } catch (const CLI::ExtrasError&) {
+    return fail({UsageError(unexpected_text(app.remaining(true)), what_help_lists).what(), exit_bad_input});
   } catch (const CLI::Success& request) {  // --help and --version
     return app.exit(request);
   } catch (const EndedElsewhere& end) {

@@ -116,10 +116,21 @@ struct FrameMaps {
   std::vector<std::vector<RadioMap>> maps;  ///< by grid or list, then by transmitter
 };
 
+/// The links of a frame's own receivers. Where there are none but those of maps, which look for themselves, nobody
+/// looks from the transmitters in vain.
+FrameResult advanced(Simulator& simulator, const Frame& frame) {
+  if (!simulator.scene().receivers().empty()) return simulator.advance(frame);
+  FrameResult result{frame.index, frame.time_s, {}, {}, {}, {}, 0.0, 0.0};
+  const auto start = std::chrono::steady_clock::now();
+  result.tree = simulator.move_to(frame);
+  result.update_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
 /// Nothing where a signal came before all points were done.
 std::optional<FrameMaps> solve_maps(const MapOrders& orders, Simulator& simulator, const Frame& frame,
                                     io::ProgressBar& bar, const StopRequest& stop) {
-  FrameMaps solved{simulator.advance(frame), {}, {}};
+  FrameMaps solved{advanced(simulator, frame), {}, {}};
   solved.figures = io::figures_of(solved.result);
   const auto tell = [&](std::size_t points) {
     if (stop.signal() != 0) throw StopNow{};
@@ -151,7 +162,10 @@ Device receiver_at(const ReceiverList& list, std::size_t point) {
 /// What rays lack at some of the points of a map.
 template <typename Places>
 SamplingReport check_points(const Simulator& simulator, const Frame& frame, const Places& places, const RadioMap& map) {
-  constexpr std::size_t few_points = 16, many_points = 64;  // one in a hundred: it shall not take longer than the map
+  // One in a hundred, so that it takes no longer than the map; no more links than an exact search is for.
+  constexpr std::size_t few_points = 16, many_links = 64;
+  const std::size_t transmitters = std::max<std::size_t>(1, simulator.scene().transmitters().size());
+  const std::size_t many_points = std::max(few_points, many_links / transmitters);
   std::vector<std::size_t> open;
   for (std::size_t point = 0; point < map.points.size(); ++point) {
     if (!map.points[point].obstructed) open.push_back(point);

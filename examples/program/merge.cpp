@@ -1,7 +1,8 @@
 /// `dcem merge`: the parts of a run as one, with the bytes that the run has as a whole.
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/frames_ahead.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/run_journal.hpp"
 #include "dcem/io/shards.hpp"
 #include "job.hpp"
 #include "merge.hpp"
@@ -109,17 +111,22 @@ void Merger::merge(std::span<const std::filesystem::path> folders) {
 
 namespace {
 
-/// Where parts are of several frequencies: the folders that each of them has for one of these; otherwise the folder
+/// Where parts are of several frequencies: the folders that any of them has for one of these; otherwise the folder
 /// itself, which has no name then.
-std::vector<fs::path> frequencies_of(const fs::path& shard) {
+std::vector<fs::path> frequencies_of(const std::vector<std::string>& shards) {
   std::error_code ignored;
-  if (fs::exists(shard / "summary.json", ignored)) return {{}};
-  std::vector<fs::path> names;
-  for (const auto& entry : fs::directory_iterator(shard, ignored)) {
-    if (fs::exists(entry.path() / "summary.json", ignored)) names.push_back(entry.path().filename());
+  const auto holds_part = [&](const fs::path& folder) {
+    return fs::exists(folder / "summary.json", ignored) || fs::exists(folder / io::journal_name, ignored);
+  };
+  std::set<fs::path> names;
+  for (const std::string& shard : shards) {
+    if (holds_part(shard)) return {{}};
+    for (const auto& entry : fs::directory_iterator(shard, ignored)) {
+      if (holds_part(entry.path())) names.insert(entry.path().filename());
+    }
   }
-  std::sort(names.begin(), names.end());
-  return names.empty() ? std::vector<fs::path>{{}} : names;
+  if (names.empty()) names.insert(fs::path());
+  return {names.begin(), names.end()};
 }
 
 void merge_one(const MergeOptions& options, const fs::path& frequency) {
@@ -144,7 +151,7 @@ void merge_one(const MergeOptions& options, const fs::path& frequency) {
 }  // namespace
 
 void merge_shards(const MergeOptions& options) {
-  for (const fs::path& frequency : frequencies_of(options.shards.front())) merge_one(options, frequency);
+  for (const fs::path& frequency : frequencies_of(options.shards)) merge_one(options, frequency);
 }
 
 }  // namespace dcem::program

@@ -15,7 +15,7 @@
 namespace dcem::program {
 namespace {
 
-std::atomic<bool> is_awaited = false;
+std::atomic<bool> is_awaited = false, is_ending = false;
 std::atomic<int> received = 0;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "a signal handler may touch nothing else");
@@ -26,7 +26,8 @@ int to_ender = -1;        ///< what a thread of its own reads, which ends the pr
 extern "C" void on_stop_signal(int signal) {
   if (!is_awaited || received != 0) {
     const auto number = static_cast<char>(signal);
-    if (to_ender < 0 || ::write(to_ender, &number, 1) != 1) ::_exit(128 + signal);
+    // Where files cannot be removed, or nobody listens, one signal more ends the program as it is.
+    if (is_ending.exchange(true) || to_ender < 0 || ::write(to_ender, &number, 1) != 1) ::_exit(128 + signal);
     return;
   }
   received = signal;
@@ -34,13 +35,12 @@ extern "C" void on_stop_signal(int signal) {
   if (is_watched && ::write(STDERR_FILENO, word.data(), word.size()) < 0) return;  // then nobody hears of it
 }
 
-/// Removes what is half written, which a signal handler must not do, and ends the program.
+/// A signal handler must not look for what is half written.
 void end_when_told(int from_handler) {
   char number = SIGTERM;
   while (::read(from_handler, &number, 1) < 0 && errno == EINTR) {
   }
-  io::remove_unfinished_files();
-  ::_exit(128 + number);
+  io::end_without_unfinished_files(128 + number);
 }
 
 /// Without the thread, where the system gives none, hidden files stay until the next run in their folder.

@@ -148,10 +148,10 @@ TEST_CASE("devices below everything, and under the ground, are named") {
   wanted.transmitter_m = "[0, 0, -8]";
   CHECK(contains(warning_of(wanted), "transmitter 'bs' is up to 3.00 m below everything in the scenery"));
   wanted.transmitter_m = "[0, 0, -1.5]";  // above the lower ground, but not over it
-  CHECK(contains(warning_of(wanted), "transmitter 'bs' has a broad surface above and nothing below and beside it"));
+  CHECK(contains(warning_of(wanted), "transmitter 'bs' has a broad surface above it and none below"));
 }
 
-TEST_CASE("under a slope is under the ground; over it, in a cutting, and in a house on it is not") {
+TEST_CASE("under a slope is under the ground, beside a sunk house, too; over it, and in a house on it, is not") {
   Wanted wanted;
   ObjText slope;  // rises by one metre in five
   slope.add_quad({Vec3(-100, -100, -20), Vec3(100, -100, 20), Vec3(100, 100, 20), Vec3(-100, 100, -20)});
@@ -162,8 +162,10 @@ TEST_CASE("under a slope is under the ground; over it, in a cutting, and in a ho
   for (const double depth_m : {0.5, 2.0, 15.0}) {
     CAPTURE(depth_m);
     wanted.receiver_m = "[10, 5, " + std::to_string(2.0 - depth_m) + "]";
-    CHECK(contains(warning_of(wanted), "receiver 'ue' has a broad surface above and nothing below"));
+    CHECK(contains(warning_of(wanted), "receiver 'ue' has a broad surface above it and none below"));
   }
+  wanted.receiver_m = "[10, 60, -13]";  // a wall of the house is as deep as this
+  CHECK(contains(warning_of(wanted), "receiver 'ue' has a broad surface above it and none below"));
   wanted.receiver_m = "[10, 5, 3.5]";
   CHECK(warnings_of(wanted).empty());
   wanted.receiver_m = "[-70, 60, -8]";  // in the house, which stands on the slope and has a floor of its own
@@ -174,7 +176,7 @@ TEST_CASE("under a slope is under the ground; over it, in a cutting, and in a ho
 TEST_CASE("a vehicle under the ground is named, also one that stands") {
   Wanted wanted;
   wanted.objects = R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall", "motion": {"position_m": [1, 3, -2]}})";
-  CHECK(contains(warning_of(wanted), "object 'car1' has a broad surface above and nothing below and beside it"));
+  CHECK(contains(warning_of(wanted), "object 'car1' has a broad surface above it and none below"));
   wanted.objects = R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall", "motion": {"position_m": [1, 3, -9]}})";
   CHECK(contains(warning_of(wanted), "object 'car1' is up to 3.25 m below everything in the scenery"));
   wanted.objects =
@@ -240,8 +242,8 @@ TEST_CASE("what goes through a wall that waves pass is named; what stays inside 
   wanted.objects = R"({"id": "car1", "box_m": [4, 2, 1.5], "material": "wall",
                        "motion": {"position_m": [1, 30.3, 0.1], "velocity_mps": [5, 0, 0]}})";
   CHECK(contains(warning_of(wanted),
-                 "object 'car1' is with its middle inside a closed part of the scenery (of 'wall'); is its way meant? "
-                 "(frames 4 to 7)"));
+                 "object 'car1' goes through a wall of a closed part of the scenery (of 'wall'); is its way meant? "
+                 "(frames 4 and 8)"));
   wanted.objects = R"({"id": "robot", "box_m": [0.5, 0.5, 1.5], "material": "wall",
                        "motion": {"position_m": [22, 30.3, 0.1], "velocity_mps": [1, 0, 0]}})";
   CHECK(warnings_of(wanted).empty());
@@ -251,6 +253,8 @@ TEST_CASE("what goes through a wall that waves pass is named; what stays inside 
                       {"id": "trees", "box_m": [30, 9, 6], "foliage": true, "motion": {"position_m": [20, 5, 0]}})";
   wanted.receiver_m = "[20, 6, 2]";  // in their shade
   CHECK(warnings_of(wanted).empty());
+  wanted.objects = R"({"id": "trees", "box_m": [30, 9, 6], "foliage": true, "motion": {"position_m": [20, 5, -4.5]}})";
+  CHECK(warnings_of(wanted).empty());  // the middle of all woods of a hilly town may be under a hill
 }
 
 TEST_CASE("vehicles far outside are named, also where devices ride on them; what flies high is not") {
@@ -361,13 +365,18 @@ TEST_CASE(
   ObjText tunnel;
   for (int part = 0; part < 5; ++part) tunnel.add_box(Vec3(20.0 * part, 0, 0), Vec3(20.0 * part + 20, 4.4, 6.5));
   CHECK(doubts(tunnel).empty());
-  ObjText alley;  // wider than a storey is high
-  alley.add_ground(Vec3(0, 0, 0), Vec3(60, 26, 0));
-  for (int house = 0; house < 3; ++house) {
-    alley.add_box(Vec3(20.0 * house, 0, 0), Vec3(20.0 * house + 19, 10, 15));
-    alley.add_box(Vec3(20.0 * house, 16, 0), Vec3(20.0 * house + 19, 26, 15));
+  ObjText alley;  // as wide as a storey is high
+  alley.add_ground(Vec3(0, 0, 0), Vec3(60, 4, 0));
+  for (int house = 0; house < 12; ++house) {
+    for (const double y_m : {0.0, 4.0}) {
+      alley.add_quad({Vec3(5.0 * house, y_m, 0), Vec3(5.0 * house + 5, y_m, 0), Vec3(5.0 * house + 5, y_m, 15),
+                      Vec3(5.0 * house, y_m, 15)});
+    }
   }
   CHECK(doubts(alley).empty());
+  ObjText hangar;
+  for (int part = 0; part < 4; ++part) hangar.add_box(Vec3(40.0 * part, 0, 0), Vec3(40.0 * part + 40, 120, 60));
+  CHECK(doubts(hangar).empty());
 }
 
 TEST_CASE("an object of half a kilometre is noticed, and what scatters while nobody adds it up") {

@@ -15,7 +15,7 @@ constexpr double millimetres_height_m = 2000.0, millimetres_edge_m = 500.0;
 constexpr double degrees_width_m = 2.0, degrees_slenderness = 10.0;
 constexpr double upright_height_m = 150.0, flatness = 4.0;
 constexpr double longest_object_m = 500.0;
-constexpr double highest_storey_m = 50.0, least_storey_m = 1.8, most_storey_m = 4.5, least_width_m = 6.0;
+constexpr double highest_storey_m = 150.0, least_storey_m = 1.8, most_storey_m = 4.5, least_width_m = 6.0;
 constexpr double narrowness = 1.6;
 constexpr double covered_share = 0.6;  ///< of a storey's plan, by its floor and by its ceiling
 
@@ -90,7 +90,9 @@ bool is_storey_on_its_side(const TriangleMesh& mesh, const Aabb<double>& box) {
   const double width_m = std::min(size_m.x, size_m.z);
   const bool is_slab = size_m.y >= least_storey_m && size_m.y <= most_storey_m && width_m >= least_width_m &&
                        width_m > narrowness * size_m.y;  // a tunnel for one track is higher than wide, but not by much
-  return is_slab && covered_at_both_ends(mesh, box, 1) >= covered_share;
+  if (!is_slab || covered_at_both_ends(mesh, box, 1) < covered_share) return false;
+  // An alley between two houses has neither ends nor a roof.
+  return covered_at_both_ends(mesh, box, 0) >= covered_share && covered_at_both_ends(mesh, box, 2) >= covered_share;
 }
 
 bool is_enormous_storey(const TriangleMesh& mesh, const Aabb<double>& box) {

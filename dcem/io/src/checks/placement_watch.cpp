@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "dcem/accel/wide_index.hpp"
 #include "dcem/core/thread_pool.hpp"
@@ -61,12 +62,12 @@ PlacementWatch::PlacementWatch(std::string file, const Simulator& simulator, std
     : file_(std::move(file)), simulator_(simulator), receivers_(receivers), grids_(grids) {
   for (const Vec3& vertex : simulator.scene().body(BodyId{}).mesh.vertices_m) box_.extend(vertex);
   for (const Body& body : simulator.scene().bodies()) middles_m_.push_back(middle_of(body.mesh));
+  houses_before_.resize(middles_m_.size());
 }
 
 void PlacementWatch::look(const Frame& frame) {
   if (box_.empty()) return;
   frame_ = &frame;
-  ++looks_;
   note_rooms();
   look_at_each(rooms_.size(), [&](std::size_t number, Notes& notes) { look_at_transmitter(number, notes); });
   look_at_each(std::min(receivers_.size(), most_watched),
@@ -118,7 +119,7 @@ void PlacementWatch::look_at_place(const Vec3& position_m, const std::string& su
   notes.push_back({Problem::under_ground, subject,
                    depth_m > below_m
                        ? "is up to " + metres(depth_m) + " below everything in the scenery; is its height meant?"
-                       : "has a broad surface above and nothing below and beside it; is it under the ground?",
+                       : "has a broad surface above it and none below; is it under the ground?",
                    depth_m});
 }
 
@@ -157,32 +158,48 @@ void PlacementWatch::look_at_grid(const ReceiverGrid& grid, Notes& notes) const 
   look_at_place(nearest_m, "grid " + in_quotes(grid.id), notes);
 }
 
-void PlacementWatch::look_at_object(BodyId body, Notes& notes) const {
+void PlacementWatch::look_at_object(BodyId body, Notes& notes) {
   const Scene& scene = simulator_.scene();
   const BodyState& state = scene.body_state(body);
-  if (!state.present || !middles_m_[body.value]) return;
+  if (!state.present || !middles_m_[body.value]) return houses_before_[body.value].reset();
   const Pose& pose = state.placement.pose;
   const Vec3 middle_m = pose.position_m + rotation_matrix(pose) * *middles_m_[body.value];
   const std::string subject = (scene.body(body).is_slot ? "vehicle " : "object ") + in_quotes(scene.body_name(body));
+  if (is_foliage(body)) return void(is_far(middle_m, subject, notes));  // all woods of a town are one object
   const std::size_t noted = notes.size();
   look_at_place(middle_m, subject, notes);
-  if (notes.size() > noted) return;
-  const bool moves = glm::length(state.placement.velocity.linear_mps) >= moving_mps;
+  if (notes.size() == noted) look_at_way(body, middle_m, subject, notes);
+}
+
+/// Vehicles drive into no house. Other objects may be in one that waves pass, as people are; but who was outside in the
+/// frame before went through its wall.
+void PlacementWatch::look_at_way(BodyId body, const Vec3& middle_m, const std::string& subject, Notes& notes) {
+  const Scene& scene = simulator_.scene();
+  const bool moves = glm::length(scene.body_state(body).placement.velocity.linear_mps) >= moving_mps;
+  std::vector<Shell> houses;
   for (const ShellAtPoint& at : simulator_.shells_at(middle_m)) {
     const Shell shell{at.body, at.number};
-    const bool is_elsewhere = at.body != body && !at.is_on_it && !moves_along(body, at.body);
-    if (!is_elsewhere || all_rooms_.contains(shell) || facts_of(shell).is_foliage) continue;
-    // People are inside of houses that they can be heard in, all the time; who comes out went through the wall.
-    const bool may_be_inside = lets_through(shell) && !scene.body(body).is_slot;
-    if (!moves && !may_be_inside) continue;
-    notes.push_back({Problem::drives_through, subject,
-                     "is with its middle inside " + name_of(shell) + "; is its way meant?", 0.0, may_be_inside});
+    if (at.body == body || at.is_on_it || facts_of(shell).is_foliage) continue;
+    const bool is_house = at.body == BodyId{} && lets_through(shell) && !scene.body(body).is_slot;
+    if (is_house) houses.push_back(shell);
+    if (is_house || !moves || all_rooms_.contains(shell) || moves_along(body, at.body)) continue;
+    notes.push_back(
+        {Problem::drives_through, subject, "is with its middle inside " + name_of(shell) + "; is its way meant?"});
   }
+  std::optional<std::vector<Shell>>& before = houses_before_[body.value];
+  std::vector<Shell> crossed;
+  if (before) std::ranges::set_symmetric_difference(houses, *before, std::back_inserter(crossed));
+  for (const Shell& shell : crossed) {
+    if (all_rooms_.contains(shell)) continue;
+    notes.push_back(
+        {Problem::goes_through, subject, "goes through a wall of " + name_of(shell) + "; is its way meant?"});
+  }
+  before = std::move(houses);
 }
 
 void PlacementWatch::take(Note&& note) {
   const auto [number, is_new] = numbers_.try_emplace({note.problem, note.subject}, sightings_.size());
-  if (is_new) sightings_.push_back({note.problem, note.subject, note.detail, note.extent_m, note.may_be_meant, {}});
+  if (is_new) sightings_.push_back({note.problem, note.subject, note.detail, note.extent_m, {}});
   Sighting& sighting = sightings_[number->second];
   if (note.extent_m > sighting.extent_m) {
     sighting.detail = std::move(note.detail);
@@ -228,7 +245,9 @@ bool PlacementWatch::is_under_ground(const Vec3& position_m) const {
   const Vec3 up(slope, 2.0 * slope, 1.0);
   if (ground_is_hit(position_m, -up) || !ground_is_hit(position_m, up)) return false;
   const std::array<Vec3, 4> sides{Vec3(1, slope, 0), Vec3(-1, slope, 0), Vec3(slope, 1, 0), Vec3(slope, -1, 0)};
-  if (std::ranges::any_of(sides, [&](const Vec3& aside) { return wall_is_near(position_m, aside); })) return false;
+  // One alone may be that of a house that is sunk into a slope.
+  if (std::ranges::count_if(sides, [&](const Vec3& aside) { return wall_is_near(position_m, aside); }) > 1)
+    return false;
   return std::ranges::all_of(sides, [&](const Vec3& aside) { return ground_goes_on(position_m + broad_m * aside); });
 }
 
@@ -249,22 +268,29 @@ std::vector<PlacementWatch::Shell> PlacementWatch::closed_shells(const DeviceSta
   return shells;
 }
 
-/// A shell of foliage is of nothing else.
+/// All shells of a body at once. A shell of foliage is of nothing else.
 const PlacementWatch::ShellFacts& PlacementWatch::facts_of(const Shell& shell) const {
   const std::lock_guard lock(mutex_);
-  const auto [entry, is_new] = shell_facts_.try_emplace(shell);
-  if (!is_new) return entry->second;
+  const auto [entry, is_new] = shell_facts_.try_emplace(shell.first);
+  std::vector<ShellFacts>& all = entry->second;
+  if (!is_new) return all.at(shell.second);
   const Scene& scene = simulator_.scene();
   const auto [first, last] = scene.triangle_range(shell.first);
   for (std::uint32_t triangle = first; triangle < last; ++triangle) {
-    if (scene.shell_of_triangle(triangle) != shell.second) continue;
+    const std::uint32_t number = scene.shell_of_triangle(triangle);
+    if (number >= all.size()) all.resize(number + 1);
     const WorldFacet& facet = scene.facet(scene.facet_of_triangle(triangle));
-    ShellFacts& facts = entry->second;
-    if (!facts.material) facts.material = facet.material;
-    facts.is_foliage = facet.is_foliage;
-    facts.transmits = facts.transmits || facet.transmits;
+    if (!all[number].material) all[number].material = facet.material;
+    all[number].is_foliage = facet.is_foliage;
+    all[number].transmits = all[number].transmits || facet.transmits;
   }
-  return entry->second;
+  return all.at(shell.second);
+}
+
+bool PlacementWatch::is_foliage(BodyId body) const {
+  const Scene& scene = simulator_.scene();
+  const auto [first, last] = scene.triangle_range(body);
+  return first < last && scene.facet(scene.facet_of_triangle(first)).is_foliage;
 }
 
 bool PlacementWatch::lets_through(const Shell& shell) const {
@@ -322,16 +348,14 @@ std::vector<std::string> PlacementWatch::warnings() const {
   std::vector<std::string> lines;
   std::map<Problem, std::size_t> named;
   for (const Sighting& sighting : sightings_) {
-    if (sighting.may_be_meant && sighting.frames.size() == looks_) continue;
     if (++named[sighting.problem] > most_named) continue;
     lines.push_back(file_ + ": " + sighting.subject + " " + sighting.detail + " (" + frame_ranges(sighting.frames) +
                     ")");
   }
-  const std::map<Problem, const char*> words{{Problem::far_outside, "far outside the scenery"},
-                                             {Problem::under_ground, "under the ground"},
-                                             {Problem::shut_in, "shut in without a transmitter"},
-                                             {Problem::shut_in_alone, "shut in without a receiver"},
-                                             {Problem::drives_through, "inside of something"}};
+  const std::map<Problem, const char*> words{
+      {Problem::far_outside, "far outside the scenery"},   {Problem::under_ground, "under the ground"},
+      {Problem::shut_in, "shut in without a transmitter"}, {Problem::shut_in_alone, "shut in without a receiver"},
+      {Problem::drives_through, "inside of something"},    {Problem::goes_through, "led through walls"}};
   for (const auto& entry : named) {
     if (entry.second <= most_named) continue;
     lines.push_back(file_ + ": " + std::to_string(entry.second - most_named) + " more are " + words.at(entry.first));

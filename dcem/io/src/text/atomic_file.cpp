@@ -95,9 +95,8 @@ void AtomicFile::commit() {
   if (temporary_.empty()) return;
   close();
   std::error_code error;
-  fs::rename(temporary_, target_, error);
+  name_temporary(temporary_, target_, error);
   if (error) fail(error.value());
-  give_up_temporary(temporary_);
   temporary_.clear();
 }
 

@@ -104,11 +104,19 @@ void give_up_temporary(const fs::path& temporary) {
   all.paths.erase(temporary);
 }
 
-void remove_unfinished_files() noexcept {
+void name_temporary(const fs::path& temporary, const fs::path& target, std::error_code& error) {
   Temporaries& all = temporaries();
   const std::lock_guard<std::mutex> lock(all.mutex);
+  fs::rename(temporary, target, error);
+  if (!error) all.paths.erase(temporary);
+}
+
+void end_without_unfinished_files(int exit_code) noexcept {
+  Temporaries& all = temporaries();
+  all.mutex.lock();  // for good
   std::error_code ignored;
   for (const fs::path& file : all.paths) fs::remove(file, ignored);
+  ::_exit(exit_code);
 }
 
 FolderClaim::FolderClaim(const fs::path& folder)

@@ -2,6 +2,7 @@
 /// One run at a time in a folder, and what a run that was killed has left there. Private to dcem::io.
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace dcem::io {
@@ -11,6 +12,9 @@ namespace dcem::io {
 /// up.
 std::filesystem::path take_temporary_beside(const std::filesystem::path& target);
 void give_up_temporary(const std::filesystem::path& temporary);
+/// Gives it the name of what it was written for, and gives it up where that is done.
+void name_temporary(const std::filesystem::path& temporary, const std::filesystem::path& target,
+                    std::error_code& error);
 
 /// Holds a folder for one run, as long as the object lives; a process that is killed lets go of it.
 class FolderClaim {
