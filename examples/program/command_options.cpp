@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dcem/core/instruction_set.hpp"
+#include "dcem/io/known_names.hpp"
 #include "dcem/io/picture_format.hpp"
 
 namespace dcem::program {
@@ -185,34 +186,12 @@ std::vector<std::string> words_of(const std::string& list) {
 
 namespace {
 
-/// Letters to insert, remove or replace.
-std::size_t edits_between(const std::string& one, const std::string& other) {
-  std::vector<std::size_t> row(other.size() + 1);
-  for (std::size_t at = 0; at < row.size(); ++at) row[at] = at;
-  for (const char letter : one) {
-    std::size_t beside = row[0]++;
-    for (std::size_t at = 1; at < row.size(); ++at) {
-      const std::size_t replaced = beside + (letter == other[at - 1] ? 0 : 1);
-      beside = std::exchange(row[at], std::min({row[at] + 1, row[at - 1] + 1, replaced}));
-    }
-  }
-  return row.back();
-}
-
-/// " (did you mean 'links'?)", where a known word is near.
-std::string hint_for(const std::string& word, const std::vector<std::string>& known) {
-  const auto nearest =
-      std::ranges::min_element(known, {}, [&](const std::string& candidate) { return edits_between(word, candidate); });
-  const bool is_near = 2 * edits_between(word, *nearest) <= std::max(word.size(), nearest->size());
-  return is_near ? " (did you mean '" + *nearest + "'?)" : "";
-}
-
 /// Throws UsageError for a word that is none of the known ones, or that is there twice.
 void require_outputs(const std::string& list, const std::vector<std::string>& known, const std::string& command) {
   const std::vector<std::string> words = words_of(list);
   for (const std::string& word : words) {
     if (std::ranges::find(known, word) == known.end()) {
-      throw UsageError("--output: '" + word + "' is no file of 'dcem " + command + "'" + hint_for(word, known),
+      throw UsageError("--output: '" + word + "' is no file of 'dcem " + command + "'" + io::name_hint(word, known),
                        "some of " + comma_list(known));
     }
     if (std::ranges::count(words, word) > 1) {

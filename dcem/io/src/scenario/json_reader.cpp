@@ -6,6 +6,7 @@
 
 #include "dcem/core/error.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/known_names.hpp"
 #include "dcem/io/src/scenario/limits.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/known_names.hpp"
 #include "dcem/io/src/scenario/enum_words.hpp"
 #include "dcem/io/src/scenario/keys/blocks.hpp"
 #include "dcem/io/src/text/text_input.hpp"

@@ -4,6 +4,7 @@
 
 #include "dcem/channel/radio_map.hpp"
 #include "dcem/core/units.hpp"
+#include "dcem/io/known_names.hpp"
 #include "dcem/io/src/scenario/points_csv.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/text_input.hpp"

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/known_names.hpp"
 
 namespace dcem::io {
 

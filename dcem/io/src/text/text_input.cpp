@@ -8,7 +8,6 @@
 #include <fstream>
 #include <istream>
 #include <iterator>
-#include <numeric>
 #include <system_error>
 #include <utility>
 
@@ -54,20 +53,6 @@ std::string all_of(std::istream& stream, const std::filesystem::path& file) {
   return text;
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& file, const std::string& expectation) {
@@ -107,25 +92,6 @@ std::string printable(std::string_view text) {
 
 std::string in_quotes(std::string_view text) {
   return "'" + printable(text) + "'";
-}
-
-std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
-  DCEM_ASSERT(!candidates.empty());
-  const std::string_view start = name.substr(0, 4 * longest_quotation);  // bounds the work for absurd names
-  return *std::min_element(candidates.begin(), candidates.end(), [&](const std::string& a, const std::string& b) {
-    return edit_distance(start, a) < edit_distance(start, b);
-  });
-}
-
-std::string expected_names(std::string_view name, const std::vector<std::string>& candidates, std::size_t most) {
-  const std::string nearest = nearest_name(name, candidates);
-  const std::size_t longer = std::max(name.size(), nearest.size());
-  const bool is_near = 2 * edit_distance(name.substr(0, 4 * longest_quotation), nearest) <= longer + 1;
-  std::string text = is_near ? " (did you mean " + in_quotes(nearest) + "?)" : "";
-  text += candidates.size() == 1 ? "; expected " : "; expected one of ";
-  const std::size_t named = std::min(most, candidates.size());
-  for (std::size_t number = 0; number < named; ++number) text += (number == 0 ? "" : ", ") + candidates[number];
-  return named == candidates.size() ? text : text + ", ... (" + std::to_string(candidates.size()) + " in all)";
 }
 
 std::string number_text(double value) {

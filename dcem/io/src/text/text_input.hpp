@@ -24,15 +24,6 @@ std::string in_quotes(std::string_view text);
 /// Whether a name may stand in a line of a result or of a message: no control characters.
 bool is_printable(std::string_view text);
 
-/// The candidate with the fewest edits (letters inserted, removed or replaced) to `name`; of several the first.
-/// Precondition: at least one candidate.
-std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
-
-/// What is said of a name that is none of the candidates: " (did you mean 'rays'?); expected one of rays, seed". Asks
-/// only where the nearest is near; of more candidates than `most` the first, and how many there are. Precondition: at
-/// least one candidate.
-std::string expected_names(std::string_view name, const std::vector<std::string>& candidates, std::size_t most = 1000);
-
 /// The whole text as a finite number in decimal notation; nothing where it is anything else ("nan", "1e999", "1x").
 std::optional<double> parse_number(std::string_view text);
 /// The whole text as an integer; nothing where it is anything else or too large.

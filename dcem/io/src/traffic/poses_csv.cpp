@@ -7,6 +7,7 @@
 
 #include "dcem/core/units.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/known_names.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/csv_reader.hpp"
 #include "dcem/io/src/text/text_input.hpp"

@@ -6,6 +6,7 @@
 
 #include "dcem/core/statistics.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/known_names.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
 namespace dcem::io {

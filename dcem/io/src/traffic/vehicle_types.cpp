@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/known_names.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 #include "dcem/io/src/traffic/xml_reader.hpp"
 
