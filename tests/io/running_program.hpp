@@ -2,6 +2,7 @@
 /// The program `dcem` while it runs: its error stream is followed, and signals are sent at chosen moments.
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,11 +56,15 @@ class RunningProgram {
     while (read_more()) {
     }
     int status = 0;
-    ::waitpid(process_, &status, 0);
+    rusage used{};
+    ::wait4(process_, &status, 0, &used);
     process_ = -1;
+    peak_bytes_ = 1024.0 * static_cast<double>(used.ru_maxrss);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
   }
 
+  /// The most memory that it had, known at its end.
+  double peak_bytes() const { return peak_bytes_; }
   const std::string& said() const { return said_; }
   std::string last_line() const {
     const std::string text = said_.substr(0, said_.empty() ? 0 : said_.size() - 1);
@@ -91,6 +96,7 @@ class RunningProgram {
 
   pid_t process_ = -1;
   int error_ = -1;
+  double peak_bytes_ = 0.0;
   std::string said_;
 };
 
