@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes a SUMO trace of any number of vehicles at a time, all of which carry devices, and a scenario with their links.
 
-  make_fleet.py FOLDER VEHICLES STEPS [RANGE_M] [INTERACTIONS]
+  make_fleet.py FOLDER VEHICLES STEPS [RANGE_M] [INTERACTIONS] [LONGEST_PATH_M]
 
 The vehicles drive along parallel streets 40 m apart over a square that grows with their number: 625 vehicles for a square
 kilometre, so that each has the same number of others around it. In the middle lies the town of data/. Nothing is random.
@@ -23,7 +23,7 @@ SCENARIO = """{
   "mobility": {"sumo_fcd": "trace.fcd.xml", "vehicle_types": "vtypes.add.xml", "material": "metal",
     "devices": {"vehicles": "all", "power_dbm": 23}},
   "links": {"range_m": %g},
-  "propagation": {"max_reflections": 2, "max_transmissions": 0, "max_interactions": %d}
+  "propagation": {"max_reflections": 2, "max_transmissions": 0, "max_interactions": %d, "max_path_length_m": %s}
 }
 """
 
@@ -48,17 +48,18 @@ def write_trace(path, vehicles, steps):
 
 
 def main():
-    if len(sys.argv) not in (4, 5, 6):
+    if not 4 <= len(sys.argv) <= 7:
         sys.exit(__doc__)
     folder, vehicles, steps = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
     range_m = float(sys.argv[4]) if len(sys.argv) > 4 else 150.0
     interactions = int(sys.argv[5]) if len(sys.argv) > 5 else 0
+    longest_m = sys.argv[6] if len(sys.argv) > 6 else "null"
     os.makedirs(folder, exist_ok=True)
     town = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "town.obj")
     with open(os.path.join(folder, "vtypes.add.xml"), "w", encoding="utf-8") as file:
         file.write('<additional>\n    <vType id="car" length="4.4" width="1.8" height="1.5"/>\n</additional>\n')
     with open(os.path.join(folder, "scenario.json"), "w", encoding="utf-8") as file:
-        file.write(SCENARIO % (os.path.relpath(town, folder), range_m, interactions))
+        file.write(SCENARIO % (os.path.relpath(town, folder), range_m, interactions, longest_m))
     write_trace(os.path.join(folder, "trace.fcd.xml"), vehicles, steps)
     print(f"{folder}: {steps} steps of {vehicles} vehicles")
 

@@ -70,8 +70,10 @@ struct PropagationSettings {
   std::optional<double> valid_until_limit_m;
   std::uint64_t seed = 1;                  ///< turns the sphere of rays, with receiver id and frame number
   std::optional<double> min_path_gain_db;  ///< paths weaker than this are dropped after their field is known, dB
-  AnyPathLoss path_loss{};                 ///< a real factor beside free-space spreading
-  std::optional<Atmosphere> atmosphere{};  ///< gases and rain; default: none
+  /// Paths longer than this are neither looked for nor reported, metres; none: of any length. Scattered power has all.
+  std::optional<double> max_path_length_m;
+  AnyPathLoss path_loss{};                                ///< a real factor beside free-space spreading
+  std::optional<Atmosphere> atmosphere{};                 ///< gases and rain; default: none
   ArrayChannel antenna_array = ArrayChannel::plane_wave;  ///< how the elements of arrays differ from each other
   DiffuseSettings diffuse{};                              ///< power that rough surfaces scatter
 };

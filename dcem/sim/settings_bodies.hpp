@@ -24,6 +24,8 @@ DCEM_INLINE void validate(const SimulationSettings& settings) {
   check(!propagation.max_interactions || *propagation.max_interactions >= 0, "max_interactions: expected 0 or more");
   check(!propagation.min_path_gain_db || std::isfinite(*propagation.min_path_gain_db),
         "min_path_gain_db: expected a finite number");
+  const double longest_m = propagation.max_path_length_m.value_or(1.0);
+  check(longest_m >= 1e-3 && longest_m <= 1e9, "max_path_length_m: expected 0.001 to 1e9");
   const double limit_m = propagation.valid_until_limit_m.value_or(1.0);
   check(limit_m >= 1e-3 && limit_m <= 100.0, "valid_until_limit_m: expected 0.001 to 100");
   const double range_m = settings.links.range_m.value_or(1.0);

@@ -81,6 +81,7 @@ TEST_CASE("what a scenario leaves out has the documented defaults") {
   CHECK(propagation.rays == 20'000);
   CHECK(propagation.seed == 1);
   CHECK_FALSE(propagation.min_path_gain_db.has_value());
+  CHECK_FALSE(propagation.max_path_length_m.has_value());
   CHECK_FALSE(propagation.valid_until_limit_m.has_value());
   CHECK(propagation.path_loss == AnyPathLoss{});
   CHECK(scenario.time.start_s == 0.0);
@@ -104,7 +105,7 @@ TEST_CASE("every setting arrives") {
     "propagation": {"line_of_sight": false, "max_reflections": 10, "max_transmissions": 0, "max_diffractions": 0,
       "max_interactions": 3, "discovery": "sampled", "rays": 5e3, "seed": 12, "cache": "off", "diffuse": {"enabled": false},
       "path_loss": {"model": "close_in", "exponent": 2.1, "attenuation_db_per_m": 0.01}, "atmosphere": null,
-      "antenna_array": null, "min_path_gain_db": -150.5,
+      "antenna_array": null, "min_path_gain_db": -150.5, "max_path_length_m": 750,
       "valid_until_limit_m": 0.25},
     "output": {"paths": true, "links": false, "pdp": {"bin_s": 2e-9, "mode": "coherent"}, "npz": false}, "links": "all")";
   const io::Scenario scenario = files.load();
@@ -122,6 +123,7 @@ TEST_CASE("every setting arrives") {
   CHECK(propagation.seed == 12);
   CHECK(propagation.path_loss == AnyPathLoss{CloseIn{2.1, 0.01}});
   CHECK(propagation.min_path_gain_db == -150.5);
+  CHECK(propagation.max_path_length_m == 750.0);
   CHECK(propagation.valid_until_limit_m == 0.25);
   CHECK(scenario.output.paths);
   CHECK_FALSE(scenario.output.links);

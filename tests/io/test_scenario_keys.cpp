@@ -73,7 +73,7 @@ TEST_CASE("an unknown key is answered with all that may stand there, the nearest
   CHECK(said_of("a.json", scenario_with(R"("propagation": {"ray": 5})")) ==
         "a.json:10: propagation.ray: unknown key (did you mean 'rays'?); expected one of line_of_sight, "
         "max_reflections, max_transmissions, max_diffractions, max_interactions, discovery, rays, rays_steady, seed, "
-        "cache, diffraction, diffuse, path_loss, atmosphere, antenna_array, min_path_gain_db, "
+        "cache, diffraction, diffuse, path_loss, atmosphere, antenna_array, min_path_gain_db, max_path_length_m, "
         "valid_until_limit_m");
   CHECK(said_of("a.json", scenario_with(R"("itu": {"colour": "blue"})")) ==
         "a.json:10: itu.colour: unknown key; expected one of revision, allow_extrapolation");

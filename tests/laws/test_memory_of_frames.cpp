@@ -301,6 +301,7 @@ TEST_CASE(
     propagation.diffuse.tile_budget = 200;
   });
   check({2, 1, 1, 2}, [](PropagationSettings& propagation) { propagation.min_path_gain_db = -85.0; });
+  check({2, 1, 1, 2}, [](PropagationSettings& propagation) { propagation.max_path_length_m = 20.0; });
   check({2, 1, 1, 2}, [](PropagationSettings& propagation) { propagation.line_of_sight = false; });
   check({1, 0, 0, 1}, [](PropagationSettings&) {});
   check({0, 1, 1, 1},

@@ -86,6 +86,13 @@ TEST_CASE("numbers that would spread as NaN are refused") {
   CHECK(names(refusal([](auto& s) { s.propagation.min_path_gain_db = not_a_number; }), "min_path_gain_db"));
 }
 
+TEST_CASE("the longest path is a length") {
+  for (const double bad : {0.0, -1.0, not_a_number, unbounded, 2e9}) {
+    CHECK(names(refusal([&](auto& s) { s.propagation.max_path_length_m = bad; }), "max_path_length_m"));
+  }
+  CHECK(refusal([](auto& s) { s.propagation.max_path_length_m = 300.0; }).empty());
+}
+
 TEST_CASE("the order in force is the smaller of the two bounds") {
   PropagationSettings propagation;
   propagation.max_reflections = 3;

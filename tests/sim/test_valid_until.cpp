@@ -92,6 +92,9 @@ TEST_CASE("valid_until_m is there where it is asked for and proved, and nowhere 
   settings = settings_with(0.5);
   settings.propagation.min_path_gain_db = -200.0;
   CHECK_FALSE(all_known(settings));
+  settings = settings_with(0.5);
+  settings.propagation.max_path_length_m = 500.0;
+  CHECK_FALSE(all_known(settings));
 }
 
 TEST_CASE("the limit of valid_until_m is checked") {

@@ -1,6 +1,7 @@
 #pragma once
 /// What one receiver's search looks for, and how.
 #include <cstdint>
+#include <limits>
 
 #include "dcem/paths/halves/covered.hpp"
 #include "dcem/paths/solve/edge_rules.hpp"
@@ -20,6 +21,7 @@ struct PathSearchSettings {
   /// Where the search is not exhaustive: the sequences of up to so many elements that `halves_cover` names are all
   /// proposed by the caller, and rays look for the others alone.
   int joined = 0;
+  double max_path_length_m = std::numeric_limits<double>::infinity();  ///< what is longer need not be proposed
 };
 
 /// Whether rays have anything to look for.

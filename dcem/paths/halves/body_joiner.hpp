@@ -16,7 +16,7 @@ namespace dcem {
 class BodyJoiner {
  public:
   BodyJoiner(const Scene& scene, const FacetOutlines& outlines, const JoinOrders& orders)
-      : gates_(scene, outlines),
+      : gates_(scene, outlines, orders.longest_m),
         layers_(scene, outlines, orders),
         outlines_(outlines),
         orders_(orders),

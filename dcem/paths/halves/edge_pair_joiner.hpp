@@ -12,8 +12,8 @@ namespace dcem {
 
 class EdgePairJoiner {
  public:
-  EdgePairJoiner(const Scene& scene, const FacetOutlines& outlines)
-      : gates_(scene, outlines), pairs_(scene, outlines) {}
+  EdgePairJoiner(const Scene& scene, const FacetOutlines& outlines, const JoinOrders& orders)
+      : gates_(scene, outlines, orders.longest_m), pairs_(scene, outlines) {}
 
   /// Calls `visit(sequence)` for each; `reached`: what the transmitter reaches, where that is known.
   template <typename Visit>

@@ -6,13 +6,13 @@
 /// Over a mirror and an edge the point on the edge is in that cone, and follows from the image and the other end in
 /// closed form. Over two edges: edge_pairs.hpp; over bodies: body_joiner.hpp. What is left is looked up in both maps,
 /// each point at the end that must see it. The solver decides.
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 #include "dcem/paths/halves/beam_lists.hpp"
 #include "dcem/paths/halves/body_joiner.hpp"
 #include "dcem/paths/halves/edge_pair_joiner.hpp"
+#include "dcem/paths/halves/in_both.hpp"
 #include "dcem/paths/halves/layer_joiner.hpp"
 #include "dcem/paths/halves/pair_gates.hpp"
 #include "dcem/paths/halves/path_half.hpp"
@@ -23,11 +23,11 @@ namespace dcem {
 class HalfJoiner {
  public:
   HalfJoiner(const Scene& scene, const FacetOutlines& outlines, const JoinOrders& orders)
-      : gates_(scene, outlines),
+      : gates_(scene, outlines, orders.longest_m),
         orders_(orders),
         layers_(scene, outlines, orders),
         bodies_(scene, outlines, orders),
-        edge_pairs_(scene, outlines) {}
+        edge_pairs_(scene, outlines, orders) {}
 
   /// Calls `visit(sequence)`, from the receiver outwards, for each; seldom twice for one. With what the transmitter
   /// reaches, where that is known, ways over its mirrors need not be looked for.
@@ -80,14 +80,14 @@ class HalfJoiner {
   void singles(const PathHalf& receiver, const HalfLayer& near, const PathHalf& transmitter, const HalfLayer& far,
                Visit& visit) {
     if (orders_.interactions < 1) return;
-    for (std::size_t at = 0; at < near.mirrors.size() && orders_.reflections >= 1; ++at) {
-      if (!std::ranges::binary_search(far.mirrors, near.mirrors[at])) continue;
-      gates_.mirror(receiver, transmitter, near.mirrors[at], near.images_m[at], visit);
+    if (orders_.reflections >= 1) {
+      for_each_in_both<FacetId>(near.mirrors, far.mirrors, [&](std::size_t at) {
+        gates_.mirror(receiver, transmitter, near.mirrors[at], near.images_m[at], visit);
+      });
     }
     if (orders_.diffractions < 1) return;
-    for (const WedgeId edge : near.edges) {
-      if (std::ranges::binary_search(far.edges, edge)) gates_.edge(receiver, transmitter, edge, visit);
-    }
+    for_each_in_both<WedgeId>(near.edges, far.edges,
+                              [&](std::size_t at) { gates_.edge(receiver, transmitter, near.edges[at], visit); });
   }
 
   /// Two elements, with what the transmitter reaches.

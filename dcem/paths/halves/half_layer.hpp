@@ -18,10 +18,16 @@ struct HalfLayer : SeenLayer {
   std::vector<Vec3> images_m;  ///< of the end, one in each mirror
   ConeList cones;              ///< what each image may see
 
-  /// Lays out what stands in `mirrors` and `edges` for an end.
-  void lay_out(const Scene& scene, const Vec3& end_m, const Vec3& origin_m) {
+  /// Lays out what stands in `mirrors` and `edges` for an end. `pairs`: for sequences of two elements, too.
+  void lay_out(const Scene& scene, const Vec3& end_m, const Vec3& origin_m, bool pairs) {
+    if (!pairs) return find_images(scene, end_m);
     lay_out_images(scene, end_m, origin_m);
     lay_out_edges(scene, end_m, origin_m);
+  }
+  /// The images alone.
+  void find_images(const Scene& scene, const Vec3& end_m) {
+    images_m.clear();
+    for (const FacetId id : mirrors) images_m.push_back(mirrored(scene.facet(id).plane, end_m));
   }
   void lay_out_images(const Scene& scene, const Vec3& end_m, const Vec3& origin_m);
   void lay_out_edges(const Scene& scene, const Vec3& end_m, const Vec3& origin_m);
@@ -48,12 +54,11 @@ struct HalfLayer : SeenLayer {
 
 inline void HalfLayer::lay_out_images(const Scene& scene, const Vec3& end_m, const Vec3& origin_m) {
   origin_m_ = origin_m;
-  images_m.clear();
+  find_images(scene, end_m);
   cones.clear();
-  for (const FacetId id : mirrors) {
-    const WorldFacet& facet = scene.facet(id);
-    images_m.push_back(mirrored(facet.plane, end_m));
-    cones.add(origin_m_, images_m.back(), facet.plane, scene.hull_m(facet));
+  for (std::size_t mirror = 0; mirror < mirrors.size(); ++mirror) {
+    const WorldFacet& facet = scene.facet(mirrors[mirror]);
+    cones.add(origin_m_, images_m[mirror], facet.plane, scene.hull_m(facet));
   }
   image_clusters_.build(images_m.size(), [&](std::uint32_t mirror) {
     return Aabb<double>{images_m[mirror] - origin_m_, images_m[mirror] - origin_m_};

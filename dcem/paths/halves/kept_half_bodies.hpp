@@ -9,7 +9,9 @@
 namespace dcem {
 
 DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
-                                  const HalfSettings& settings, const HalfLists& wanted, std::span<const char> moved) {
+                                  const HalfSettings& asked, const HalfLists& wanted, std::span<const char> moved) {
+  HalfSettings settings = asked;
+  settings.pairs = settings.pairs || wanted.lanes != nullptr;  // lists are of what images may see
   const bool is_followed = end_.has_value();
   const Vec3 step_m = is_followed ? end.position_m - end_->position_m : Vec3(0.0);
   note(end, wanted.receivers);
@@ -62,7 +64,7 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
   is_closer_ = false;
   has_scenery_ = true;
   if (!place_) return half_.find_scenery(scene, outlines, end, of_place);
-  half_.take_scenery(scene, outlines, end, *place_);
+  half_.take_scenery(scene, outlines, end, of_place, *place_);
   if (images_at_once_) half_.lay_out_images(scene, outlines);
 }
 

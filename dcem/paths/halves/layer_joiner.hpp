@@ -11,7 +11,7 @@ namespace dcem {
 class LayerJoiner {
  public:
   LayerJoiner(const Scene& scene, const FacetOutlines& outlines, const JoinOrders& orders)
-      : gates_(scene, outlines), orders_(orders) {}
+      : gates_(scene, outlines, orders.longest_m), orders_(orders) {}
 
   /// Calls `visit(sequence)`, from the receiver outwards, for each pair of an element of `near`, of the receiver, and
   /// one of `far`, of the transmitter.

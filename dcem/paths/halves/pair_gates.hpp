@@ -1,6 +1,7 @@
 #pragma once
 /// One or two mirrors and edges, one next to each end of a path: whether the points of a path over them lie on them,
 /// and whether both ends may see theirs. Cheapest first.
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -14,7 +15,9 @@ namespace dcem {
 /// Calls `visit(sequence)`, the sequence from the receiver outwards, for what passes.
 class PairGates {
  public:
-  PairGates(const Scene& scene, const FacetOutlines& outlines) : gates_(scene, outlines) {}
+  /// Paths longer than `longest_m` need not pass.
+  PairGates(const Scene& scene, const FacetOutlines& outlines, double longest_m)
+      : gates_(scene, outlines), longest_m_(longest_m + rounding_m), is_bounded_(std::isfinite(longest_m)) {}
 
   const Scene& scene() const { return gates_.scene(); }
 
@@ -27,6 +30,7 @@ class PairGates {
   /// One mirror; the image is that of the receiver.
   template <typename Visit>
   void mirror(const PathHalf& receiver, const PathHalf& transmitter, FacetId facet, const Vec3& image_m, Visit& visit) {
+    if (is_too_long(image_m, transmitter.position_m())) return;
     const auto point_m = gates_.crossing(facet, image_m, transmitter.position_m());
     if (point_m) single(receiver, transmitter, facet, *point_m, visit);
   }
@@ -34,14 +38,15 @@ class PairGates {
   template <typename Visit>
   void edge(const PathHalf& receiver, const PathHalf& transmitter, WedgeId edge, Visit& visit) {
     const auto point_m = gates_.edge_point(edge, receiver.position_m(), transmitter.position_m());
-    if (point_m) single(receiver, transmitter, edge, *point_m, visit);
+    if (!point_m || is_too_long(receiver.position_m(), *point_m, transmitter.position_m())) return;
+    single(receiver, transmitter, edge, *point_m, visit);
   }
 
   /// One mirror of each end, and the images in them.
   template <typename Visit>
   void mirrors(const PathHalf& receiver, FacetId near, const Vec3& near_image_m, const PathHalf& transmitter,
                FacetId far, const Vec3& far_image_m, Visit& visit) {
-    if (near == far) return;
+    if (near == far || is_too_long(near_image_m, far_image_m)) return;
     const auto far_m = gates_.crossing(far, far_image_m, near_image_m);
     if (!far_m) return;
     const auto near_m = gates_.crossing(near, near_image_m, *far_m);
@@ -55,7 +60,7 @@ class PairGates {
     const WorldWedge& wedge = scene().wedge(edge);
     if (wedge.facets[0] == facet || wedge.facets[1] == facet) return;  // that is in the wedge's own terms
     const auto edge_m = gates_.edge_point(edge, beside.position_m(), image_m);
-    if (!edge_m) return;
+    if (!edge_m || is_too_long(beside.position_m(), *edge_m, image_m)) return;
     // Most edges that an image sees are hidden from the end that the path comes to.
     if (gates_.hides(beside, edge, *edge_m)) return;
     const auto mirror_m = gates_.crossing(facet, image_m, *edge_m);
@@ -72,6 +77,16 @@ class PairGates {
   }
 
  private:
+  /// What images and points on edges may be off by, far above rounding.
+  static constexpr double rounding_m = 0.01;
+
+  bool is_too_long(const Vec3& from_m, const Vec3& to_m) const {
+    return is_bounded_ && glm::distance(from_m, to_m) > longest_m_;
+  }
+  bool is_too_long(const Vec3& from_m, const Vec3& over_m, const Vec3& to_m) const {
+    return is_bounded_ && glm::distance(from_m, over_m) + glm::distance(over_m, to_m) > longest_m_;
+  }
+
   template <typename Visit>
   void single(const PathHalf& receiver, const PathHalf& transmitter, SequenceElement element, const Vec3& point_m,
               Visit& visit) {
@@ -88,6 +103,8 @@ class PairGates {
   }
 
   JoinGates gates_;
+  double longest_m_;
+  bool is_bounded_;
   Sequence sequence_;
 };
 

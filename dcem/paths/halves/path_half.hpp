@@ -28,7 +28,8 @@ class PathHalf {
                     const HalfSettings& settings);
   /// Takes what may be seen of the scenery from the place that the end is in, which must stay as long as the half uses
   /// it. Images in mirrors of the scenery are laid out when they are asked for.
-  void take_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const Place& place);
+  void take_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const HalfSettings& settings,
+                    const Place& place);
   /// Lays out the images in all mirrors of the scenery, where they are not yet.
   void lay_out_images(const Scene& scene, const FacetOutlines& outlines);
   /// The same of all other bodies, where they are now. The scenery must be known. `moved`, by body: which of them have
@@ -77,6 +78,7 @@ class PathHalf {
   Sight own_sight_;
   const Place* place_ = nullptr;  ///< none: the end looks itself
   bool has_images_ = false;       ///< those in mirrors of the scenery
+  bool has_pairs_ = true;         ///< as in `HalfSettings`
   Vec3 position_m_{0.0};
   std::optional<BodyId> ignored_body_;
   std::array<HalfLayer, 3> layers_;

@@ -12,23 +12,30 @@ DCEM_INLINE void PathHalf::find_scenery(const Scene& scene, const FacetOutlines&
   has_images_ = true;
   own_sight_.look_from(end);
   own_sight_.find_scenery(scene, outlines, settings, layers_[0]);
-  layers_[0].lay_out(scene, position_m_, outlines.middle_m());
+  has_pairs_ = settings.pairs;
+  layers_[0].lay_out(scene, position_m_, outlines.middle_m(), has_pairs_);
 }
 
 DCEM_INLINE void PathHalf::take_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
-                                        const Place& place) {
+                                        const HalfSettings& settings, const Place& place) {
   note(end);
   has_images_ = false;
-  if (place_ == &place) return layers_[0].see_edges_from(position_m_);
+  has_pairs_ = settings.pairs;
+  if (place_ == &place) {
+    if (has_pairs_) layers_[0].see_edges_from(position_m_);
+    return;
+  }
   if (place_ == nullptr) own_sight_ = Sight(map_pixels_);
   place_ = &place;
   static_cast<SeenLayer&>(layers_[0]) = place.scenery();
-  layers_[0].lay_out_edges(scene, position_m_, outlines.middle_m());
+  if (has_pairs_) layers_[0].lay_out_edges(scene, position_m_, outlines.middle_m());
 }
 
 DCEM_INLINE void PathHalf::lay_out_images(const Scene& scene, const FacetOutlines& outlines) {
-  if (!has_images_) layers_[0].lay_out_images(scene, position_m_, outlines.middle_m());
+  if (has_images_) return;
   has_images_ = true;
+  if (!has_pairs_) return layers_[0].find_images(scene, position_m_);
+  layers_[0].lay_out_images(scene, position_m_, outlines.middle_m());
 }
 
 DCEM_INLINE void PathHalf::find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
@@ -36,9 +43,10 @@ DCEM_INLINE void PathHalf::find_bodies(const Scene& scene, const FacetOutlines& 
   for (const bool have_moved : {true, false}) {
     HalfLayer& layer = layers_[have_moved ? 1 : 2];
     sight().find_bodies(scene, outlines, settings, {ignored_body_, moved, have_moved}, layer);
-    layer.lay_out(scene, position_m_, outlines.middle_m());
-    bodies_[have_moved ? 0 : 1].lay_out(scene, layer, position_m_, outlines.middle_m());
+    layer.lay_out(scene, position_m_, outlines.middle_m(), has_pairs_);
+    if (has_pairs_) bodies_[have_moved ? 0 : 1].lay_out(scene, layer, position_m_, outlines.middle_m());
   }
+  if (!has_pairs_) return;
   if (place_ != nullptr) {
     const std::span<const PlaceMirror> mirrors = place_->mirrors();
     const auto cone_at = [&](std::size_t at) -> MirrorCone { return {mirrors[at].cone, mirrors[at].number}; };

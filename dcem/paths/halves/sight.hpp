@@ -37,6 +37,9 @@ struct HalfSettings {
   /// Where at least so many facets of the scenery may be seen, the view is looked at twice. That only takes away what
   /// nothing comes of.
   std::size_t closer_from = std::numeric_limits<std::size_t>::max();
+  /// Nothing farther than this counts as seen, along the way over a mirror where one is looked through.
+  double reach_m = std::numeric_limits<double>::infinity();
+  bool pairs = true;  ///< halves are joined over two elements and more: images need what they may see
 };
 
 /// Bodies that are looked at.
@@ -135,6 +138,8 @@ class Sight {
   /// A cell with fewer facets is not looked into: it takes longer than it saves.
   static constexpr std::size_t crowded = 24;
   static constexpr int most_cell_pixels = 512;
+  /// What images and points may be off by, far above rounding.
+  static constexpr double in_reach_m = 0.01;
 
   /// By how much more than for one point a lift counts: see `nearer_on`.
   double lift_share() const { return points_m_.size() == 1 ? 1.0 : 2.0; }
@@ -182,7 +187,13 @@ class Sight {
       return std::abs(signed_distance_m(plane, point_m)) <= in_plane_guard_m;
     });
   }
-  bool is_beside(const Aabb<double>& box) const { return beam_ && beam_->is_beside(box); }
+  /// Whether all of a box is farther away than anything that is looked for.
+  bool is_beyond(const Aabb<double>& box) const {
+    const Vec3 away_m = glm::clamp(position_m(), box.min, box.max) - position_m();
+    return glm::dot(away_m, away_m) > reach_m_ * reach_m_;
+  }
+  /// Whether nothing in a box is looked for: it is too far away, or beside the mirror that is looked through.
+  bool is_out_of_view(const Aabb<double>& box) const { return is_beyond(box) || (beam_ && beam_->is_beside(box)); }
   /// Whether all points are between the faces of a wedge, where it is solid.
   bool is_inside(const Wedge& wedge) const {
     return std::none_of(points_m_.begin(), points_m_.end(),
@@ -193,9 +204,10 @@ class Sight {
   ViewMap map_;
   std::vector<Vec3> points_m_, offsets_m_;  ///< of several: from their middle
   Vec3 middle_m_{0.0};
-  std::optional<MirrorBeam> beam_;  ///< where a mirror is looked through
-  double radius_m_ = 0.0;           ///< how far points are from the middle
-  bool is_body_ = false;            ///< the points are the corners of a body that is looked from
+  std::optional<MirrorBeam> beam_;                            ///< where a mirror is looked through
+  double radius_m_ = 0.0;                                     ///< how far points are from the middle
+  double reach_m_ = std::numeric_limits<double>::infinity();  ///< from `position_m()`, with what points may be off by
+  bool is_body_ = false;  ///< the points are the corners of a body that is looked from
   std::optional<BodyId> ignored_body_;
   std::vector<FacetId> mounted_on_;
   std::vector<char> seen_;

@@ -85,16 +85,17 @@ DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& ou
 DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                         std::vector<FacetId>& seen) {
   seen_.assign(outlines.size(), 0);
+  reach_m_ = settings.reach_m + radius_m_ + in_reach_m;
   const auto look_at = [&](FacetId id) {
     if (seen_[id.value] != 0 || !may_see(scene, outlines, id)) return;
     seen_[id.value] = 1;
     seen.push_back(id);
     cover(scene, outlines, id, settings, map_);
   };
-  const auto hidden = [&](const Aabb<double>& box) { return is_beside(box) || map_.hides(box, longest_lift_m); };
+  const auto hidden = [&](const Aabb<double>& box) { return is_out_of_view(box) || map_.hides(box, longest_lift_m); };
   outlines.visit_from(position_m(), hidden, look_at);
   outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
-    if (is_lifted_far(scene, outlines, id) && !is_beside(outlines.of(id).box)) look_at(id);
+    if (is_lifted_far(scene, outlines, id) && !is_out_of_view(outlines.of(id).box)) look_at(id);
   });
 }
 
@@ -151,7 +152,8 @@ DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& 
   for (std::uint32_t number = 0; number < outlines.bodies().size(); ++number) {
     const FacetOutlines::BodyFacets& body = outlines.bodies()[number];
     if (body.box.empty() || !bodies.takes(number + 1)) continue;  // body 0 is the scenery
-    const bool is_hidden = is_beside(body.box) || map_.hides(body.box, longest_lift_m);
+    if (is_out_of_view(body.box)) continue;
+    const bool is_hidden = map_.hides(body.box, longest_lift_m);
     for (std::uint32_t index = body.first; index < body.first + body.count; ++index) {
       const FacetId id(index);
       if (is_hidden && !is_lifted_far(scene, outlines, id)) continue;
@@ -242,6 +244,8 @@ DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines
   const auto out_of_reach = [&](WedgeId id) {
     const WorldWedge& wedge = scene.wedge(id);
     if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules) || is_inside(wedge.edge)) return true;
+    const Vec3 &start_m = wedge.edge.start_m, &end_m = wedge.edge.end_m;
+    if (is_beyond({glm::min(start_m, end_m), glm::max(start_m, end_m)})) return true;
     return !map_.shows(wedge.edge.start_m, wedge.edge.end_m, nearer_on(scene, outlines, id));
   };
   std::ranges::sort(layer.mirrors);

@@ -19,6 +19,7 @@
 #include "dcem/paths/halves/beam_lists.hpp"
 #include "dcem/paths/halves/double_images.hpp"
 #include "dcem/paths/halves/half_joiner.hpp"
+#include "dcem/paths/halves/in_both.hpp"
 #include "dcem/paths/halves/join_gates.hpp"
 #include "dcem/paths/sequence.hpp"
 
@@ -79,7 +80,8 @@ class TripleJoiner {
   void join(const Ends& ends, const BeamTable& near, const BeamTable& far, Visit& visit) {
     if (orders_.interactions < 3) return;
     if (orders_.reflections >= 3) {
-      for_each_of_both(near.lit_facets(), far.lit_facets(), [&](std::uint32_t middle) {
+      for_each_in_both<std::uint32_t>(near.lit_facets(), far.lit_facets(), [&](std::size_t at) {
+        const std::uint32_t middle = near.lit_facets()[at];
         three_mirrors(ends, FacetId(middle), near.mirrors_before(FacetId(middle)), far.mirrors_before(FacetId(middle)),
                       visit);
       });
@@ -87,18 +89,9 @@ class TripleJoiner {
     if (orders_.diffractions < 1 || orders_.reflections < 2) return;
     two_mirrors_to_edge(ends, {ends.receiver, near}, {ends.transmitter, far}, false, visit);
     two_mirrors_to_edge(ends, {ends.transmitter, far}, {ends.receiver, near}, true, visit);
-    for_each_of_both(near.lit_edges(), far.lit_edges(),
-                     [&](std::uint32_t edge) { edge_between_mirrors(ends, near, far, WedgeId(edge), visit); });
-  }
-
-  /// Numbers that are in both of two ascending lists.
-  template <typename Visit>
-  static void for_each_of_both(std::span<const std::uint32_t> one, std::span<const std::uint32_t> other,
-                               Visit&& visit) {
-    const bool is_shorter = one.size() < other.size();
-    for (const std::uint32_t number : is_shorter ? one : other) {
-      if (std::ranges::binary_search(is_shorter ? other : one, number)) visit(number);
-    }
+    for_each_in_both<std::uint32_t>(near.lit_edges(), far.lit_edges(), [&](std::size_t at) {
+      edge_between_mirrors(ends, near, far, WedgeId(near.lit_edges()[at]), visit);
+    });
   }
 
   template <typename Visit>

@@ -2,6 +2,7 @@
 /// How a `BasicSimulator` moves to a frame; included by basic_simulator.hpp.
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "dcem/paths/query/obstruction.hpp"
@@ -192,7 +193,8 @@ PathSearchSettings BasicSimulator<Surface, Index>::search_settings(std::span<con
           interaction_order(propagation),
           {degrees_to_radians(propagation.diffraction.min_exterior_angle_deg), propagation.diffraction.free_edges,
            propagation.diffraction.region == DiffractionRegion::shadow, embedded_edges},
-          plan_.joined};
+          plan_.joined,
+          propagation.max_path_length_m.value_or(std::numeric_limits<double>::infinity())};
 }
 
 }  // namespace dcem

@@ -2,6 +2,7 @@
 /// How a `BasicSimulator` solves the links of a frame; included by basic_simulator.hpp.
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "dcem/channel/link_statistics.hpp"
@@ -176,10 +177,12 @@ LinkResult BasicSimulator<Surface, Index>::finish_link(std::vector<PathContribut
   link.transmitter = transmitter;
   link.diffuse = std::move(diffuse);
   bool line_of_sight = false;
+  const double longest_m = propagation.max_path_length_m.value_or(std::numeric_limits<double>::infinity());
   for (PathContribution* const path : order) {
     const bool is_direct = path->path.interactions.empty();
     if (is_direct) line_of_sight = path->path.foliage.empty();  // in foliage the segment is not free, though it is open
     if (is_direct && !propagation.line_of_sight) continue;
+    if (path->path.length_m > longest_m) continue;
     const bool too_weak =
         propagation.min_path_gain_db && !(power_ratio_to_db(path->power_ratio) >= *propagation.min_path_gain_db);
     if (!too_weak) link.paths.push_back(std::move(*path));

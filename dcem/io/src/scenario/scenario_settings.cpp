@@ -213,6 +213,7 @@ void read_fields(const JsonObject& file, PropagationSettings& settings) {
     settings.antenna_array = read_word<ArrayChannel>(*value);
   }
   if (const auto value = find_unless_null(file, "min_path_gain_db")) settings.min_path_gain_db = value->number();
+  if (const auto value = find_unless_null(file, "max_path_length_m")) settings.max_path_length_m = value->number();
   if (const auto value = find_unless_null(file, "valid_until_limit_m")) settings.valid_until_limit_m = value->number();
 }
 

@@ -76,6 +76,7 @@ Json propagation_json(const RunFacts& facts) {
           {"path_loss", path_loss_json(settings.path_loss)},
           {"atmosphere", atmosphere_json(settings.atmosphere)},
           {"min_path_gain_db", optional_json(settings.min_path_gain_db)},
+          {"max_path_length_m", optional_json(settings.max_path_length_m)},
           {"valid_until_limit_m", optional_json(settings.valid_until_limit_m)}};
 }
 

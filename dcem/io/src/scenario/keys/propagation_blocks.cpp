@@ -181,6 +181,14 @@ std::vector<KeyRule> keys_of_fields(const PropagationSettings& standards) {
        Absence{Absence::Kind::value, "null"},
        "Weaker paths are dropped once their field is known; null: none.",
        "-150"},
+      {"max_path_length_m",
+       {number({1e-3, 1e9}, "m"), null()},
+       Absence{Absence::Kind::value, "null"},
+       "Longer paths are neither looked for nor reported (scattered power has all of its own); null: of any length. In "
+       "the open, where each vehicle sees all others, work and memory then grow with the vehicles instead of with "
+       "their "
+       "square.",
+       "300"},
       {"valid_until_limit_m",
        {number({1e-3, 100.0}, "m"), null()},
        Absence{Absence::Kind::value, "null"},
