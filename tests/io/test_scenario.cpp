@@ -347,6 +347,16 @@ TEST_CASE("ITU materials outside their table: an error, or a warning when asked 
   CHECK(contains(files.error(), "is in revision 3"));
 }
 
+TEST_CASE("links that are longer than any path may be are warned of") {
+  ScenarioCase files;
+  files.more = R"(, "links": {"range_m": 150}, "propagation": {"max_path_length_m": 100.5})";
+  REQUIRE(files.load().warnings.size() == 1);
+  CHECK(contains(files.load().warnings[0],
+                 "links.range_m is 150, propagation.max_path_length_m 100.5: longer links have no path"));
+  files.more = R"(, "links": {"range_m": 150}, "propagation": {"max_path_length_m": 150})";
+  CHECK(files.load().warnings.empty());
+}
+
 TEST_CASE("materials that nothing uses are checked but not added") {
   ScenarioCase files;
   files.materials += R"(, "spare": {"model": "itu", "itu": "wet_ground"})";  // not in force at 30 GHz, and not used

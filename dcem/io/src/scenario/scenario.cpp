@@ -78,6 +78,15 @@ void warn_of_lost_scattering(const std::filesystem::path& file, Scenario& scenar
   }
 }
 
+/// Links that are longer than any path may be have none: hardly what is meant.
+void warn_of_links_without_paths(const std::filesystem::path& file, Scenario& scenario) {
+  const auto &range_m = scenario.settings.links.range_m, &longest_m = scenario.settings.propagation.max_path_length_m;
+  if (!range_m || !longest_m || *range_m <= *longest_m) return;
+  scenario.warnings.push_back(file.string() + ": links.range_m is " + number_text(*range_m) +
+                              ", propagation.max_path_length_m " + number_text(*longest_m) +
+                              ": longer links have no path, the direct one neither");
+}
+
 /// JSON of another kind: better told than by the first key that is unknown.
 void check_is_scenario(const JsonValue& root) {
   if (!root.is_object()) root.fail_expected("an object {...}");
@@ -112,6 +121,7 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   check_exact_discovery(result, root, command_line);
   check_frequency(result, frequency);
   warn_of_lost_scattering(file, result);
+  warn_of_links_without_paths(file, result);
   return result;
 }
 
