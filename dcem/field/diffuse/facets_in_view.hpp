@@ -14,7 +14,7 @@ inline std::vector<FacetId> facets_in_view(Sight& sight, const Scene& scene, con
                                            const LinkEnd& end, int max_transmissions) {
   std::vector<FacetId> seen;
   sight.look_from(end);
-  sight.find_facets(scene, outlines, {false, max_transmissions == 0}, true, seen);
+  sight.find_facets(scene, outlines, {false, max_transmissions}, true, seen);
   std::ranges::sort(seen);
   return seen;
 }

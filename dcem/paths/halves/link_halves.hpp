@@ -22,8 +22,8 @@ inline bool joins_triples(const PathSearchSettings& settings) {
 /// Of an end of links. Where three elements are joined, each of its mirrors costs so much that it pays to look twice.
 inline HalfSettings half_settings(const PathSearchSettings& settings) {
   constexpr std::size_t many = 2'500;  // by measurement, where two are joined
-  return {settings.max_diffractions > 0,      settings.max_transmissions == 0, settings.edges,
-          joins_triples(settings) ? 0 : many, settings.max_path_length_m,      settings.max_interactions >= 2};
+  return {settings.max_diffractions > 0,      settings.max_transmissions, settings.edges,
+          joins_triples(settings) ? 0 : many, settings.max_path_length_m, settings.max_interactions >= 2};
 }
 
 /// Room for what a receiver sees: one per thread.

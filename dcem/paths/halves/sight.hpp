@@ -31,8 +31,9 @@ void collect_edges(const Scene& scene, std::span<const FacetId> facets, std::vec
 
 /// What is the same for all halves.
 struct HalfSettings {
-  bool edges = true;         ///< look for edges, too
-  bool sheets_hide = false;  ///< no path crosses a sheet: sheets hide as walls do
+  bool edges = true;  ///< look for edges, too
+  /// A path crosses at most so many sheets: what is behind more of them is hidden.
+  int sheets = std::numeric_limits<int>::max();
   EdgeRules rules{};
   /// Where at least so many facets of the scenery may be seen, the view is looked at twice. That only takes away what
   /// nothing comes of.
@@ -179,8 +180,10 @@ class Sight {
   void look_into(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int cell,
                  std::span<const FacetId> seen);
   void cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings, ViewMap& map);
-  void cover_triangles(const Scene& scene, const WorldFacet& facet, ViewMap& map);
-  void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, ViewMap& map);
+  static void count_sheets(const Scene& scene, const HalfSettings& settings, ViewMap& map);
+  /// `sheet`: its plane, where it is a sheet that a path may cross; null: nothing passes.
+  void cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet, ViewMap& map);
+  void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet, ViewMap& map);
   /// Whether all points are in a facet's plane: nothing is reflected there, though its edges may diffract.
   bool is_along(const Plane& plane) const {
     return std::all_of(points_m_.begin(), points_m_.end(), [&](const Vec3& point_m) {

@@ -6,6 +6,7 @@
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/sight.hpp"
+#include "dcem/paths/query/leg_filter.hpp"
 
 namespace dcem {
 
@@ -85,6 +86,7 @@ DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& ou
 DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                         std::vector<FacetId>& seen) {
   seen_.assign(outlines.size(), 0);
+  count_sheets(scene, settings, map_);
   reach_m_ = settings.reach_m + radius_m_ + in_reach_m;
   const auto look_at = [&](FacetId id) {
     if (seen_[id.value] != 0 || !may_see(scene, outlines, id)) return;
@@ -97,6 +99,7 @@ DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines&
   outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
     if (is_lifted_far(scene, outlines, id) && !is_out_of_view(outlines.of(id).box)) look_at(id);
   });
+  map_.forget_sheets();
 }
 
 /// Once more, cell by cell, with as many pixels for a crowded cell as a face has in the map: leaves what these show.
@@ -126,6 +129,7 @@ DCEM_INLINE void Sight::look_into(const Scene& scene, const FacetOutlines& outli
     return;
   }
   cell_map_->look_into(position_m(), cells_.corners_m(cell), offsets_m_);
+  count_sheets(scene, settings, *cell_map_);
   // Nearer, what strays may stray by more than the margin of a pixel, 0.002 of it; at the corners of the cube pixels
   // are a third as wide as in the middle of its faces.
   const double margin_rad = 2e-3 / (3.0 * 4.0 * cell_map_->pixels());
@@ -204,36 +208,49 @@ DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outline
 }
 
 /// Notes the part of an outline that is beyond the mirror, where one is looked through.
-DCEM_INLINE void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, ViewMap& map) {
-  if (!beam_) return map.cover(corners_m, plane);
+DCEM_INLINE void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet,
+                                     ViewMap& map) {
   detail::InsetOutline beyond;
-  if (beyond.assign(corners_m) && beam_->cut_to_occluder(beyond)) map.cover(beyond.corners(), plane);
+  if (beam_) {
+    if (!beyond.assign(corners_m) || !beam_->cut_to_occluder(beyond)) return;
+    corners_m = beyond.corners();
+  }
+  if (sheet == nullptr) return map.cover(corners_m, plane);
+  map.cover_sheet(corners_m, plane, *sheet);
 }
 
 DCEM_INLINE void Sight::cover(const Scene& scene, const FacetOutlines& outlines, FacetId id,
                               const HalfSettings& settings, ViewMap& map) {
   const WorldFacet& facet = scene.facet(id);
   const FacetOutline& outline = outlines.of(id);
-  if (facet.transmits && !settings.sheets_hide) return;
+  const Plane* const sheet = facet.transmits && settings.sheets > 0 ? &facet.plane : nullptr;
+  if (sheet != nullptr && settings.sheets > detail::SheetLayers::most_crossed) return;
   if (least_distance_m(facet.plane) <= 2.0 * outline.lift_m) return;  // an end that touches it looks past it
-  if (outline.stray_m > flat_m) return cover_triangles(scene, facet, map);
+  if (outline.stray_m > flat_m) return cover_triangles(scene, facet, sheet, map);
   const double side = signed_distance_m(facet.plane, position_m());
   Plane plane = facet.plane;
   plane.point_m -= (side > 0.0 ? 1.0 : -1.0) * outline.stray_m * plane.normal;  // where it is farthest
-  if (outline.fills_hull) return cover_beyond(scene.hull_m(facet), plane, map);
+  if (outline.fills_hull) return cover_beyond(scene.hull_m(facet), plane, sheet, map);
   for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    cover_beyond(scene.corners_m(facet.first_triangle + triangle), plane, map);
+    cover_beyond(scene.corners_m(facet.first_triangle + triangle), plane, sheet, map);
   }
 }
 
-DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet, ViewMap& map) {
+/// A leg takes sheets for one that lie within the weld tolerance of each other, or stray as far as facets may. A
+/// thousand of them on top of each other would be needed to join what is farther apart than this.
+DCEM_INLINE void Sight::count_sheets(const Scene& scene, const HalfSettings& settings, ViewMap& map) {
+  const double pile_m = 1e3 * scene.settings().weld_tolerance_m + 2.0 * facet_reach_m(scene);
+  map.count_sheets(std::clamp(settings.sheets, 1, detail::SheetLayers::most_crossed), pile_m);
+}
+
+DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet, ViewMap& map) {
   for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
     const std::array<Vec3, 3> corners_m = scene.corners_m(facet.first_triangle + triangle);
     const Vec3 normal = glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]);
     const double size = glm::length(normal);
     if (!(size > 1e-6)) continue;  // a sliver's normal says little, and it hides little
     const Plane plane{corners_m[0], normal / size};
-    if (least_distance_m(plane) > 0.01) cover_beyond(corners_m, plane, map);
+    if (least_distance_m(plane) > 0.01) cover_beyond(corners_m, plane, sheet, map);
   }
 }
 

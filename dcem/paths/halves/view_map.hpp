@@ -17,6 +17,7 @@
 #include "dcem/geometry/plane.hpp"
 #include "dcem/paths/halves/face_outline.hpp"
 #include "dcem/paths/halves/inset.hpp"
+#include "dcem/paths/halves/sheet_layers.hpp"
 #include "dcem/paths/halves/view_frame.hpp"
 
 namespace dcem {
@@ -62,8 +63,16 @@ class ViewMap {
   const Vec3& from_m() const { return from_m_; }
   int pixels() const { return pixels_; }
 
+  /// From now on a way may cross so many sheets: what is behind more of them is hidden. Parallel ones no farther apart
+  /// than `pile_m` are one. Before anything is covered.
+  void count_sheets(int crossed, double pile_m) { sheets_.count(crossed, pile_m); }
+
   /// Notes a convex polygon, corners in order around it, that nothing passes.
   void cover(std::span<const Vec3> corners_m, const Plane& plane);
+  /// Notes a convex polygon of a sheet with a plane of its own. Sheets that a leg might count as one are one.
+  void cover_sheet(std::span<const Vec3> corners_m, const Plane& plane, const Plane& sheet);
+  /// Nothing more is covered.
+  void forget_sheets() { sheets_ = {}; }
 
   /// Whether a convex polygon, its distance divided by `nearer` ≥ 1, may be seen.
   bool shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer) const;
@@ -95,6 +104,7 @@ class ViewMap {
     nearness_.assign(static_cast<std::size_t>(faces_.count() * pixels * pixels), 0.0F);
     tile_nearness_.assign(static_cast<std::size_t>(faces_.count() * tiles_ * tiles_), 0.0F);
     tile_is_old_.assign(tile_nearness_.size(), 0);
+    sheets_.clear();
   }
   Nearness nearness_of(int face, const Vec3& normal, double distance_m) const {
     const detail::FacePoint turned = faces_.normal(face, normal);
@@ -115,8 +125,14 @@ class ViewMap {
   }
   bool shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, double nearer) const;
   bool box_is_hidden(int face, const detail::FaceRows& rows, float nearness) const;
-  void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m);
-  void cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness);
+  template <typename Fill>
+  void cover_with(std::span<const Vec3> corners_m, const Plane& plane, Fill&& fill);
+  template <typename Fill>
+  void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, Fill&& fill);
+  /// Calls `fill(row, begin, end, base, step)` for runs of pixels that an outline fills: of the row that begins at the
+  /// pixel `row`, where the nearness in a column is base + step · column.
+  template <typename Fill>
+  void cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, Fill&& fill);
   /// From the first to the last.
   struct PixelRange {
     int first, last;
@@ -153,6 +169,7 @@ class ViewMap {
   // Worked out when they are asked for, until the map is settled.
   mutable std::vector<float> tile_nearness_;  ///< no more than the smallest of 8 × 8 pixels …
   mutable std::vector<char> tile_is_old_;     ///< … and whether it may be less
+  detail::SheetLayers sheets_;                ///< while surfaces are covered
   std::vector<Vec3> normals_;                 ///< room for sides that have been moved
 };
 

@@ -13,27 +13,54 @@
 namespace dcem {
 
 DCEM_INLINE void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane) {
+  cover_with(corners_m, plane, [&](std::size_t row, int begin, int end, float base, float step) {
+    float* const pixel = nearness_.data() + row;
+    for (int column = begin; column < end; ++column) {
+      const float here = base + step * static_cast<float>(column);
+      pixel[column] = pixel[column] < here ? here : pixel[column];
+    }
+  });
+}
+
+DCEM_INLINE void ViewMap::cover_sheet(std::span<const Vec3> corners_m, const Plane& plane, const Plane& sheet) {
+  double around_m = 0.0, farthest_m = 0.0;
+  for (const Vec3& offset_m : offsets_m_) around_m = std::max(around_m, glm::length(offset_m));
+  for (const Vec3& corner_m : corners_m) farthest_m = std::max(farthest_m, glm::distance(corner_m, from_m_));
+  sheets_.take(sheet.normal, signed_distance_m(sheet, from_m_), farthest_m + around_m, nearness_.size());
+  cover_with(corners_m, plane, [&](std::size_t row, int begin, int end, float base, float step) {
+    for (int column = begin; column < end; ++column) {
+      const std::size_t pixel = row + static_cast<std::size_t>(column);
+      const float here = base + step * static_cast<float>(column);
+      if (here > nearness_[pixel]) nearness_[pixel] = std::max(nearness_[pixel], sheets_.add(pixel, here));
+    }
+  });
+}
+
+template <typename Fill>
+void ViewMap::cover_with(std::span<const Vec3> corners_m, const Plane& plane, Fill&& fill) {
   const double distance_m = -signed_distance_m(plane, from_m_);
   if (corners_m.size() > detail::FaceOutline::most_corners || distance_m == 0.0) return;
-  if (offsets_m_.empty()) return cover_as_it_is(corners_m, plane, distance_m);
+  if (offsets_m_.empty()) return cover_as_it_is(corners_m, plane, distance_m, fill);
   normals_.clear();
   detail::InsetOutline smaller;
   if (!sides_moved_in(corners_m, plane, from_m_, offsets_m_, normals_)) return;
   if (!inset_outline(corners_m, from_m_, normals_, smaller)) return;
-  if (smaller.count <= detail::FaceOutline::most_corners) cover_as_it_is(smaller.corners(), plane, distance_m);
+  if (smaller.count <= detail::FaceOutline::most_corners) cover_as_it_is(smaller.corners(), plane, distance_m, fill);
 }
 
-DCEM_INLINE void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m) {
+template <typename Fill>
+void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, Fill&& fill) {
   for (int face = 0; face < faces_.count(); ++face) {
     detail::FaceOutline outline;
     // Over the rim, so that pixels at the rim are filled, too.
     if (outline_on(face, corners_m, 1.02, outline) && outline.size() >= 3) {
-      cover_on(face, outline, nearness_of(face, plane.normal, distance_m));
+      cover_on(face, outline, nearness_of(face, plane.normal, distance_m), fill);
     }
   }
 }
 
-DCEM_INLINE void ViewMap::cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness) {
+template <typename Fill>
+void ViewMap::cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, Fill&& fill) {
   detail::FaceRows rows;
   if (!rows.take(outline, pixels_)) return;
   if (rows.high()[0] - rows.low()[0] < 1.0 || rows.high()[1] - rows.low()[1] < 1.0) return;  // it fills no pixel
@@ -51,11 +78,7 @@ DCEM_INLINE void ViewMap::cover_on(int face, const detail::FaceOutline& outline,
     if (begin >= end) continue;
     const auto base = static_cast<float>(
         (nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column - pad) * (1.0 - rounding));
-    float* const pixel = row(face, number);
-    for (int column = begin; column < end; ++column) {
-      const float here = base + step * static_cast<float>(column);
-      pixel[column] = pixel[column] < here ? here : pixel[column];
-    }
+    fill(static_cast<std::size_t>((face * pixels_ + number) * pixels_), begin, end, base, step);
     first_column = std::min(first_column, begin);
     last_column = std::max(last_column, end - 1);
   }

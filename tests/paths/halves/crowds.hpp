@@ -14,7 +14,7 @@
 namespace dcem::test {
 
 inline HalfSettings half_settings_of(const Asked& asked) {
-  HalfSettings settings{asked.diffractions > 0, asked.transmissions == 0, {}};
+  HalfSettings settings{asked.diffractions > 0, asked.transmissions, {}};
   settings.rules.free_edges = asked.free_edges;
   return settings;
 }

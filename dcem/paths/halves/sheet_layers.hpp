@@ -1,0 +1,78 @@
+#pragma once
+/// Sheets in front of each other in the pixels of a view: a way that may cross k of them sees nothing behind k + 1.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dcem/geometry/plane.hpp"
+#include "dcem/geometry/surfaces/surface_settings.hpp"
+
+namespace dcem::detail {
+
+/// Each pixel holds the k nearest sheets that fill it, nearest first.
+class SheetLayers {
+ public:
+  /// Where a way may cross more sheets than this, sheets hide nothing: that would take more memory than it is worth.
+  static constexpr int most_crossed = 3;
+
+  /// A way may cross so many, 1 to `most_crossed`. Parallel sheets that are no farther apart than `pile_m` are one.
+  void count(int crossed, double pile_m) {
+    crossed_ = static_cast<std::size_t>(crossed);
+    pile_m_ = pile_m;
+  }
+  void clear() {
+    planes_.clear();
+    layers_.clear();
+  }
+
+  /// From now on sheets are those of a plane, `distance_m` in front of the point, in a view of so many pixels; no point
+  /// of it is farther away than `reach_m`.
+  void take(const Vec3& normal, double distance_m, double reach_m, std::size_t pixels) {
+    if (layers_.empty()) layers_.resize(pixels * crossed_);
+    planes_.push_back({normal, distance_m, reach_m});
+  }
+
+  /// A sheet of that plane fills a pixel. Returns the nearness of the sheet that is one too many; 0: there is none.
+  float add(std::size_t pixel, float nearness) {
+    const auto number = static_cast<std::uint32_t>(planes_.size() - 1);
+    const std::span<Layer> layers = std::span(layers_).subspan(pixel * crossed_, crossed_);
+    for (const Layer& layer : layers) {
+      if (layer.nearness > 0.0F && may_be_one(planes_[layer.plane], planes_[number])) return 0.0F;
+    }
+    Layer added{nearness, number};
+    for (Layer& layer : layers) {
+      if (layer.nearness < added.nearness) std::swap(layer, added);
+    }
+    return added.nearness;
+  }
+
+ private:
+  struct Layer {
+    float nearness = 0.0F;  ///< 0: there is none
+    std::uint32_t plane = 0;
+  };
+  struct SheetPlane {
+    Vec3 normal;
+    double distance_m, reach_m;
+  };
+
+  /// A leg counts parallel sheets once that lie within the weld tolerance of each other, and so a pile of them.
+  bool may_be_one(const SheetPlane& one, const SheetPlane& other) const {
+    const double cosine = glm::dot(one.normal, other.normal);
+    if (std::abs(cosine) < coplanar_cosine - 1e-9) return false;
+    const double apart_m = std::abs(one.distance_m - (cosine < 0.0 ? -other.distance_m : other.distance_m));
+    // Parallel to within 0.1 degrees: far away they are not as far apart as the point says.
+    constexpr double tilt = 4e-3;
+    return apart_m <= pile_m_ + tilt * std::max(one.reach_m, other.reach_m);
+  }
+
+  std::size_t crossed_ = 1;
+  double pile_m_ = 0.0;
+  std::vector<SheetPlane> planes_;
+  std::vector<Layer> layers_;  ///< by pixel
+};
+
+}  // namespace dcem::detail
