@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "dcem/geometry/plane.hpp"
-#include "dcem/geometry/surfaces/surface_settings.hpp"
 
 namespace dcem::detail {
 
@@ -59,14 +58,14 @@ class SheetLayers {
     double distance_m, reach_m;
   };
 
-  /// A leg counts parallel sheets once that lie within the weld tolerance of each other, and so a pile of them.
+  /// A leg counts parallel sheets once that lie within the weld tolerance of each other where it crosses them, and so a
+  /// pile or a fan of them. By so much two planes may be apart where they are in view.
   bool may_be_one(const SheetPlane& one, const SheetPlane& other) const {
+    constexpr double widest_fan = 0.1;
     const double cosine = glm::dot(one.normal, other.normal);
-    if (std::abs(cosine) < coplanar_cosine - 1e-9) return false;
+    const double tilt = std::sqrt(std::max(0.0, 2.0 - 2.0 * std::abs(cosine)));  // the difference of the normals
     const double apart_m = std::abs(one.distance_m - (cosine < 0.0 ? -other.distance_m : other.distance_m));
-    // Parallel to within 0.1 degrees: far away they are not as far apart as the point says.
-    constexpr double tilt = 4e-3;
-    return apart_m <= pile_m_ + tilt * std::max(one.reach_m, other.reach_m);
+    return tilt < widest_fan && apart_m <= pile_m_ + tilt * std::max(one.reach_m, other.reach_m);
   }
 
   std::size_t crossed_ = 1;

@@ -236,8 +236,8 @@ DCEM_INLINE void Sight::cover(const Scene& scene, const FacetOutlines& outlines,
   }
 }
 
-/// A leg takes sheets for one that lie within the weld tolerance of each other, or stray as far as facets may. A
-/// thousand of them on top of each other would be needed to join what is farther apart than this.
+/// A leg takes parallel sheets for one that lie within the weld tolerance of each other, or stray as far as facets may.
+/// A thousand of them on top of each other, or fifty fanned out, would be needed to join what is told apart.
 DCEM_INLINE void Sight::count_sheets(const Scene& scene, const HalfSettings& settings, ViewMap& map) {
   const double pile_m = 1e3 * scene.settings().weld_tolerance_m + 2.0 * facet_reach_m(scene);
   map.count_sheets(std::clamp(settings.sheets, 1, detail::SheetLayers::most_crossed), pile_m);

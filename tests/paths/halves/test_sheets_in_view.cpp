@@ -151,4 +151,23 @@ TEST_CASE("a pile of sheets that a leg counts once hides as one sheet") {
   CHECK(traced.tracer.follow_leg(Vec3(0.0), Vec3(5, 0.1, 0.2), {}, {}, {}, 1, crossings, traced.counters));
 }
 
+TEST_CASE("a fan of sheets, each parallel to the next alone, hides as one sheet") {
+  TriangleMesh mesh;
+  for (int sheet = 0; sheet < 6; ++sheet) {  // about a common line, 0.08 degrees from one to the next
+    const double turn = 1.4e-3 * sheet, half_m = 20.0 + sheet;
+    add_sheet(mesh, Vec3(2, 0, 0), half_m * Vec3(std::sin(turn), std::cos(turn), 0), half_m * Vec3(0, 0, 1), "glass");
+  }
+  add_sheet_across_x(mesh, 6.0, 0.01, "metal");
+  TracedScene<> traced(scene_of(mesh));
+  const FacetOutlines outlines(traced.scene);
+  REQUIRE(outlines.size() == 7);
+  HalfSettings settings;
+  settings.sheets = 1;
+  PathHalf half;
+  half.find_scenery(traced.scene, outlines, traced.end(Vec3(0.0)), settings);
+  CHECK(std::ranges::binary_search(half.layers()[0].mirrors, traced.facet_at(Vec3(6, 0, 0), "metal")));
+  std::vector<Crossing> crossings;
+  CHECK(traced.tracer.follow_leg(Vec3(0.0), Vec3(5, 1e-3, 0.2), {}, {}, {}, 1, crossings, traced.counters));
+}
+
 }  // namespace test_sheets_in_view
