@@ -82,6 +82,9 @@ class ResultWriter {
   /// `OutputError`, be it of the frame before.
   void write_lines(LinePieces lines);
   void write_lines(std::string_view lines);
+  /// The file of `links.csv`, all of it that has been written in its place aside, for who appends its lines by other
+  /// means. Precondition: it is asked for. Throws `OutputError`.
+  const AtomicFile& links_so_far();
   /// After the last frame, be it the last that was announced or not: writes what is complete only now. `note` ends the
   /// titles of pictures: what they may lack. Throws `OutputError`.
   void finish(const std::string& note = {});

@@ -97,7 +97,8 @@ class RunJournal {
   std::unique_ptr<Beside> writing_;
 };
 
-/// What a journal is read for; only what is said where it cannot be depends on it.
+/// What a journal is read for. What is to be resumed is looked at as a whole before, because it may have been cut
+/// anywhere; what is to be merged is whole, and read once.
 enum class JournalUse : std::uint8_t { resume, merge };
 
 /// Reads a journal.
@@ -114,16 +115,26 @@ class JournalReader {
   std::uint64_t bytes() const { return bytes_; }
   /// The next one; nothing behind the last. Throws InputError where the file has changed meanwhile.
   std::optional<JournalEntry> next();
+  /// The figures of the next one, whose links or lines are passed over unread; otherwise as `next`.
+  std::optional<FrameFigures> pass();
 
  private:
+  struct PieceHead {
+    char kind = 0;
+    std::uint64_t size = 0, hash = 0;
+  };
   struct Piece {
     char kind = 0;
     std::string bytes;
   };
 
   void check_head(const RunIdentity& identity, const std::string& scenario, JournalUse use);
-  void count_frames();
+  void count_frames(JournalUse use);
+  std::optional<PieceHead> next_head();
   std::optional<Piece> next_piece();
+  std::optional<Piece> rest_of(const PieceHead& head);
+  bool pass_over(const PieceHead& head);
+  [[noreturn]] void fail() const;
 
   std::filesystem::path file_;
   std::ifstream stream_;

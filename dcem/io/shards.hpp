@@ -41,6 +41,10 @@ class ShardReader {
 
   /// The next frame; nothing behind the last. Throws InputError where a file has changed meanwhile.
   std::optional<JournalEntry> next();
+  /// The figures of the next frame, whose links or lines are passed over unread; otherwise as `next`.
+  std::optional<FrameFigures> pass();
+  /// Of the journals, for each frame.
+  std::size_t bytes_a_frame() const;
 
  private:
   std::vector<JournalReader> readers_;

@@ -1,4 +1,5 @@
 /// `dcem merge`: the parts of a run as one, with the bytes that the run has as a whole.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <set>
@@ -61,24 +62,73 @@ TreeUpdateReport follow(Simulator& simulator, const Frame& instant, const WorkCo
   return simulator.cache() == CacheMode::seed ? simulator.move_to(instant) : simulator.pass(instant, spent);
 }
 
-void take_all(io::ShardReader& shards, const Job& job, const ScenarioOptions& options, Simulator& simulator,
-              RunResults& results) {
-  io::FrameSource source(job.scenario);
-  io::FramesAhead frames(source, simulator.scene(), job.frames.first, job.frames.last, simulator.pool().size() > 1);
-  const StopRequest stop;
-  io::ProgressBar bar("frames", job.frames.count(), progress_mode(options));
-  for (auto entry = shards.next(); entry; entry = shards.next()) {
-    if (stop.signal() != 0) {
-      throw Interrupted(stop.signal(), "interrupted by " + signal_name(stop.signal()) + ": nothing is written");
-    }
-    const Frame instant = frames.next();
-    entry->figures.tree = follow(simulator, instant, entry->figures.work);
-    results.add(instant, std::move(*entry), stop);
-    bar.advance();
-  }
+}  // namespace
+
+io::ShardReader open_shards(std::span<const fs::path> folders, const Job& job, const ScenarioOptions& options,
+                            const io::RunIdentity& identity) {
+  const std::vector<io::ShardFolder> shards = io::read_shards(folders);
+  require_folder_of_its_own(job, shards);
+  const auto parts = static_cast<std::uint32_t>(shards.size());
+  return {shards, identities_of(identity, parts), options.scenario, job.frames.count()};
 }
 
-}  // namespace
+/// Frame by frame.
+class Merging {
+ public:
+  Merging(io::ShardReader&& shards, const Job& job, const ScenarioOptions& options, Simulator& simulator,
+          ResultFolder& folder, std::size_t devices)
+      : shards_(std::move(shards)),
+        simulator_(simulator),
+        results_(job, options, simulator, folder, devices),
+        source_(job.scenario),
+        frames_(source_, simulator.scene(), job.frames.first, job.frames.last, simulator.pool().size() > 1),
+        bar_("frames", job.frames.count(), progress_mode(options)) {}
+
+  /// How many frames have been taken or passed.
+  std::size_t taken() const { return taken_; }
+  RunResults& results() { return results_; }
+  /// All frames have been taken or passed.
+  void end() { bar_.finish(); }
+
+  /// False behind the last frame.
+  bool take() {
+    auto entry = shards_.next();
+    if (!entry) return false;
+    const Frame instant = go_on(entry->figures);
+    results_.add(instant, std::move(*entry), stop_);
+    return true;
+  }
+  /// The lines of the next frame, which are not written, and nothing where others write them.
+  std::string pass(bool lines_are_mine) {
+    io::JournalEntry entry;
+    lines_are_mine ? void(entry = shards_.next().value()) : void(entry.figures = shards_.pass().value());
+    const Frame instant = go_on(entry.figures);
+    results_.add(instant, entry.figures, stop_);
+    return std::move(entry.link_lines);
+  }
+
+ private:
+  /// Where the simulator is then.
+  Frame go_on(io::FrameFigures& figures) {
+    if (stop_.signal() != 0) {
+      throw Interrupted(stop_.signal(), "interrupted by " + signal_name(stop_.signal()) + ": nothing is written");
+    }
+    Frame instant = frames_.next();
+    figures.tree = follow(simulator_, instant, figures.work);
+    ++taken_;
+    bar_.advance();
+    return instant;
+  }
+
+  io::ShardReader shards_;
+  Simulator& simulator_;
+  RunResults results_;
+  io::FrameSource source_;
+  io::FramesAhead frames_;
+  const StopRequest stop_;
+  io::ProgressBar bar_;
+  std::size_t taken_ = 0;
+};
 
 Merger::Merger(Job& job, const ScenarioOptions& options, std::size_t devices, io::RunIdentity identity)
     : job_(job),
@@ -92,21 +142,48 @@ Merger::Merger(Job& job, const ScenarioOptions& options, std::size_t devices, io
   print_warnings(job.scenario.warnings, options);
 }
 
+Merger::~Merger() = default;
+
 bool Merger::is_complete() {
   return holds_result(results_, identity_);
 }
 
-void Merger::merge(std::span<const std::filesystem::path> folders) {
-  const std::vector<io::ShardFolder> shards = io::read_shards(folders);
-  require_folder_of_its_own(job_, shards);
-  const auto parts = static_cast<std::uint32_t>(shards.size());
-  io::ShardReader reader(shards, identities_of(identity_, parts), options_.scenario, job_.frames.count());
-  RunResults results(job_, options_, simulator_, results_, devices_);
-  take_all(reader, job_, options_, simulator_, results);
-  io::RunSummary& summary = results.finish(job_.frames.count());
+void Merger::begin(std::span<const fs::path> folders) {
+  merging_ = std::make_unique<Merging>(open_shards(folders, job_, options_, identity_), job_, options_, simulator_,
+                                       results_, devices_);
+}
+
+bool Merger::writes_lines_alone() const {
+  return merging_->results().writes_lines_alone();
+}
+
+fs::path Merger::lines_file() {
+  return merging_->results().links_so_far().aside();
+}
+
+std::string Merger::lines(std::size_t first, std::size_t count) {
+  while (merging_->taken() < first) merging_->pass(false);
+  std::string lines;
+  for (const std::size_t end = std::min(first + count, job_.frames.count()); merging_->taken() < end;) {
+    lines += merging_->pass(true);
+  }
+  return lines;
+}
+
+void Merger::finish(bool others_write_lines) {
+  if (others_write_lines) lines(job_.frames.count(), 0);
+  while (merging_->take()) {
+  }
+  merging_->end();
+  io::RunSummary& summary = merging_->results().finish(job_.frames.count());
   results_.commit(summary, identity_.text());
   print_warnings(summary.late_warnings(), options_);
   if (!options_.quiet) std::cout << summary.table(job_.folder) << std::flush;
+}
+
+void Merger::merge(std::span<const fs::path> folders) {
+  begin(folders);
+  finish(false);
 }
 
 namespace {

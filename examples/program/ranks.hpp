@@ -4,8 +4,10 @@
 /// One of two sources is compiled: ranks_mpi.cpp over MPI, or ranks_absent.cpp, which knows no job.
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace dcem::program {
 
@@ -51,8 +53,15 @@ class Ranks {
   /// Does it; what it throws is said while all processes still wait for each other, because `mpirun` ends all as soon
   /// as one has gone. Then throws `EndedElsewhere`.
   void say_together(const std::function<void()>& action) const;
-  /// The number that the first process has.
+  /// The number or the text that the first process has.
   std::uint64_t of_first(std::uint64_t number) const;
+  std::string of_first(std::string text) const;
+
+  /// All append to a file together: `piece(0)`, `piece(1)` and so on below `count`, in this order. Each process makes
+  /// every `count()`-th of them, its own in their order. Where one cannot, all throw as in `together`. The file is
+  /// there and gets its `name` later.
+  void append(const std::filesystem::path& file, const std::filesystem::path& name, std::size_t count,
+              const std::function<std::string(std::size_t)>& piece) const;
 
   /// Hands the numbers below `count` out, each once, to whoever is idle. `finished()` is called on the first process,
   /// by one thread at a time, whenever the work on one is done anywhere. Where work throws, the job is ended at once:
@@ -61,6 +70,8 @@ class Ranks {
              const std::function<void()>& finished) const;
 
  private:
+  std::vector<std::uint64_t> of_all(std::uint64_t number) const;
+
   unsigned own_ = 0, count_ = 1, here_ = 1;
 };
 

@@ -1,12 +1,16 @@
 #include <mpi.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "dcem/io/atomic_file.hpp"
 #include "failure.hpp"
 #include "options.hpp"
 #include "ranks.hpp"
@@ -87,6 +91,71 @@ long long ask_first(bool done) {
   return number;
 }
 
+/// A file that all processes write to.
+class FileOfAll {
+ public:
+  /// What one process writes at once: MPI counts bytes with an int.
+  static constexpr std::uint64_t most_at_once = std::uint64_t{1} << 30U;
+
+  FileOfAll(const std::filesystem::path& file, std::filesystem::path name, unsigned own)
+      : name_(std::move(name)), own_(own) {
+    const int mode = MPI_MODE_WRONLY | MPI_MODE_APPEND;
+    problem_ = MPI_File_open(MPI_COMM_WORLD, file.c_str(), mode, MPI_INFO_NULL, &handle_);
+    MPI_Offset size = 0;
+    if (problem_ == MPI_SUCCESS) problem_ = MPI_File_get_size(handle_, &size);
+    end_ = static_cast<std::uint64_t>(size);
+  }
+  FileOfAll(const FileOfAll&) = delete;
+  FileOfAll& operator=(const FileOfAll&) = delete;
+  ~FileOfAll() { close(); }
+
+  /// Throws OutputError where this process cannot have opened it, or written to it.
+  void check() const {
+    if (problem_ == MPI_SUCCESS) return;
+    std::array<char, MPI_MAX_ERROR_STRING> why{};
+    int size = 0;
+    MPI_Error_string(problem_, why.data(), &size);
+    throw io::OutputError(name_,
+                          "process " + std::to_string(own_) + " cannot write to it together with the others (" +
+                              std::string(why.data(), static_cast<std::size_t>(size)) + ')',
+                          "a disk with space left that all processes see ('dcem merge' of run.parts/* needs but one)");
+  }
+
+  /// All processes write what they have, one behind the other. `sizes`: of what each has.
+  void append(const std::string& bytes, const std::vector<std::uint64_t>& sizes) {
+    const auto own = sizes.begin() + own_;
+    const std::uint64_t begin = std::accumulate(sizes.begin(), own, end_);
+    for (std::uint64_t at = 0; at < *own; at += most_at_once) {
+      write(begin + at, bytes.data() + at, static_cast<int>(std::min(most_at_once, *own - at)));
+    }
+    end_ = std::accumulate(sizes.begin(), sizes.end(), end_);
+  }
+
+  /// All processes close it together.
+  void close() {
+    if (handle_ != MPI_FILE_NULL && MPI_File_close(&handle_) != MPI_SUCCESS && problem_ == MPI_SUCCESS) {
+      problem_ = MPI_ERR_IO;
+    }
+  }
+
+ private:
+  /// Not MPI_File_write_at_all: where that fails on one process, those of Open MPI 4.1 wait for it for ever.
+  void write(std::uint64_t place, const char* bytes, int size) {
+    MPI_Status status;
+    const auto offset = static_cast<MPI_Offset>(place);
+    const int problem = MPI_File_write_at(handle_, offset, bytes, size, MPI_BYTE, &status);
+    int written = 0;
+    if (problem == MPI_SUCCESS) MPI_Get_count(&status, MPI_BYTE, &written);
+    if (problem_ == MPI_SUCCESS) problem_ = problem != MPI_SUCCESS || written == size ? problem : MPI_ERR_NO_SPACE;
+  }
+
+  std::filesystem::path name_;
+  unsigned own_;
+  MPI_File handle_ = MPI_FILE_NULL;
+  int problem_ = MPI_SUCCESS;
+  std::uint64_t end_ = 0;
+};
+
 /// Others are deep in their work: nobody waits for them.
 [[noreturn]] void end_job(const Failure& failure) {
   fail(failure);
@@ -155,6 +224,36 @@ std::uint64_t Ranks::of_first(std::uint64_t number) const {
   MPI_Ibcast(&number, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD, &request);
   wait_for(request);
   return number;
+}
+
+std::string Ranks::of_first(std::string text) const {
+  text.resize(of_first(text.size()));
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Ibcast(text.data(), static_cast<int>(text.size()), MPI_CHAR, 0, MPI_COMM_WORLD, &request);
+  wait_for(request);
+  return text;
+}
+
+std::vector<std::uint64_t> Ranks::of_all(std::uint64_t number) const {
+  std::vector<std::uint64_t> numbers(count_);
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Iallgather(&number, 1, MPI_UINT64_T, numbers.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD, &request);
+  wait_for(request);
+  return numbers;
+}
+
+void Ranks::append(const std::filesystem::path& file, const std::filesystem::path& name, std::size_t count,
+                   const std::function<std::string(std::size_t)>& piece) const {
+  FileOfAll shared(file, name, own_);
+  together([&] { shared.check(); });
+  std::string bytes;
+  for (std::size_t first = 0; first < count; first += count_) {
+    together([&] { bytes = first + own_ < count ? piece(first + own_) : std::string(); });
+    shared.append(bytes, of_all(bytes.size()));
+    together([&] { shared.check(); });
+  }
+  shared.close();
+  together([&] { shared.check(); });
 }
 
 void Ranks::share(std::size_t count, const std::function<void(std::size_t)>& work,

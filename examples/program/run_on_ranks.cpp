@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 
 /// More parts than processes: those whose parts are light take more of them.
 constexpr std::size_t parts_per_process = 4;
+/// What a process writes at once of lines that all write, unless a frame is more.
+constexpr std::size_t piece_bytes = std::size_t{16} << 20U;
 
 /// Cores that this process may use, shared with its neighbours where each may use all.
 unsigned fair_threads(unsigned neighbours) {
@@ -61,7 +63,7 @@ class JobOnRanks {
     const std::uint64_t parts = ranks_.of_first(parts_);
     if (parts == 0) return;
     solve(static_cast<std::uint32_t>(parts));
-    ranks_.together([&] { finish(static_cast<std::uint32_t>(parts)); });
+    finish(folders_of(static_cast<std::uint32_t>(parts)));
   }
 
  private:
@@ -107,12 +109,49 @@ class JobOnRanks {
     ranks_.share(parts, work, [&] { bar->advance(); });
   }
 
-  void finish(std::uint32_t parts) {
-    if (!ranks_.is_first()) return;
+  std::vector<fs::path> folders_of(std::uint32_t parts) const {
     std::vector<fs::path> folders;
     for (std::uint32_t part = 0; part < parts; ++part) folders.push_back(folder_of({part, parts}));
-    merger_->merge(folders);
-    fs::remove_all(job_.folder / parts_folder);
+    return folders;
+  }
+
+  /// The first process writes the result; the others help where that is lines alone.
+  void finish(const std::vector<fs::path>& folders) {
+    bool lines_alone = false;
+    ranks_.together([&] {
+      if (!ranks_.is_first()) return;
+      merger_->begin(folders);
+      lines_alone = merger_->writes_lines_alone();
+    });
+    const bool is_shared = ranks_.count() > 1 && ranks_.of_first(lines_alone ? 1U : 0U) != 0;
+    if (is_shared) write_lines(folders);
+    ranks_.together([&] {
+      if (!ranks_.is_first()) return;
+      merger_->finish(is_shared);
+      fs::remove_all(job_.folder / parts_folder);
+    });
+  }
+
+  void write_lines(const std::vector<fs::path>& folders) {
+    std::string file;
+    std::optional<io::ShardReader> shards;
+    ranks_.together([&] {
+      if (ranks_.is_first()) file = merger_->lines_file().string();
+      shards.emplace(open_shards(folders, job_, options_, identity_));
+    });
+    const std::size_t frames = job_.frames.count();
+    const std::size_t fair = (frames + ranks_.count() - 1) / ranks_.count();
+    const std::size_t at_once =
+        ranks_.of_first(std::min(fair, 1 + piece_bytes / std::max<std::size_t>(1, shards->bytes_a_frame())));
+    std::size_t passed = 0;
+    const auto piece = [&](std::size_t number) {
+      if (ranks_.is_first()) return merger_->lines(number * at_once, at_once);
+      for (; passed < number * at_once; ++passed) shards->pass();
+      std::string lines;
+      for (; passed < std::min(frames, (number + 1) * at_once); ++passed) lines += shards->next().value().link_lines;
+      return lines;
+    };
+    ranks_.append(ranks_.of_first(file), job_.folder / "links.csv", (frames + at_once - 1) / at_once, piece);
   }
 
   ScenarioOptions options_;

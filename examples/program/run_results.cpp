@@ -97,6 +97,17 @@ void RunResults::add(const Frame& instant, io::JournalEntry&& entry, const StopR
   has_links ? write(instant, result) : writer_.write_lines(entry.link_lines);
 }
 
+void RunResults::add(const Frame& instant, const io::FrameFigures& figures, const StopRequest& stop) {
+  watch_.look(instant);
+  summary_.add(figures);
+  check(instant, nullptr, figures.work.sequences_proposed, stop);
+}
+
+/// Parts that were searched with rays hold links, for what rays lack is asked of these.
+bool RunResults::writes_lines_alone() const {
+  return job_.scenario.output.links && !needs_paths_ && simulator_.discovery() == Discovery::exact;
+}
+
 io::RunSummary& RunResults::finish(std::size_t frames) {
   const io::ProgressStage stage("writing results", progress_mode(options_));
   if (job_.scenario.output.plots && frames < 2) {

@@ -31,6 +31,12 @@ class RunResults {
   void add(const Frame& instant, FrameResult&& result, io::RunJournal* journal, const StopRequest& stop);
   /// A frame of a journal; the simulator is where it was then.
   void add(const Frame& instant, io::JournalEntry&& entry, const StopRequest& stop);
+  /// The same where others write its lines, which are all there is to write.
+  void add(const Frame& instant, const io::FrameFigures& figures, const StopRequest& stop);
+  /// Whether `links.csv` is all that is written of a frame, and each line is known without the others'.
+  bool writes_lines_alone() const;
+  /// As `ResultWriter` says.
+  const io::AtomicFile& links_so_far() { return writer_.links_so_far(); }
 
   /// Writes what is complete only now, after so many frames.
   io::RunSummary& finish(std::size_t frames);

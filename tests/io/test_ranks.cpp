@@ -74,6 +74,23 @@ TEST_CASE("any number of processes leaves the bytes of the run as a whole") {
   }
 }
 
+TEST_CASE("lines alone are written by all processes together") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  if (!has_ranks(folder)) return;
+  const std::string run = "run " + town + " --frames 0:7 --output links";
+  REQUIRE(dcem_program(folder, run + " -o whole").exit_code == 0);
+  for (const int ranks : all_or<std::vector<int>>({1, 2, 3, 5, 9}, {2})) {
+    CAPTURE(ranks);
+    const std::string result = "shared" + std::to_string(ranks);
+    const Outcome outcome = on_ranks(folder, ranks, run + " -o " + result);
+    CAPTURE(outcome.error);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.error.empty());
+    check_same_run(folder, result, "whole");
+  }
+}
+
 TEST_CASE("several processes do several frequencies, one after the other, with the bytes of one process") {
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;

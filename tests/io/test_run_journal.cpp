@@ -200,6 +200,43 @@ TEST_CASE("a byte that has changed ends a journal before its frame") {
   }
 }
 
+TEST_CASE("frames that are passed over leave their figures, and the next one as it was") {
+  const TemporaryFolder folder;
+  write_journal(folder, 4);
+  JournalReader reader(folder.path(), identity, "drive.json", io::JournalUse::merge);
+  CHECK(reader.frames() == 4);
+  for (const std::size_t index : {0U, 1U}) {
+    const auto figures = reader.pass();
+    REQUIRE(figures);
+    CHECK(figures->index == index);
+    CHECK(figures->work.rays == 11 + index);
+    CHECK(figures->links == 2);
+  }
+  CHECK((bytes_of(reader.next()->take_result()) == bytes_of(frame_of(2))));
+  CHECK(reader.pass()->index == 3);
+  CHECK_FALSE(reader.pass());
+  CHECK_FALSE(reader.next());
+}
+
+TEST_CASE("a byte that has changed in a journal that is to be merged is found out when its frame is read") {
+  const TemporaryFolder folder;
+  write_journal(folder, 2);
+  const std::filesystem::path file = folder / "run.journal";
+  const std::string bytes = file_bytes(file);
+  write_journal(folder, 1);
+  const std::size_t one = file_bytes(file).size();
+  for (std::size_t at = one; at < bytes.size(); at += 97) {
+    CAPTURE(at);
+    std::string broken = bytes;
+    broken[at] = static_cast<char>(broken[at] ^ 0x10);
+    std::ofstream(file, std::ios::binary) << broken;
+    JournalReader reader(folder.path(), identity, "drive.json", io::JournalUse::merge);
+    CHECK((bytes_of(reader.next()->take_result()) == bytes_of(frame_of(0))));
+    if (reader.frames() == 1) continue;  // its pieces are not as long as they say: the frame is not there
+    CHECK(contains(message_of([&] { reader.next(); }), "run.journal: is damaged, or has changed"));
+  }
+}
+
 TEST_CASE("lines in place of links take the room of lines") {
   const TemporaryFolder folder;
   {

@@ -212,6 +212,9 @@ TEST_CASE("what are no parts of one run is refused in one line") {
   const std::string journal = file_bytes(folder / "one/run.journal");
   write(folder / "one/run.journal", journal.substr(0, journal.size() - 5));
   check_refused(folder, "merge zero one", "one: holds 3 whole frames; expected all 4");
+  const std::size_t middle = journal.size() / 2;
+  write(folder / "one/run.journal", journal.substr(0, middle) + '\1' + journal.substr(middle + 1));
+  check_refused(folder, "merge zero one", "one/run.journal: is damaged");
   write(folder / "one/run.journal", journal);
   const std::string summary = file_bytes(folder / "one/summary.json");
   write(folder / "one/summary.json", grown(summary, "\"part\": 1", "\"part\": \"one\""));

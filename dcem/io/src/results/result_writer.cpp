@@ -113,6 +113,12 @@ void ResultWriter::write_lines(std::string_view lines) {
   links_.write(lines);
 }
 
+const AtomicFile& ResultWriter::links_so_far() {
+  writing_->wait();
+  links_.file->rest();
+  return *links_.file;
+}
+
 void ResultWriter::finish(const std::string& note) {
   writing_->wait();
   if (paths_.gzip != nullptr) paths_.gzip->finish();

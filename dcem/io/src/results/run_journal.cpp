@@ -223,7 +223,7 @@ JournalReader::JournalReader(const fs::path& folder, const RunIdentity& identity
   }
   size_ = fs::file_size(file_);
   check_head(identity, scenario, use);
-  count_frames();
+  count_frames(use);
 }
 
 void JournalReader::check_head(const RunIdentity& identity, const std::string& scenario, JournalUse use) {
@@ -246,11 +246,12 @@ void JournalReader::check_head(const RunIdentity& identity, const std::string& s
   }
 }
 
-void JournalReader::count_frames() {
+void JournalReader::count_frames(JournalUse use) {
   const auto begin = stream_.tellg();
   bytes_ = static_cast<std::uint64_t>(begin);
-  while (const auto piece = next_piece()) {
-    if (piece->kind != end_piece) continue;
+  for (auto head = next_head(); head; head = next_head()) {
+    if (use == JournalUse::resume ? !rest_of(*head) : !pass_over(*head)) break;
+    if (head->kind != end_piece) continue;
     ++frames_;
     bytes_ = static_cast<std::uint64_t>(stream_.tellg());
   }
@@ -258,16 +259,37 @@ void JournalReader::count_frames() {
   stream_.seekg(begin);
 }
 
-std::optional<JournalReader::Piece> JournalReader::next_piece() {
-  std::uint64_t size = 0, hash = 0;
-  Piece piece;
-  if (!stream_.get(piece.kind)) return std::nullopt;
-  for (std::uint64_t* number : {&size, &hash}) stream_.read(reinterpret_cast<char*>(number), sizeof *number);
-  if (!stream_ || size > size_) return std::nullopt;
-  piece.bytes.resize(size);
-  stream_.read(piece.bytes.data(), static_cast<std::streamsize>(size));
-  if (!stream_ || hash_piece(piece.kind, piece.bytes) != hash) return std::nullopt;
+std::optional<JournalReader::PieceHead> JournalReader::next_head() {
+  PieceHead head;
+  if (!stream_.get(head.kind)) return std::nullopt;
+  for (std::uint64_t* number : {&head.size, &head.hash}) {
+    stream_.read(reinterpret_cast<char*>(number), sizeof *number);
+  }
+  if (!stream_ || head.size > size_) return std::nullopt;
+  return head;
+}
+
+/// What follows a head; nothing where it is not what was written.
+std::optional<JournalReader::Piece> JournalReader::rest_of(const PieceHead& head) {
+  Piece piece{head.kind, std::string(head.size, '\0')};
+  stream_.read(piece.bytes.data(), static_cast<std::streamsize>(head.size));
+  if (!stream_ || hash_piece(piece.kind, piece.bytes) != head.hash) return std::nullopt;
   return piece;
+}
+
+/// Whether there is all that follows a head.
+bool JournalReader::pass_over(const PieceHead& head) {
+  stream_.seekg(static_cast<std::streamoff>(head.size), std::ios::cur);
+  return stream_ && static_cast<std::uint64_t>(stream_.tellg()) <= size_;
+}
+
+std::optional<JournalReader::Piece> JournalReader::next_piece() {
+  const auto head = next_head();
+  return head ? rest_of(*head) : std::nullopt;
+}
+
+void JournalReader::fail() const {
+  throw InputError(file_.string(), "is damaged, or has changed while it was read; expected the journal of a run");
 }
 
 std::optional<JournalEntry> JournalReader::next() {
@@ -286,7 +308,23 @@ std::optional<JournalEntry> JournalReader::next() {
   } catch (const std::runtime_error&) {
     // As where the file ends too early.
   }
-  throw InputError(file_.string(), "has changed while it was read; expected the journal of a run");
+  fail();
+}
+
+std::optional<FrameFigures> JournalReader::pass() {
+  if (read_ == frames_) return std::nullopt;
+  ++read_;
+  try {
+    FrameFigures figures;
+    const auto first = next_piece();
+    if (first) ByteReader(first->bytes)(figures);
+    for (auto head = next_head(); head && pass_over(*head); head = next_head()) {
+      if (head->kind == end_piece) return figures;
+    }
+  } catch (const std::runtime_error&) {
+    // As where the file ends too early.
+  }
+  fail();
 }
 
 }  // namespace dcem::io

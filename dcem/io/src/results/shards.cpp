@@ -112,7 +112,7 @@ void join_lines(std::span<const JournalEntry> parts, JournalEntry& whole) {
 }
 
 void add_figures(FrameFigures& sum, const FrameFigures& part) {
-  if (part.index != sum.index) throw std::invalid_argument("joined_entry: expected the same frame of all parts");
+  if (part.index != sum.index) throw std::invalid_argument("parts of a run: expected the same frame of all of them");
   sum.links += part.links;
   sum.links_with_line_of_sight += part.links_with_line_of_sight;
   sum.paths += part.paths;
@@ -167,6 +167,22 @@ std::optional<JournalEntry> ShardReader::next() {
     parts.push_back(std::move(*entry));
   }
   return joined_entry(std::move(parts));
+}
+
+std::optional<FrameFigures> ShardReader::pass() {
+  std::optional<FrameFigures> whole;
+  for (JournalReader& reader : readers_) {
+    const auto figures = reader.pass();
+    if (!figures) return std::nullopt;
+    whole ? add_figures(*whole, *figures) : void(whole = figures);
+  }
+  return whole;
+}
+
+std::size_t ShardReader::bytes_a_frame() const {
+  std::uint64_t bytes = 0;
+  for (const JournalReader& reader : readers_) bytes += reader.bytes();
+  return readers_.empty() || readers_.front().frames() == 0 ? 0 : bytes / readers_.front().frames();
 }
 
 }  // namespace dcem::io
