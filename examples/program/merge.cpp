@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -87,15 +88,19 @@ class Merging {
   /// How many frames have been taken or passed.
   std::size_t taken() const { return taken_; }
   RunResults& results() { return results_; }
-  /// All frames have been taken or passed.
-  void end() { bar_.finish(); }
+  std::size_t bytes_a_frame() const { return shards_.bytes_a_frame(); }
+  /// All frames have been taken or passed: what is left is not worth stopping.
+  void end() {
+    bar_.finish();
+    stop_.reset();
+  }
 
   /// False behind the last frame.
   bool take() {
     auto entry = shards_.next();
     if (!entry) return false;
     const Frame instant = go_on(entry->figures);
-    results_.add(instant, std::move(*entry), stop_);
+    results_.add(instant, std::move(*entry), *stop_);
     return true;
   }
   /// The lines of the next frame, which are not written, and nothing where others write them.
@@ -103,15 +108,15 @@ class Merging {
     io::JournalEntry entry;
     lines_are_mine ? void(entry = shards_.next().value()) : void(entry.figures = shards_.pass().value());
     const Frame instant = go_on(entry.figures);
-    results_.add(instant, entry.figures, stop_);
+    results_.add(instant, entry.figures, *stop_);
     return std::move(entry.link_lines);
   }
 
  private:
   /// Where the simulator is then.
   Frame go_on(io::FrameFigures& figures) {
-    if (stop_.signal() != 0) {
-      throw Interrupted(stop_.signal(), "interrupted by " + signal_name(stop_.signal()) + ": nothing is written");
+    if (const int signal = stop_->signal(); signal != 0) {
+      throw Interrupted(signal, "interrupted by " + signal_name(signal) + ": nothing is written");
     }
     Frame instant = frames_.next();
     figures.tree = follow(simulator_, instant, figures.work);
@@ -125,7 +130,7 @@ class Merging {
   RunResults results_;
   io::FrameSource source_;
   io::FramesAhead frames_;
-  const StopRequest stop_;
+  std::optional<StopRequest> stop_{std::in_place};
   io::ProgressBar bar_;
   std::size_t taken_ = 0;
 };
@@ -161,6 +166,10 @@ fs::path Merger::lines_file() {
   return merging_->results().links_so_far().aside();
 }
 
+std::size_t Merger::bytes_a_frame() const {
+  return merging_->bytes_a_frame();
+}
+
 std::string Merger::lines(std::size_t first, std::size_t count) {
   while (merging_->taken() < first) merging_->pass(false);
   std::string lines;
@@ -179,6 +188,7 @@ void Merger::finish(bool others_write_lines) {
   results_.commit(summary, identity_.text());
   print_warnings(summary.late_warnings(), options_);
   if (!options_.quiet) std::cout << summary.table(job_.folder) << std::flush;
+  merging_.reset();  // nobody holds the parts' files any more
 }
 
 void Merger::merge(std::span<const fs::path> folders) {

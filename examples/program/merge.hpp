@@ -40,6 +40,8 @@ class Merger {
   void begin(std::span<const std::filesystem::path> folders);
   /// Whether `links.csv` is all that is written of a frame: processes can share that.
   bool writes_lines_alone() const;
+  /// Of the journals.
+  std::size_t bytes_a_frame() const;
   /// `links.csv` as it is begun, where processes append to it, and its place aside.
   std::filesystem::path lines_file();
   /// The lines of the next frames after `first` of them. Frames before that others have written are passed over.

@@ -4,10 +4,12 @@
 #include <array>
 #include <chrono>
 #include <exception>
+#include <fstream>
 #include <mutex>
 #include <numeric>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "dcem/io/atomic_file.hpp"
@@ -107,7 +109,10 @@ class FileOfAll {
   }
   FileOfAll(const FileOfAll&) = delete;
   FileOfAll& operator=(const FileOfAll&) = delete;
-  ~FileOfAll() { close(); }
+  /// All processes close it together.
+  ~FileOfAll() {
+    if (handle_ != MPI_FILE_NULL) MPI_File_close(&handle_);
+  }
 
   /// Throws OutputError where this process cannot have opened it, or written to it.
   void check() const {
@@ -131,11 +136,11 @@ class FileOfAll {
     end_ = std::accumulate(sizes.begin(), sizes.end(), end_);
   }
 
-  /// All processes close it together.
-  void close() {
-    if (handle_ != MPI_FILE_NULL && MPI_File_close(&handle_) != MPI_SUCCESS && problem_ == MPI_SUCCESS) {
-      problem_ = MPI_ERR_IO;
-    }
+  /// All processes wait until it is on the disk: what a file system says of that only when the file is closed, MPI does
+  /// not tell.
+  void sync() {
+    const int problem = MPI_File_sync(handle_);
+    if (problem_ == MPI_SUCCESS) problem_ = problem;
   }
 
  private:
@@ -244,6 +249,12 @@ std::vector<std::uint64_t> Ranks::of_all(std::uint64_t number) const {
 
 void Ranks::append(const std::filesystem::path& file, const std::filesystem::path& name, std::size_t count,
                    const std::function<std::string(std::size_t)>& piece) const {
+  // Who cannot open it by MPI may wait for the others for ever.
+  together([&] {
+    if (std::fstream(file, std::ios::in | std::ios::out | std::ios::binary)) return;
+    throw io::OutputError(name, "process " + std::to_string(own_) + " cannot open it",
+                          "a folder that all processes see");
+  });
   FileOfAll shared(file, name, own_);
   together([&] { shared.check(); });
   std::string bytes;
@@ -252,7 +263,7 @@ void Ranks::append(const std::filesystem::path& file, const std::filesystem::pat
     shared.append(bytes, of_all(bytes.size()));
     together([&] { shared.check(); });
   }
-  shared.close();
+  shared.sync();
   together([&] { shared.check(); });
 }
 

@@ -134,15 +134,17 @@ class JobOnRanks {
 
   void write_lines(const std::vector<fs::path>& folders) {
     std::string file;
-    std::optional<io::ShardReader> shards;
-    ranks_.together([&] {
-      if (ranks_.is_first()) file = merger_->lines_file().string();
-      shards.emplace(open_shards(folders, job_, options_, identity_));
-    });
+    std::size_t at_once = 1;
+    std::optional<io::ShardReader> shards;  // of the first process the merger has them
     const std::size_t frames = job_.frames.count();
-    const std::size_t fair = (frames + ranks_.count() - 1) / ranks_.count();
-    const std::size_t at_once =
-        ranks_.of_first(std::min(fair, 1 + piece_bytes / std::max<std::size_t>(1, shards->bytes_a_frame())));
+    ranks_.together([&] {
+      if (!ranks_.is_first()) return shards.emplace(open_shards(folders, job_, options_, identity_)), void();
+      file = merger_->lines_file().string();
+      const std::size_t fair = (frames + ranks_.count() - 1) / ranks_.count();
+      const std::size_t bytes = std::max<std::size_t>(1, merger_->bytes_a_frame());
+      at_once = std::clamp<std::size_t>(piece_bytes / bytes, 1, fair);
+    });
+    at_once = ranks_.of_first(at_once);
     std::size_t passed = 0;
     const auto piece = [&](std::size_t number) {
       if (ranks_.is_first()) return merger_->lines(number * at_once, at_once);
@@ -152,6 +154,8 @@ class JobOnRanks {
       return lines;
     };
     ranks_.append(ranks_.of_first(file), job_.folder / "links.csv", (frames + at_once - 1) / at_once, piece);
+    shards.reset();
+    ranks_.together([] {});  // before the parts are removed
   }
 
   ScenarioOptions options_;

@@ -163,9 +163,10 @@ void RunJournal::add(const FrameResult& frame) {
 }
 
 void RunJournal::add(const FrameFigures& figures, std::span<const LinkResult> links, const LinePieces& lines) {
-  std::vector<LinkRequest> of_lines;
-  of_lines.reserve(links.size());
-  for (const LinkResult& link : links) of_lines.push_back({link.transmitter, link.receiver});
+  std::vector<LinkRequest> of_lines(links.size());
+  pool().for_each_quick(links.size(), [&](std::size_t index) {
+    of_lines[index] = {links[index].transmitter, links[index].receiver};
+  });
   std::vector<std::string> heads(lines->size());
   pool().for_each(heads.size(),
                   [&](std::size_t index, unsigned) { heads[index] = piece_head(lines_piece, (*lines)[index]); });
@@ -317,8 +318,9 @@ std::optional<FrameFigures> JournalReader::pass() {
   try {
     FrameFigures figures;
     const auto first = next_piece();
-    if (first) ByteReader(first->bytes)(figures);
-    for (auto head = next_head(); head && pass_over(*head); head = next_head()) {
+    const bool is_whole = first && first->kind == figures_piece;
+    if (is_whole) ByteReader(first->bytes)(figures);
+    for (auto head = next_head(); is_whole && head && pass_over(*head); head = next_head()) {
       if (head->kind == end_piece) return figures;
     }
   } catch (const std::runtime_error&) {
