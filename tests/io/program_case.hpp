@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/io/temporary_folder.hpp"
+#include "tests/support/last_command.hpp"
 
 namespace dcem::test {
 
@@ -32,6 +33,7 @@ inline Outcome shell_line(const TemporaryFolder& folder, const std::string& line
   Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_bytes(output), file_bytes(error)};
   std::filesystem::remove(output);
   std::filesystem::remove(error);
+  last_command() = {line, outcome.error, outcome.exit_code};
   return outcome;
 }
 
