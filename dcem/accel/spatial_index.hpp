@@ -22,7 +22,8 @@ namespace dcem {
 /// * `Index(settings)`: an index that knows less than a wide tree takes the settings that it knows.
 /// * `build(mesh, boxes, object_first)`: triangles [object_first[i], object_first[i + 1]) are object i, the last object
 ///   ends with the triangles. A triangle with an empty box is not there; any other box is that around its corners.
-/// * `update(mesh, boxes, moved)`: the triangles in `moved` have got these corners and boxes.
+/// * `update(mesh, boxes, moved)`: the triangles in `moved` have got these corners and boxes. It may take a
+///   `ThreadPool*` as its last argument, whose threads share the work.
 /// * `note_rays(spent, rays)`: what rays have spent since the last update; decides at most how the index is kept.
 /// * `closest_hit(ray, filter, counters)`: the closest hit from t_min to t_max that passes the filter; of equally near
 ///   ones that on the triangle with the smallest number.

@@ -32,6 +32,8 @@
 
 namespace dcem {
 
+class ThreadPool;
+
 namespace detail {
 class WidePlan;
 struct WideRotation;
@@ -68,8 +70,10 @@ class WideBvh {
 
   /// Takes over the corners of the triangles in `moved`, and which of them are there, and makes all boxes above them
   /// tight again. Vertices may move in any way; which vertices a triangle has stays as it was built. `moved` names
-  /// every triangle of which a corner has moved. Allocates nothing once the lists have grown.
-  WideRefitReport refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes);
+  /// every triangle of which a corner has moved. Allocates nothing once the lists have grown. Where very many have
+  /// moved, the threads of `pool` share the work; the tree is the same.
+  WideRefitReport refit(std::span<const std::uint32_t> moved, const TriangleView& mesh, Boxes boxes,
+                        ThreadPool* pool = nullptr);
 
   /// Takes objects out of the tree that the last refit moved, and inserts each where it costs least (branch and bound
   /// over Σ cost · surface: Bittner, Hapala, Havran, "Fast insertion-based optimization of bounding volume
@@ -181,7 +185,12 @@ class WideBvh {
   static void require_input(const TriangleView& mesh, Boxes boxes);
   static void require_corners(const TriangleView& mesh, std::uint32_t triangle);
   void build_all(const TriangleView& mesh, Boxes boxes);
-  void look_at_boxes(std::span<const std::uint32_t> moved, Boxes boxes);
+  void look_at_boxes(std::span<const std::uint32_t> moved, Boxes boxes, ThreadPool* pool);
+  static bool are_plain(std::span<const std::uint32_t> moved, Boxes boxes);
+  bool are_plain(std::span<const std::uint32_t> moved, Boxes boxes, ThreadPool& pool);
+  void write_dirty_leaves(std::span<const Vec3> from_m, WideRefitReport& report);
+  void write_dirty_leaves(std::span<const Vec3> from_m, WideRefitReport& report, ThreadPool& pool);
+  void take_leaf(std::uint32_t leaf, const Aabb<float>& box, WideRefitReport& report);
   void mark_dirty(std::span<const std::uint32_t> moved);
   void note_moved_object(std::uint32_t object);
   bool reinsert(std::uint32_t object);
@@ -236,6 +245,9 @@ class WideBvh {
 
   std::vector<std::uint32_t> dirty_leaves_;
   std::vector<char> leaf_is_dirty_, is_there_now_;
+  // Where threads share the work:
+  std::vector<Aabb<float>> dirty_boxes_;  ///< of these leaves, as they are now
+  std::vector<char> block_is_plain_;
   std::vector<std::uint32_t> moved_objects_;
   std::vector<char> object_is_moved_;
   std::vector<float>
@@ -253,5 +265,6 @@ class WideBvh {
 #if !defined(DCEM_ENGINE)
 #include "dcem/accel/wide_bvh_bodies.hpp"
 #include "dcem/accel/wide_bvh_rebuild_bodies.hpp"
+#include "dcem/accel/wide_bvh_refit_bodies.hpp"
 #include "dcem/accel/wide_bvh_rotate_bodies.hpp"
 #endif

@@ -1,8 +1,7 @@
 #pragma once
-/// Bodies of wide_bvh.hpp: how a `WideBvh` is built and follows motion.
+/// Bodies of wide_bvh.hpp: how a `WideBvh` is built, and how objects are put elsewhere.
 #include "dcem/accel/wide/build/builder.hpp"
 #include "dcem/accel/wide/build/quads.hpp"
-#include "dcem/accel/wide/update/leaf_writer.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "dcem/core/build_mode.hpp"
 
@@ -81,73 +80,6 @@ DCEM_INLINE void WideBvh::build_all(const TriangleView& mesh, Boxes boxes) {
         arrays_.nodes[arrays_.place_of(arrays_.object_root[object]).node()].box().half_area();
   }
   degradation_.renew(arrays_);
-}
-
-DCEM_INLINE WideRefitReport WideBvh::refit(std::span<const std::uint32_t> moved, const TriangleView& mesh,
-                                           Boxes boxes) {
-  if (mesh.size() != primitive_count() || boxes.size() != primitive_count()) {
-    throw std::invalid_argument("one box per triangle of the tree is needed");
-  }
-  if (mesh.vertices_m.size() != arrays_.vertices_m.size()) throw std::invalid_argument("the vertices are others");
-  look_at_boxes(moved, boxes);
-  for (const std::uint32_t object : moved_objects_) object_is_moved_[object] = 0;
-  moved_objects_.clear();
-  WideRefitReport report;
-  mark_dirty(moved);
-  report.leaves_written = dirty_leaves_.size();
-  for (std::size_t index = 0; index < dirty_leaves_.size(); ++index) {
-    if (settings_.fetch_ahead) {
-      if (index + 2 < dirty_leaves_.size()) arrays_.fetch_leaf(dirty_leaves_[index + 2]);
-      if (index + 1 < dirty_leaves_.size()) arrays_.fetch_around_leaf(dirty_leaves_[index + 1], mesh.vertices_m);
-    }
-    const std::uint32_t leaf = dirty_leaves_[index];
-    leaf_is_dirty_[leaf] = 0;
-    const NodeLane place = arrays_.lane_of_leaf[leaf];
-    arrays_.copy_vertices(leaf, mesh.vertices_m);
-    const Aabb<float> box = arrays_.write_leaf(leaf);
-    arrays_.note_extent(box);
-    if (box != arrays_.box_at(place)) {
-      arrays_.set_box(place, box);
-      report.nodes_visited += arrays_.tighten_above(place.node());
-      degradation_.touch(place.node());
-    }
-    note_moved_object(arrays_.leaves[leaf].object);
-  }
-  dirty_leaves_.clear();
-  if (arrays_.is_area_imprecise()) sum_anew();
-  return report;
-}
-
-/// Which of the triangles are there now. `is_there_now_` is empty when all are: then nothing is noted one by one.
-DCEM_INLINE void WideBvh::look_at_boxes(std::span<const std::uint32_t> moved, Boxes boxes) {
-  is_there_now_.clear();
-  detail::PlainBoxes plain;
-  for (const std::uint32_t triangle : moved) {
-    if (triangle >= boxes.size()) throw std::invalid_argument("triangle " + std::to_string(triangle) + " of none");
-    plain.add(boxes[triangle]);
-  }
-  if (plain.all()) return;
-  for (const std::uint32_t triangle : moved) {
-    require_valid_box(boxes[triangle], triangle);
-    is_there_now_.push_back(boxes[triangle].empty() ? 0 : 1);
-  }
-}
-
-/// Notes the leaves in which triangles have moved, each once.
-DCEM_INLINE void WideBvh::mark_dirty(std::span<const std::uint32_t> moved) {
-  for (std::size_t index = 0; index < moved.size(); ++index) {
-    arrays_.is_there[moved[index]] = is_there_now_.empty() ? char{1} : is_there_now_[index];
-    const std::uint32_t leaf = arrays_.quad_of_triangle[moved[index]] / simd_lanes;
-    if (leaf_is_dirty_[leaf] != 0) continue;
-    leaf_is_dirty_[leaf] = 1;
-    dirty_leaves_.push_back(leaf);
-  }
-}
-
-DCEM_INLINE void WideBvh::note_moved_object(std::uint32_t object) {
-  if (arrays_.object_root[object].is_none() || object_is_moved_[object] != 0) return;
-  object_is_moved_[object] = 1;
-  moved_objects_.push_back(object);
 }
 
 DCEM_INLINE std::size_t WideBvh::reinsert_moved(double growth_limit, std::uint32_t turn_length) {

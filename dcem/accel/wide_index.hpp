@@ -24,8 +24,8 @@ class WideIndex {
     tree_.build_objects(mesh, boxes, object_first, settings_.build);
   }
   TreeUpdateReport update(const TriangleView& mesh, std::span<const Aabb<double>> boxes,
-                          std::span<const std::uint32_t> moved) {
-    return updater_.update(tree_, moved, mesh, boxes);
+                          std::span<const std::uint32_t> moved, ThreadPool* pool = nullptr) {
+    return updater_.update(tree_, moved, mesh, boxes, pool);
   }
   void note_rays(const TraversalCounters& spent, std::uint64_t rays) { updater_.note_rays(spent, rays); }
 

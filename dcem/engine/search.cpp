@@ -12,6 +12,7 @@
 #include "dcem/paths/halves/path_half_bodies.hpp"
 #include "dcem/paths/halves/place_bodies.hpp"
 #include "dcem/paths/halves/sight_bodies.hpp"
+#include "dcem/paths/halves/sight_closer_bodies.hpp"
 #include "dcem/paths/halves/view_map_bodies.hpp"
 #include "dcem/paths/lifetime/facet_rims_bodies.hpp"
 #include "dcem/paths/solve/face_leg_bodies.hpp"

@@ -17,6 +17,12 @@
 #include "dcem/sim/settings.hpp"
 #include "dcem/sim/verify/sampling_check.hpp"
 
+namespace dcem {
+
+class ThreadPool;
+
+}  // namespace dcem
+
 namespace dcem::io {
 
 /// What is known before the first frame.
@@ -54,7 +60,8 @@ struct FrameFigures {
   WorkCounters work;
 };
 
-FrameFigures figures_of(const FrameResult& frame);
+/// The threads of `pool` count where links are many.
+FrameFigures figures_of(const FrameResult& frame, ThreadPool* pool = nullptr);
 
 /// Collects the figures of a run. The scene must outlive it.
 class RunSummary {

@@ -74,7 +74,7 @@ RunResults::RunResults(const Job& job, const ScenarioOptions& options, Simulator
 
 void RunResults::add(const Frame& instant, FrameResult&& result, io::RunJournal* journal, const StopRequest& stop) {
   watch_.look(instant);
-  const io::FrameFigures figures = io::figures_of(result);
+  const io::FrameFigures figures = io::figures_of(result, &simulator_.pool());
   if (needs_paths_) {
     write(instant, result);
     if (journal != nullptr) journal->add(result);

@@ -56,7 +56,7 @@ class ShardRun {
     io::ProgressBar bar("frames", job_.frames.last - next_, progress_mode(order_.options));
     for (; next_ < job_.frames.last && stop.signal() == 0; ++next_) {
       FrameResult result = simulator_.advance(frames.next());
-      const io::FrameFigures figures = io::figures_of(result);
+      const io::FrameFigures figures = io::figures_of(result, &pool);
       keeps_links_ ? journal.add(result) : journal.add(figures, result.links, lines_of(result));
       summary_.add(figures);
       simulator_.give_back(std::move(result));

@@ -59,7 +59,8 @@ class BeamFinder {
 
   BeamFinder(const BeamSource& source, std::span<const BeamMirror> mirrors) : source_(source), mirrors_(mirrors) {}
 
-  /// The parts of a layer's edges that may be seen directly.
+  /// The parts of a layer's edges that may be seen directly: as `look_through` from any number of threads, where the
+  /// half is settled.
   void find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const;
   /// What may be seen through the mirrors `first` … `last` − 1 of the scenery and, where they are asked for, of bodies:
   /// the same in the same order from any number of threads.
@@ -68,6 +69,7 @@ class BeamFinder {
   void reach_bodies(std::size_t first, std::size_t last, const BodyChoice& bodies, BeamFinds& finds) const;
 
  private:
+  void find_parts_of(std::span<const WedgeId> edges, int most_pieces, std::vector<EdgePart>& parts) const;
   void look_through_block(std::size_t first, std::size_t last, bool bodies, int most_pieces, BeamFinds& finds) const;
   template <typename Shows, typename Visit>
   static void for_each_shown(const Wedge& edge, const EdgePart& part, int most_pieces, Shows&& shows, Visit&& visit);

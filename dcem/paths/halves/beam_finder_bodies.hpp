@@ -35,9 +35,22 @@ void BeamFinder::for_each_shown(const Wedge& edge, const EdgePart& part, int mos
 }
 
 DCEM_INLINE void BeamFinder::find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const {
-  if (layer.edges.empty()) return;
+  constexpr std::size_t block = 256;
+  const std::span<const WedgeId> edges = layer.edges;
+  const std::size_t blocks = (edges.size() + block - 1) / block;
+  if (source_.pool == nullptr || blocks <= 1) return find_parts_of(edges, most_pieces, finds.parts);
+  std::vector<std::vector<EdgePart>> found(blocks);
+  source_.pool->for_each(blocks, [&](std::size_t number, unsigned) {
+    const std::size_t from = number * block;
+    find_parts_of(edges.subspan(from, std::min(block, edges.size() - from)), most_pieces, found[number]);
+  });
+  for (const std::vector<EdgePart>& one : found) finds.parts.insert(finds.parts.end(), one.begin(), one.end());
+}
+
+DCEM_INLINE void BeamFinder::find_parts_of(std::span<const WedgeId> edges, int most_pieces,
+                                           std::vector<EdgePart>& parts) const {
   const Sight& sight = source_.half.sight();
-  for (const WedgeId id : layer.edges) {
+  for (const WedgeId id : edges) {
     const Wedge& edge = source_.scene.wedge(id).edge;
     EdgePart part = whole_edge(id.value, edge, source_.half.position_m());
     const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
@@ -46,7 +59,7 @@ DCEM_INLINE void BeamFinder::find_parts(const HalfLayer& layer, int most_pieces,
     for_each_shown(edge, part, most_pieces, shows, [&](float from, float to) {
       part.from = from;
       part.to = to;
-      finds.parts.push_back(part);
+      parts.push_back(part);
     });
   }
 }

@@ -20,7 +20,7 @@ struct HalfLists {
   bool over_mirrors = false;         ///< what is reached over mirrors, too
   bool at_once = false;              ///< all of it, now; otherwise of the scenery, when it has become worth while
   std::size_t receivers = 0;         ///< that join the half every time
-  ThreadPool* pool = nullptr;        ///< for lists and bodies: as in `BeamSource`
+  ThreadPool* pool = nullptr;        ///< for views, lists and bodies: as in `Sight` and `BeamSource`
   int most_pieces = BeamFinder::many_pieces;  ///< the same
 };
 
@@ -111,7 +111,7 @@ class KeptHalf {
   /// `closer`: for lists, which take so long for each mirror that it pays to look twice. Others look twice where they
   /// see very much, from above large cities.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const HalfSettings& settings,
-                    bool closer);
+                    bool closer, ThreadPool* pool);
 
   static constexpr std::size_t very_many = 20'000;  ///< facets; three times what a mast over one city sees
   /// Places are 4 m long by measurement: twice as long they take longer for each metre, half as long, too; of devices

@@ -23,21 +23,22 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
     follow(scene, outlines, end, step_m, settings);
   } else if (!has_scenery_) {
     step_m_ = glm::length(step_m);
-    find_scenery(scene, outlines, end, settings, closer);
+    find_scenery(scene, outlines, end, settings, closer, wanted.pool);
   }
   const bool makes_lists =
       wanted.lanes != nullptr && !has_lists_ && (wanted.at_once || (!keeps_places_ && pay(joins_)));
-  if (makes_lists && !is_closer_) find_scenery(scene, outlines, end, settings, true);
+  if (makes_lists && !is_closer_) find_scenery(scene, outlines, end, settings, true, wanted.pool);
   if (!is_known) half_.find_bodies(scene, outlines, settings, moved, wanted.pool);
   has_bodies_ = true;
   has_listed_bodies_ = has_listed_bodies_ && is_known;
   if (wanted.lanes == nullptr) return;
   const BeamSource source{scene,       outlines,          *wanted.lanes, half_, settings, wanted.over_mirrors,
                           wanted.pool, wanted.most_pieces};
-  if (makes_lists) lists_.find_scenery(source);
+  if (makes_lists) half_.settle(), lists_.find_scenery(source);
   has_lists_ = has_lists_ || makes_lists;
   if (keeps_places_ && !has_lists_) go_on_with_lists(source, wanted.receivers);
   if (!wanted.at_once || outlines.bodies().empty() || (!makes_lists && is_known && has_listed_bodies_)) return;
+  half_.settle();
   lists_.find_bodies(source, moved, lists_follow && !makes_lists);
   has_listed_bodies_ = true;
 }
@@ -46,7 +47,7 @@ DCEM_INLINE void KeptHalf::go_on_with_lists(const BeamSource& source, std::size_
   constexpr std::size_t mirrors_for_a_link = 30;
   if (end_->ignored_body && !pay(joins_)) return;
   ++frames_standing_;
-  if (frames_standing_ == 2) lists_.begin_scenery(source);
+  if (frames_standing_ == 2) half_.settle(), lists_.begin_scenery(source);
   if (frames_standing_ > 2) has_lists_ = lists_.go_on(source, mirrors_for_a_link * receivers);
 }
 
@@ -106,10 +107,10 @@ DCEM_INLINE PlaceBox KeptHalf::place_ahead(const Vec3& before_m, const Vec3& now
 }
 
 DCEM_INLINE void KeptHalf::find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
-                                        const HalfSettings& settings, bool closer) {
+                                        const HalfSettings& settings, bool closer, ThreadPool* pool) {
   place_.reset();
   next_.reset();
-  half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, closer));
+  half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, closer), pool);
   is_closer_ = closer;
   has_scenery_ = true;
 }

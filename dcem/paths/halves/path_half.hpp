@@ -23,9 +23,9 @@ class PathHalf {
 
   explicit PathHalf(int map_pixels = default_pixels) : map_pixels_(map_pixels), own_sight_(map_pixels) {}
 
-  /// Works out what the end may see of the scenery.
-  void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
-                    const HalfSettings& settings);
+  /// Works out what the end may see of the scenery. `pool`: as in `Sight`.
+  void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const HalfSettings& settings,
+                    ThreadPool* pool = nullptr);
   /// Takes what may be seen of the scenery from the place that the end is in, which must stay as long as the half uses
   /// it. Images in mirrors of the scenery are laid out when they are asked for.
   void take_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const HalfSettings& settings,
@@ -36,6 +36,11 @@ class PathHalf {
   /// moved since the frame before; empty: all. `pool`: as in `BodyReach::find`.
   void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                    std::span<const char> moved = {}, ThreadPool* pool = nullptr);
+
+  /// From now on several threads may ask what is hidden, until the end looks again.
+  void settle() {
+    if (place_ == nullptr) own_sight_.settle_map();
+  }
 
   const Vec3& position_m() const { return position_m_; }
   /// The body that is not there for the end.

@@ -6,12 +6,12 @@
 namespace dcem {
 
 DCEM_INLINE void PathHalf::find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
-                                        const HalfSettings& settings) {
+                                        const HalfSettings& settings, ThreadPool* pool) {
   note(end);
   place_ = nullptr;
   has_images_ = true;
   own_sight_.look_from(end);
-  own_sight_.find_scenery(scene, outlines, settings, layers_[0]);
+  own_sight_.find_scenery(scene, outlines, settings, layers_[0], pool);
   has_pairs_ = settings.pairs;
   layers_[0].lay_out(scene, position_m_, outlines.middle_m(), has_pairs_);
 }

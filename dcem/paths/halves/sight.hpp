@@ -26,6 +26,8 @@ inline bool may_face(const Wedge& wedge, const Vec3& away_m) {
   return azimuth <= wedge.exterior_angle_rad + 1e-6 || azimuth >= 2.0 * pi - 1e-6;
 }
 
+class ThreadPool;
+
 /// The edges of some facets, ascending, each once.
 void collect_edges(const Scene& scene, std::span<const FacetId> facets, std::vector<WedgeId>& edges);
 
@@ -77,12 +79,13 @@ class Sight {
   /// The same of the images of several points, which ride on nothing, on one side of the mirror.
   void look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, std::span<const Vec3> images_m);
 
-  /// Works out what may be seen of the scenery.
-  void find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer);
+  /// Works out what may be seen of the scenery. `pool`: looks into many cells at once; none: the calling thread does.
+  void find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer,
+                    ThreadPool* pool = nullptr);
   /// The same in so many steps, numbered from 0, one after the other.
   static constexpr int scenery_steps = 3;
   void find_scenery_step(int step, const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                         SeenLayer& layer);
+                         SeenLayer& layer, ThreadPool* pool = nullptr);
   /// The same of bodies, where they are now. The scenery must be known.
   void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                    const BodyChoice& bodies, SeenLayer& layer) const;
@@ -96,9 +99,11 @@ class Sight {
     return map_.shows(from_m, to_m, nearer_on(scene, outlines, edge));
   }
 
-  /// Ends looking: frees what only that needs. From now on several threads may ask what is seen.
+  /// From now on several threads may ask what is seen.
+  void settle_map() { map_.settle(); }
+  /// Ends looking, too: frees what only that needs.
   void settle() {
-    map_.settle();
+    settle_map();
     seen_ = {};
     shown_ = {};
     cells_ = {};
@@ -176,14 +181,17 @@ class Sight {
   bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) const;
   /// Where it pays.
   void look_closer(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                   std::vector<FacetId>& seen);
+                   std::vector<FacetId>& seen, ThreadPool* pool);
+  void look_into_all(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                     std::span<const FacetId> seen, ThreadPool* pool);
   void look_into(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int cell,
-                 std::span<const FacetId> seen);
-  void cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings, ViewMap& map);
+                 std::span<const FacetId> seen, ViewMap& map);
+  void cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings,
+             ViewMap& map) const;
   static void count_sheets(const Scene& scene, const HalfSettings& settings, ViewMap& map);
   /// `sheet`: its plane, where it is a sheet that a path may cross; null: nothing passes.
-  void cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet, ViewMap& map);
-  void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet, ViewMap& map);
+  void cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet, ViewMap& map) const;
+  void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet, ViewMap& map) const;
   /// Whether all points are in a facet's plane: nothing is reflected there, though its edges may diffract.
   bool is_along(const Plane& plane) const {
     return std::all_of(points_m_.begin(), points_m_.end(), [&](const Vec3& point_m) {
@@ -223,4 +231,5 @@ class Sight {
 
 #if !defined(DCEM_ENGINE)
 #include "dcem/paths/halves/sight_bodies.hpp"
+#include "dcem/paths/halves/sight_closer_bodies.hpp"
 #endif

@@ -102,55 +102,6 @@ DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines&
   map_.forget_sheets();
 }
 
-/// Once more, cell by cell, with as many pixels for a crowded cell as a face has in the map: leaves what these show.
-DCEM_INLINE void Sight::look_closer(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                                    std::vector<FacetId>& seen) {
-  if (beam_ || seen.size() < settings.closer_from) return;
-  if (!cell_map_) cell_map_.emplace(std::min(map_.pixels(), most_cell_pixels));
-  cells_.look_from(position_m());
-  shown_.assign(seen.size(), 0);
-  for (std::uint32_t place = 0; place < seen.size(); ++place) {
-    if (!cells_.add(place, scene.hull_m(scene.facet(seen[place])))) shown_[place] = 1;
-  }
-  for (int cell = 0; cell < detail::ViewCells::count; ++cell) look_into(scene, outlines, settings, cell, seen);
-  std::size_t kept = 0;
-  for (std::size_t place = 0; place < seen.size(); ++place) {
-    if (shown_[place] != 0) seen[kept++] = seen[place];
-  }
-  seen.resize(kept);
-}
-
-/// Marks the facets that are shown in a cell.
-DCEM_INLINE void Sight::look_into(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                                  int cell, std::span<const FacetId> seen) {
-  const std::span<const std::uint32_t> places = cells_.in(cell);
-  if (places.size() < crowded) {
-    for (const std::uint32_t place : places) shown_[place] = 1;
-    return;
-  }
-  cell_map_->look_into(position_m(), cells_.corners_m(cell), offsets_m_);
-  count_sheets(scene, settings, *cell_map_);
-  // Nearer, what strays may stray by more than the margin of a pixel, 0.002 of it; at the corners of the cube pixels
-  // are a third as wide as in the middle of its faces.
-  const double margin_rad = 2e-3 / (3.0 * 4.0 * cell_map_->pixels());
-  const auto is_close = [&](FacetId id) {
-    const FacetOutline& outline = outlines.of(id);
-    const double away_m =
-        glm::distance(glm::clamp(position_m(), outline.box.min, outline.box.max), position_m()) - 2.0 * radius_m_;
-    return away_m * margin_rad < std::min(outline.stray_m, flat_m) || away_m < 0.1;
-  };
-  for (const std::uint32_t place : places) {
-    if (!is_close(seen[place])) cover(scene, outlines, seen[place], settings, *cell_map_);
-  }
-  for (const std::uint32_t place : places) {
-    if (shown_[place] != 0) continue;
-    const Plane& plane = scene.facet(seen[place]).plane;
-    const bool shown =
-        cell_map_->shows(scene.hull_m(scene.facet(seen[place])), plane, nearer_on(scene, outlines, seen[place]));
-    shown_[place] = shown ? 1 : 0;
-  }
-}
-
 DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& outlines, const BodyChoice& bodies,
                                        std::vector<FacetId>& seen) const {
   for (std::uint32_t number = 0; number < outlines.bodies().size(); ++number) {
@@ -167,17 +118,17 @@ DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& 
 }
 
 DCEM_INLINE void Sight::find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                                     SeenLayer& layer) {
-  for (int step = 0; step < scenery_steps; ++step) find_scenery_step(step, scene, outlines, settings, layer);
+                                     SeenLayer& layer, ThreadPool* pool) {
+  for (int step = 0; step < scenery_steps; ++step) find_scenery_step(step, scene, outlines, settings, layer, pool);
 }
 
 DCEM_INLINE void Sight::find_scenery_step(int step, const Scene& scene, const FacetOutlines& outlines,
-                                          const HalfSettings& settings, SeenLayer& layer) {
+                                          const HalfSettings& settings, SeenLayer& layer, ThreadPool* pool) {
   if (step == 0) {
     layer.mirrors.clear();
     look_at_scenery(scene, outlines, settings, layer.mirrors);
   }
-  if (step == 1) look_closer(scene, outlines, settings, layer.mirrors);
+  if (step == 1) look_closer(scene, outlines, settings, layer.mirrors, pool);
   if (step == 2) finish(scene, outlines, settings, layer);
 }
 
@@ -192,7 +143,7 @@ DCEM_INLINE void Sight::find_facets(const Scene& scene, const FacetOutlines& out
                                     bool bodies, std::vector<FacetId>& seen) {
   seen.clear();
   look_at_scenery(scene, outlines, settings, seen);
-  look_closer(scene, outlines, settings, seen);
+  look_closer(scene, outlines, settings, seen, nullptr);
   if (bodies) look_at_bodies(scene, outlines, {}, seen);
 }
 
@@ -209,7 +160,7 @@ DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outline
 
 /// Notes the part of an outline that is beyond the mirror, where one is looked through.
 DCEM_INLINE void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet,
-                                     ViewMap& map) {
+                                     ViewMap& map) const {
   detail::InsetOutline beyond;
   if (beam_) {
     if (!beyond.assign(corners_m) || !beam_->cut_to_occluder(beyond)) return;
@@ -220,7 +171,7 @@ DCEM_INLINE void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plan
 }
 
 DCEM_INLINE void Sight::cover(const Scene& scene, const FacetOutlines& outlines, FacetId id,
-                              const HalfSettings& settings, ViewMap& map) {
+                              const HalfSettings& settings, ViewMap& map) const {
   const WorldFacet& facet = scene.facet(id);
   const FacetOutline& outline = outlines.of(id);
   const Plane* const sheet = facet.transmits && settings.sheets > 0 ? &facet.plane : nullptr;
@@ -243,7 +194,8 @@ DCEM_INLINE void Sight::count_sheets(const Scene& scene, const HalfSettings& set
   map.count_sheets(std::clamp(settings.sheets, 1, detail::SheetLayers::most_crossed), pile_m);
 }
 
-DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet, ViewMap& map) {
+DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet,
+                                        ViewMap& map) const {
   for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
     const std::array<Vec3, 3> corners_m = scene.corners_m(facet.first_triangle + triangle);
     const Vec3 normal = glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]);

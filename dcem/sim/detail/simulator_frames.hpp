@@ -160,7 +160,13 @@ TreeUpdateReport BasicSimulator<Surface, Index>::update_index(const ChangeSet& c
     if (lanes_) lanes_->update(scene_, *outlines_, changes.moved);
   }
   // Kept where this throws (a box too far away): the index must hear of them in a later frame.
-  const TreeUpdateReport report = index_.update(scene_.triangle_view(), scene_.triangle_boxes(), moved_);
+  const TreeUpdateReport report = [&] {
+    const TriangleView mesh = scene_.triangle_view();
+    if constexpr (requires { index_.update(mesh, scene_.triangle_boxes(), moved_, pool_.get()); }) {
+      return index_.update(mesh, scene_.triangle_boxes(), moved_, pool_.get());
+    }
+    return index_.update(mesh, scene_.triangle_boxes(), moved_);
+  }();
   moved_.clear();
   return report;
 }

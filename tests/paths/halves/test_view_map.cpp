@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "dcem/core/thread_pool.hpp"
+#include "dcem/paths/halves/kept_half.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 #include "tests/paths/small_scenes.hpp"
 
@@ -214,6 +216,63 @@ TEST_CASE("no ray meets a facet that only a second look calls hidden") {
   CHECK(lost == 0);
   CHECK(met > 500'000);
   CHECK(taken_away > 200);  // or nothing was tested
+}
+
+TEST_CASE("what several threads see and list from a mast is what one sees, in its order") {
+  Draw draw(31);
+  TracedScene<> traced(scene_of(heap_of_boxes(draw, 200)));
+  const FacetOutlines outlines(traced.scene);
+  const LaneScene lanes(traced.scene, outlines);
+  for (int place = 0; place < 3; ++place) {
+    const LinkEnd end = traced.end(draw.inside(Vec3(-60, -60, 20), Vec3(60, 60, 40)));
+    const auto look = [&](KeptHalf& half, ThreadPool* pool) {
+      half.update(traced.scene, outlines, end, HalfSettings{}, {&lanes, true, true, 1, pool});
+    };
+    KeptHalf alone(128);
+    look(alone, nullptr);
+    const HalfLayer& seen = alone.half().layers()[0];
+    CHECK(seen.edges.size() > 512);  // or each thread has all of them
+    for (const unsigned threads : {1U, 2U, 5U}) {
+      CAPTURE(threads);
+      ThreadPool pool(threads);
+      KeptHalf shared(128);
+      look(shared, &pool);
+      CHECK(shared.half().layers()[0].mirrors == seen.mirrors);
+      CHECK(shared.half().layers()[0].edges == seen.edges);
+      const std::vector<EdgePart> parts = alone.lists()->parts();
+      CHECK(std::ranges::equal(shared.lists()->parts(), parts, [](const EdgePart& one, const EdgePart& other) {
+        return one.edge == other.edge && one.from == other.from && one.to == other.to;
+      }));
+    }
+  }
+}
+
+TEST_CASE("what several threads list of an end that has just come to a stop is what one lists") {
+  Draw draw(37);
+  TracedScene<> traced(scene_of(heap_of_boxes(draw, 200)));
+  const FacetOutlines outlines(traced.scene);
+  const LaneScene lanes(traced.scene, outlines);
+  const Vec3 place_m(50.0, -20.0, 30.0);
+  const auto look = [&](KeptHalf& half, ThreadPool* pool) {
+    half.keep_places(0.5, false);
+    for (const double behind_m : {0.2, 0.1, 0.0, 0.0, 0.0, 0.0}) {  // before a place is ready it stands
+      const LinkEnd end = traced.end(place_m - Vec3(behind_m, 0, 0));
+      half.update(traced.scene, outlines, end, HalfSettings{}, {&lanes, true, false, 1000, pool});
+    }
+    REQUIRE(half.lists() != nullptr);
+  };
+  KeptHalf alone(128);
+  look(alone, nullptr);
+  CHECK(alone.half().layers()[0].edges.size() > 512);
+  const std::vector<EdgePart> parts = alone.lists()->parts();
+  for (const unsigned threads : {2U, 5U}) {
+    ThreadPool pool(threads);
+    KeptHalf shared(128);
+    look(shared, &pool);
+    CHECK(std::ranges::equal(shared.lists()->parts(), parts, [](const EdgePart& one, const EdgePart& other) {
+      return one.edge == other.edge && one.from == other.from && one.to == other.to;
+    }));
+  }
 }
 
 namespace {

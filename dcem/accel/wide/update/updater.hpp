@@ -78,8 +78,9 @@ class WideUpdater {
 
   /// Brings the tree up to date after the triangles in `moved` have got the corners and boxes given here. An object
   /// that was put elsewhere counts as one rebuilt subtree of one node.
+  /// `pool`: as in `WideBvh::refit`.
   TreeUpdateReport update(WideBvh& tree, std::span<const std::uint32_t> moved, const TriangleView& mesh,
-                          WideBvh::Boxes boxes);
+                          WideBvh::Boxes boxes, ThreadPool* pool = nullptr);
 
   /// Whether a subtree is due by either measure. Where a node has nothing but leaves, it can be built in one way
   /// only: such a node is never degraded.

@@ -8,13 +8,13 @@
 namespace dcem {
 
 DCEM_INLINE TreeUpdateReport WideUpdater::update(WideBvh& tree, std::span<const std::uint32_t> moved,
-                                                 const TriangleView& mesh, WideBvh::Boxes boxes) {
+                                                 const TriangleView& mesh, WideBvh::Boxes boxes, ThreadPool* pool) {
   TreeUpdateReport report;
   if (settings_.policy == TreePolicy::rebuild_always && !moved.empty()) {
     rebuild(tree, mesh, boxes, report);
   } else {
     tree.watch(watch());
-    const WideRefitReport refit = tree.refit(moved, mesh, boxes);
+    const WideRefitReport refit = tree.refit(moved, mesh, boxes, pool);
     report.nodes_refit = refit.leaves_written + refit.nodes_visited;
     visited_since_renewal_ += static_cast<double>(report.nodes_refit);
     if (settings_.policy == TreePolicy::adaptive && !moved.empty()) mend(tree, mesh, boxes, report);

@@ -200,12 +200,25 @@ std::string milliseconds(double duration_s) {
 
 }  // namespace
 
-FrameFigures figures_of(const FrameResult& frame) {
+FrameFigures figures_of(const FrameResult& frame, ThreadPool* pool) {
   FrameFigures figures{frame.index,         frame.time_s,       frame.links.size(), 0,           0,
                        frame.update_time_s, frame.solve_time_s, frame.tree,         frame.cache, frame.work};
-  for (const LinkResult& link : frame.links) {
-    figures.paths += link.paths.size();
-    figures.links_with_line_of_sight += link.statistics.line_of_sight ? 1U : 0U;
+  struct Counts {
+    std::size_t paths = 0, in_sight = 0;
+  };
+  constexpr std::size_t block = 4096;
+  std::vector<Counts> counts((frame.links.size() + block - 1) / block);
+  const auto count = [&](std::size_t number, unsigned) {
+    for (std::size_t at = number * block; at < std::min(frame.links.size(), (number + 1) * block); ++at) {
+      counts[number].paths += frame.links[at].paths.size();
+      counts[number].in_sight += frame.links[at].statistics.line_of_sight ? 1U : 0U;
+    }
+  };
+  ThreadPool alone(1);
+  (pool != nullptr ? *pool : alone).for_each(counts.size(), count);
+  for (const Counts& one : counts) {
+    figures.paths += one.paths;
+    figures.links_with_line_of_sight += one.in_sight;
   }
   return figures;
 }
