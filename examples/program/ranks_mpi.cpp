@@ -101,8 +101,7 @@ class FileOfAll {
 
   FileOfAll(const std::filesystem::path& file, std::filesystem::path name, unsigned own)
       : name_(std::move(name)), own_(own) {
-    const int mode = MPI_MODE_WRONLY | MPI_MODE_APPEND;
-    problem_ = MPI_File_open(MPI_COMM_WORLD, file.c_str(), mode, MPI_INFO_NULL, &handle_);
+    problem_ = MPI_File_open(MPI_COMM_WORLD, file.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &handle_);
     MPI_Offset size = 0;
     if (problem_ == MPI_SUCCESS) problem_ = MPI_File_get_size(handle_, &size);
     end_ = static_cast<std::uint64_t>(size);
