@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sets copies of a city side by side and writes a SUMO trace of vehicles in their streets, all of which carry devices.
 
-  make_city_fleet.py CITY.obj FOLDER COPIES STEPS [RANGE_M] [INTERACTIONS]
+  make_city_fleet.py CITY.obj FOLDER COPIES STEPS [RANGE_M] [INTERACTIONS] [LONGEST_PATH_M]
 
 COPIES x COPIES copies with 625 vehicles each. A vehicle drives along a straight that nothing stands on, north and south
 or east and west, and turns round at its ends. The same arguments give the same files.
@@ -10,24 +10,12 @@ import os
 import random
 import sys
 
-STEP_S = 0.1
-SPEED_MPS = 12.5
+from make_fleet import SPEED_MPS, STEP_S, write_scenario, write_steps
+
 VEHICLES_PER_COPY = 625
 CELL_M = 2.0
 STREET_HEIGHT_M = 1.0  # what is higher stands in the way
 SHORTEST_M = 40.0
-
-SCENARIO = """{
-  "format": "dcem-scenario/1",
-  "scene": {"obj": "city.obj"},
-  "materials": {"car": {"model": "pec"}},
-  "frequency_hz": 5.9e9,
-  "mobility": {"sumo_fcd": "trace.fcd.xml", "vehicle_types": "vtypes.add.xml", "material": "car",
-    "devices": {"vehicles": "all", "power_dbm": 23}},
-  "links": {"range_m": %g},
-  "propagation": {"max_reflections": %d, "max_transmissions": 0, "max_diffractions": %d, "max_interactions": %d}
-}
-"""
 
 
 class City:
@@ -120,29 +108,23 @@ def drives_of(city, copies):
             yield start_m, axis, length * CELL_M, at * CELL_M
 
 
-def write_trace(path, drives, steps):
-    with open(path, "w", encoding="utf-8") as file:
-        file.write('<?xml version="1.0" encoding="UTF-8"?>\n<fcd-export>\n')
-        for step in range(steps):
-            file.write(f'    <timestep time="{step * STEP_S:.2f}">\n')
-            for number, (start_m, axis, length_m, at_m) in enumerate(drives):
-                way_m = (at_m + SPEED_MPS * STEP_S * step) % (2.0 * length_m)
-                back = way_m > length_m
-                place_m = list(start_m)
-                place_m[axis] += 2.0 * length_m - way_m if back else way_m
-                angle_deg = (270 if back else 90) if axis == 0 else (180 if back else 0)
-                file.write(f'        <vehicle id="v{number}" x="{place_m[0]:.2f}" y="{place_m[1]:.2f}" angle="{angle_deg}" '
-                           f'type="car" speed="{SPEED_MPS}" pos="0" lane="a_0" slope="0"/>\n')
-            file.write("    </timestep>\n")
-        file.write("</fcd-export>\n")
+def places_of(drives, step):
+    for start_m, axis, length_m, at_m in drives:
+        way_m = (at_m + SPEED_MPS * STEP_S * step) % (2.0 * length_m)
+        back = way_m > length_m
+        place_m = list(start_m)
+        place_m[axis] += 2.0 * length_m - way_m if back else way_m
+        angle_deg = (270 if back else 90) if axis == 0 else (180 if back else 0)
+        yield place_m[0], place_m[1], angle_deg
 
 
 def main():
-    if not 5 <= len(sys.argv) <= 7:
+    if not 5 <= len(sys.argv) <= 8:
         sys.exit(__doc__)
     city_file, folder, copies, steps = sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
     range_m = float(sys.argv[5]) if len(sys.argv) > 5 else 150.0
     interactions = int(sys.argv[6]) if len(sys.argv) > 6 else 0
+    longest_m = sys.argv[7] if len(sys.argv) > 7 else "null"
     os.makedirs(folder, exist_ok=True)
     city = City(city_file)
     write_city(city, os.path.join(folder, "city.obj"), copies)
@@ -150,12 +132,9 @@ def main():
         materials = source.read()
     with open(os.path.join(folder, "city.mtl"), "w", encoding="utf-8") as file:
         file.write(materials)
-    with open(os.path.join(folder, "vtypes.add.xml"), "w", encoding="utf-8") as file:
-        file.write('<additional>\n    <vType id="car" length="4.4" width="1.8" height="1.5"/>\n</additional>\n')
-    with open(os.path.join(folder, "scenario.json"), "w", encoding="utf-8") as file:
-        file.write(SCENARIO % (range_m, interactions, min(interactions, 1), interactions))
+    write_scenario(folder, "city.obj", range_m, interactions, longest_m)
     drives = list(drives_of(city, copies))
-    write_trace(os.path.join(folder, "trace.fcd.xml"), drives, steps)
+    write_steps(os.path.join(folder, "trace.fcd.xml"), steps, lambda step: places_of(drives, step))
     print(f"{folder}: {copies} x {copies} copies, {steps} steps of {len(drives)} vehicles")
 
 
