@@ -205,6 +205,7 @@ class BasicSimulator {
   bool finds_lifetimes() const;
   void find_lifetimes(std::vector<LinkResult>& links, const TransmitterEnds& transmitters);
   void note_transmitters(const TransmitterEnds& ends);
+  void choose_remembered();
   std::size_t receivers_on_the_move() const;
   /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
   void trace_elements(std::span<PathContribution> paths, const DeviceEnd& from, const DeviceEnd& to,
@@ -229,7 +230,8 @@ class BasicSimulator {
   std::vector<KeptHalf> halves_;                    ///< one per transmitter, where the plan has them …
   bool halves_are_current_ = false;                 ///< … and whether they are those of the current frame
   std::optional<detail::FrameChange> change_;       ///< since the frame before, where the cache is exact; so the next
-  std::vector<detail::ReceiverMemory> receivers_;   ///< one per receiver of the scene
+  std::vector<detail::ReceiverMemory> receivers_;   ///< one per receiver of the scene …
+  std::vector<char> is_remembered_;                 ///< … and whether it is remembered what it sees, in this frame
   std::vector<std::optional<LinkEnd>> transmitters_before_;
   std::vector<std::optional<DeviceState>> transmitter_states_before_;
   std::optional<FacetRims> rims_;                              ///< where lifetimes are asked for

@@ -102,10 +102,11 @@ struct SimulationSettings {
   WideTreeSettings tree{};     ///< how the tree is built, and kept while the scene moves. Never changes a result
   unsigned threads = 0;        ///< 0: all cores. Never changes a result
   bool share_map_work = true;  ///< work that is the same at all points of a map is done once. Never changes a result
-  /// Of so many receivers, the first ones of the scene, it is kept from frame to frame what they see, where the cache
-  /// is exact: 2 to 5 MB each. Links of others are worked out from scratch where anything has changed. Never changes a
-  /// result.
-  std::size_t most_remembered_receivers = std::numeric_limits<std::size_t>::max();
+  /// What is kept from frame to frame of what receivers see, where the cache is exact, may take about so many bytes:
+  /// 2 to 5 MB for a receiver, and 1 MB for each of its links with a transmitter that stands. It is kept of the first
+  /// ones of those that are there; links of others are worked out from scratch where anything has changed. Never
+  /// changes a result.
+  double most_remembered_bytes = std::numeric_limits<double>::infinity();
 };
 
 /// Rays per receiver in a frame with history.

@@ -43,13 +43,11 @@ FrameRange parse_frames(const std::string& text, std::size_t available) {
   return {*first, *last};
 }
 
-/// Of how many receivers it is remembered what they see: that may take half of the memory there is. In one frame
-/// nothing is asked for twice.
-std::size_t most_remembered_receivers(const ScenarioOptions& options, std::size_t frames) {
-  constexpr double receiver_bytes = 5e6;  // measured: 1.7 MB where they stand, three views where they move
+/// What is remembered of what receivers see may take half of the memory there is. In one frame nothing is asked for
+/// twice.
+double most_remembered_bytes(const ScenarioOptions& options, std::size_t frames) {
   constexpr double by_default_bytes = 10e9;
-  if (frames < 2) return 0;
-  return static_cast<std::size_t>(0.5 * options.memory_limit_bytes.value_or(by_default_bytes) / receiver_bytes);
+  return frames < 2 ? 0.0 : 0.5 * options.memory_limit_bytes.value_or(by_default_bytes);
 }
 
 double memory_of_machine_bytes() {
@@ -81,7 +79,7 @@ Job prepare_job(const ScenarioOptions& options) {
   io::require_attached_devices(job.scenario, job.frames.first, job.frames.last);
   if (options.threads) job.scenario.settings.threads = *options.threads;
   job.scenario.settings.links.receivers = options.shard;
-  job.scenario.settings.most_remembered_receivers = most_remembered_receivers(options, job.frames.count());
+  job.scenario.settings.most_remembered_bytes = most_remembered_bytes(options, job.frames.count());
   if (job.folder.empty()) job.folder = std::filesystem::path("out") / job.scenario.name;
   if (options.folder.empty() && options.shard) job.folder += shard_ending(*options.shard);
   return job;

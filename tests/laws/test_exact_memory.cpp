@@ -91,12 +91,12 @@ struct Tally {
 
 /// Follows a drive with and without memory; bodies come and go, and some frames are as the one before.
 void compare(std::uint64_t seed, const Case& orders, Tally& tally,
-             std::size_t remembered = std::numeric_limits<std::size_t>::max()) {
+             double remembered_bytes = std::numeric_limits<double>::infinity()) {
   constexpr std::size_t frames = 14;
   Draw draw(seed);
   const Scene scene = busy_town(draw, frames);
   SimulationSettings settings = settings_of(orders, CacheMode::exact);
-  settings.most_remembered_receivers = remembered;
+  settings.most_remembered_bytes = remembered_bytes;
   Simulator remembering(scene, settings);
   Simulator from_scratch(scene, settings_of(orders, CacheMode::off));
   REQUIRE(remembering.cache() == CacheMode::exact);
@@ -146,7 +146,7 @@ TEST_CASE("nor does it where only some receivers are remembered, or none") {
   Tally tally;
   std::uint64_t seed = 100;
   for (const Case& orders : cases) {
-    for (const std::size_t remembered : {0U, 1U, 3U}) compare(++seed, orders, tally, remembered);
+    for (const double remembered_bytes : {0.0, 8e6, 25e6}) compare(++seed, orders, tally, remembered_bytes);
   }
   CHECK(tally.paths > 3'000);
   CHECK(tally.taken_over > 100);  // what nothing has changed is taken over all the same

@@ -51,6 +51,8 @@ class KeptHalf {
   }
   /// Bodies have been moved without a word of which.
   void forget_bodies() { has_bodies_ = false; }
+  /// The device has left, or need not be remembered: frees all that is known.
+  void forget();
 
   const PathHalf& half() const { return half_; }
   /// Whether it has been brought to where device and bodies are, since somebody has said that they moved.
@@ -58,7 +60,7 @@ class KeptHalf {
   /// What the device reaches; none where that is not known.
   const BeamLists* lists() const { return has_lists_ ? &lists_ : nullptr; }
   /// Whether the device takes what it sees from places, or will soon.
-  bool is_in_places() const { return keeps_places_ && step_m_ <= longest_step_m_; }
+  bool is_in_places() const { return keeps_places_ && end_ && step_m_ <= longest_step_m_; }
   /// Where the device is on its way; none where it looks itself.
   const std::shared_ptr<const Place>& place() const { return place_; }
   /// Where it will be soon, and in how many frames; none where that is not known.

@@ -2,6 +2,7 @@
 /// Bodies of kept_half.hpp.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/kept_half.hpp"
@@ -18,6 +19,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   const bool is_known =
       has_scenery_ && has_bodies_ && !moved.empty() && std::ranges::none_of(moved, [](char has) { return has != 0; });
   const bool closer = wanted.lanes != nullptr && wanted.at_once;
+  if (!has_lists_ && frames_standing_ == 0 && !wanted.at_once) lists_ = {};  // of where it stood
   const bool lists_follow = has_bodies_ && has_listed_bodies_ && !moved.empty();
   if (!has_scenery_ && is_followed && !closer && pays(step_m)) {
     follow(scene, outlines, end, step_m, settings);
@@ -41,6 +43,13 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   half_.settle();
   lists_.find_bodies(source, moved, lists_follow && !makes_lists);
   has_listed_bodies_ = true;
+}
+
+DCEM_INLINE void KeptHalf::forget() {
+  if (!end_) return;
+  KeptHalf nothing(half_.map_pixels());
+  if (keeps_places_) nothing.keep_places(longest_step_m_, images_at_once_);
+  *this = std::move(nothing);
 }
 
 DCEM_INLINE void KeptHalf::go_on_with_lists(const BeamSource& source, std::size_t receivers) {

@@ -42,6 +42,7 @@ class PathHalf {
     if (place_ == nullptr) own_sight_.settle_map();
   }
 
+  int map_pixels() const { return map_pixels_; }
   const Vec3& position_m() const { return position_m_; }
   /// The body that is not there for the end.
   const std::optional<BodyId>& ignored_body() const { return ignored_body_; }

@@ -86,6 +86,13 @@ class CandidatePool {
   void find_edges_over(const Scene& scene, const FacetOutlines& outlines, const PlaceMirror& mirror);
   void find_single_mirrors();
   void find_over_edges(const Scene& scene);
+  /// All candidates are there: gives back room for more.
+  void fit() {
+    mirrors_.shrink_to_fit();
+    direct_.shrink_to_fit();
+    over_mirrors_.shrink_to_fit();
+    edges_.fit();
+  }
 
   static constexpr int steps = 4;  ///< mirrors in three parts of them, then edges
   std::shared_ptr<const Place> place_;
@@ -106,6 +113,7 @@ inline void CandidatePool::go_on(const Scene& scene, const FacetOutlines& outlin
   if (orders_.interactions < 1) return;
   if (steps_left_ == 0) {
     if (orders_.diffractions >= 1) find_over_edges(scene);
+    fit();
     return;
   }
   if (orders_.reflections < 1) return;

@@ -41,6 +41,12 @@ class EdgeCandidates {
     }
   }
 
+  /// Nothing more is added: gives back room for it.
+  void fit() {
+    direct_.shrink_to_fit();
+    mirrored_.shrink_to_fit();
+  }
+
   std::size_t direct_count() const { return direct_count_; }
   std::size_t mirrored_count() const { return mirrored_count_; }
 

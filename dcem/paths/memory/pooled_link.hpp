@@ -42,7 +42,7 @@ class PooledLink {
   void forget() {
     pool_.reset();
     next_.reset();
-    slots_.clear();
+    slots_ = {};
   }
   bool is_of(const Place& place) const { return pool_ && &pool_->place() == &place; }
 

@@ -29,7 +29,7 @@ class StandingLink {
 
   bool is_known() const { return is_known_; }
   void forget() {
-    entries_.clear();
+    entries_ = {};
     is_known_ = false;
   }
   /// From now on the entries are all that may carry a path.

@@ -24,6 +24,10 @@ inline constexpr double longest_pooled_step_m = 2.0;
 /// … and where it is joined anew in each frame.
 inline constexpr double longest_step_in_place_m = 0.25;
 
+/// What a receiver and a link whose transmitter stands take, by measurement: three views; 7,000 candidates of a place,
+/// and those of the next one.
+inline constexpr double remembered_receiver_bytes = 5e6, remembered_link_bytes = 1e6;
+
 /// One link in the frame before.
 struct LinkMemory {
   std::optional<LinkResult> result;         ///< none: the link was not there
@@ -55,12 +59,28 @@ struct ReceiverMemory {
     return links[static_cast<std::size_t>(place - numbers.begin())];
   }
 
-  void forget() {
+  /// What the receiver sees, and what is known of its links beyond what they brought in the frame before.
+  void forget_views() {
+    half.forget();
+    for (LinkMemory& link : links) {
+      link.standing.forget();
+      link.pooled.forget();
+    }
+  }
+
+  /// The frame before, of which the next one is not the successor.
+  void forget_frame() {
     state.reset();
     end.reset();
     links.clear();
     numbers.clear();
     half.forget_bodies();
+  }
+
+  /// All of it: the receiver has left.
+  void forget() {
+    forget_frame();
+    half.forget();
   }
 };
 

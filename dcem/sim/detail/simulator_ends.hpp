@@ -83,7 +83,8 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
   const auto update = [&](std::size_t index, unsigned) {
     HalfLists lists = of_all;
     if (has_choice) lists.receivers = std::min(receivers, links_of_[index]);
-    if (!ends.link[index] || (has_choice && links_of_[index] == 0)) return halves[index].forget_bodies();
+    if (!ends.link[index]) return halves[index].forget();
+    if (has_choice && links_of_[index] == 0) return halves[index].forget_bodies();
     halves[index].update(scene_, *outlines_, *ends.link[index], half_settings(search), lists,
                          change_ && &halves[index] == &halves_[index] ? change_->moved() : std::span<const char>{});
   };

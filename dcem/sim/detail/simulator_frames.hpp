@@ -2,6 +2,8 @@
 /// How a `BasicSimulator` moves to a frame; included by basic_simulator.hpp.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -40,7 +42,10 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
       scene_.transmitters(), change_ && plan_.joined > 0 ? receivers_on_the_move() : scene_.receivers().size(), reach_,
       halves_);
   halves_are_current_ = !transmitters.halves.empty() && choice_.takes_all();
-  if (change_) note_transmitters(transmitters);
+  if (change_) {
+    note_transmitters(transmitters);
+    choose_remembered();
+  }
   Solved solved = change_ ? follow_all(transmitters) : solve_all(scene_.receivers(), transmitters, caches_, true);
   result.links = std::move(solved.links);
   if (finds_lifetimes()) find_lifetimes(result.links, transmitters);
@@ -88,6 +93,27 @@ std::size_t BasicSimulator<Surface, Index>::receivers_on_the_move() const {
   return count;
 }
 
+/// Chooses the receivers of which it is remembered what they see: the first ones of those that are there.
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::choose_remembered() {
+  const std::span<const Device> receivers = scene_.receivers();
+  is_remembered_.assign(receivers.size(), 1);
+  if (std::isinf(settings_.most_remembered_bytes)) return;
+  const auto rests = [&](std::size_t transmitter) { return transmitter_rests_[transmitter] != 0; };
+  const auto all_at_rest = std::count_if(transmitter_rests_.begin(), transmitter_rests_.end(), std::identity());
+  std::vector<double> bytes(receivers.size());
+  pool_->for_each_quick(receivers.size(), [&](std::size_t index) {
+    if (!state_of(receivers[index]).present) return;
+    const auto at_rest = choice_.takes_all() ? all_at_rest : std::ranges::count_if(chosen_[index], rests);
+    bytes[index] = detail::remembered_receiver_bytes + static_cast<double>(at_rest) * detail::remembered_link_bytes;
+  });
+  double needed_bytes = 0.0;
+  for (std::size_t index = 0; index < bytes.size(); ++index) {
+    needed_bytes += bytes[index];
+    is_remembered_[index] = needed_bytes <= settings_.most_remembered_bytes ? 1 : 0;
+  }
+}
+
 /// Notes which transmitters are as in the frame before.
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::note_transmitters(const TransmitterEnds& ends) {
@@ -130,7 +156,7 @@ TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
   CacheCounters not_reported;
   forget_replaced(changes, not_reported);
   frame_ = frame;
-  for (detail::ReceiverMemory& receiver : receivers_) receiver.forget();
+  for (detail::ReceiverMemory& receiver : receivers_) receiver.forget_frame();
   for (KeptHalf& half : halves_) half.forget_bodies();
   return update_index(changes);
 }
@@ -142,7 +168,11 @@ TreeUpdateReport BasicSimulator<Surface, Index>::pass(const Frame& frame, const 
   TraversalCounters not_reported;
   for (std::size_t index = 0; index < halves_.size(); ++index) {
     const DeviceState state = state_of(scene_.transmitters()[index]);
-    if (state.present) halves_[index].pass(link_end(state, not_reported), scene_.receivers().size());
+    if (!state.present) {
+      halves_[index].forget();
+      continue;
+    }
+    halves_[index].pass(link_end(state, not_reported), scene_.receivers().size());
   }
   note_rays(spent);
   return report;

@@ -102,7 +102,8 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   TraversalCounters traversal;
   const LinkEnd end = link_end(state, traversal);
   if (memory.end && memory.end->ignored_body != end.ignored_body) memory.links.clear();
-  const bool is_kept = index < settings_.most_remembered_receivers;
+  const bool is_kept = is_remembered_[index] != 0;
+  if (!is_kept) memory.forget_views();
   const bool stands = detail::same_bits(memory.end, end), is_same = detail::same_bits(memory.state, state);
   memory.end = end;
   memory.state = state;
