@@ -2,6 +2,7 @@
 /// One receiver's half joined with those of all transmitters.
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,11 +20,18 @@ inline JoinOrders joined_orders(const PathSearchSettings& settings) {
 inline bool joins_triples(const PathSearchSettings& settings) {
   return settings.joined >= 3 && settings.max_interactions >= 3 && settings.max_reflections >= 2;
 }
-/// Of an end of links. Where three elements are joined, each of its mirrors costs so much that it pays to look twice.
+/// Of an end of links. Where three elements are joined, each of its mirrors costs so much that it pays to look twice;
+/// where one is, no view is so wide that it does.
 inline HalfSettings half_settings(const PathSearchSettings& settings) {
   constexpr std::size_t many = 2'500;  // by measurement, where two are joined
-  return {settings.max_diffractions > 0,      settings.max_transmissions, settings.edges,
-          joins_triples(settings) ? 0 : many, settings.max_path_length_m, settings.max_interactions >= 2};
+  const bool pairs = settings.max_interactions >= 2;
+  const std::size_t closer_from = joins_triples(settings) ? 0 : pairs ? many : std::numeric_limits<std::size_t>::max();
+  return {settings.max_diffractions > 0,
+          settings.max_transmissions,
+          settings.edges,
+          closer_from,
+          settings.max_path_length_m,
+          pairs};
 }
 
 /// Room for what a receiver sees: one per thread.
