@@ -63,7 +63,8 @@ DCEM_INLINE void KeptHalf::go_on_with_lists(const BeamSource& source, std::size_
 DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
                                   const Vec3& step_m, const HalfSettings& settings) {
   step_m_ = glm::length(step_m);
-  const HalfSettings of_place = looked_at_twice_from(settings, false);
+  HalfSettings of_place = settings;
+  of_place.closer_from = very_many;  // it takes as long as it saves, or longer
   const auto is_in = [&](const auto& place) { return place && place->box().holds(end.position_m); };
   if (!is_in(place_)) place_.reset();
   if (!place_ && is_in(next_)) {
@@ -73,7 +74,7 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
   prepare_next(scene, outlines, end.position_m, step_m, of_place);
   is_closer_ = false;
   has_scenery_ = true;
-  if (!place_) return half_.find_scenery(scene, outlines, end, of_place);
+  if (!place_) return half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, false));
   half_.take_scenery(scene, outlines, end, of_place, *place_);
   if (images_at_once_) half_.lay_out_images(scene, outlines);
 }
