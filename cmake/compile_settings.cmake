@@ -18,7 +18,7 @@ endfunction()
 # Sources share what they include and instantiate. Names in them must not clash: a test file has a namespace of its own.
 function(dcem_join_sources target)
   if(DCEM_JOIN_SOURCES)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 20)
   endif()
 endfunction()
 

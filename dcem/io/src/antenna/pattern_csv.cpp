@@ -20,7 +20,7 @@ namespace dcem::io {
 
 namespace {
 
-enum PatternColumn : std::size_t { azimuth_deg, zenith_deg, gain_dbi };
+enum PatternColumn : std::size_t { azimuth_column, zenith_column, gain_column };
 const std::string pattern_header = "azimuth_deg,zenith_deg,gain_dbi";
 
 /// Angles are compared in millionths of a degree: files round them.
@@ -44,10 +44,10 @@ Node read_node(const CsvReader& row) {
   const auto angle = [&](PatternColumn column, const NumberRange& range) {
     return static_cast<MicroDegrees>(std::llround(row.number(column, range) * 1e6));
   };
-  const MicroDegrees azimuth = angle(azimuth_deg, {-360.0, 360.0});
+  const MicroDegrees azimuth = angle(azimuth_column, {-360.0, 360.0});
   const double highest_dbi = PatternTable::highest_gain_dbi;
-  return {(azimuth + whole_turn) % whole_turn, angle(zenith_deg, {0.0, 180.0}), azimuth,
-          row.number(gain_dbi, {-highest_dbi, highest_dbi}), row.line()};
+  return {(azimuth + whole_turn) % whole_turn, angle(zenith_column, {0.0, 180.0}), azimuth,
+          row.number(gain_column, {-highest_dbi, highest_dbi}), row.line()};
 }
 
 std::vector<Node> read_nodes(const std::string& name, std::string_view text) {
