@@ -19,7 +19,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   const bool is_known =
       has_scenery_ && has_bodies_ && !moved.empty() && std::ranges::none_of(moved, [](char has) { return has != 0; });
   const bool closer = wanted.lanes != nullptr && wanted.at_once;
-  if (!has_lists_ && frames_standing_ == 0 && !wanted.at_once) lists_ = {};  // of where it stood
+  if (!has_lists_ && frames_standing_ == 0 && !wanted.at_once) lists_ = {};  // those of where it stood
   const bool lists_follow = has_bodies_ && has_listed_bodies_ && !moved.empty();
   if (!has_scenery_ && is_followed && !closer && pays(step_m)) {
     follow(scene, outlines, end, step_m, settings);
@@ -36,7 +36,10 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   if (wanted.lanes == nullptr) return;
   const BeamSource source{scene,       outlines,          *wanted.lanes, half_, settings, wanted.over_mirrors,
                           wanted.pool, wanted.most_pieces};
-  if (makes_lists) half_.settle(), lists_.find_scenery(source);
+  if (makes_lists) {
+    half_.settle();
+    lists_.find_scenery(source);
+  }
   has_lists_ = has_lists_ || makes_lists;
   if (keeps_places_ && !has_lists_) go_on_with_lists(source, wanted.receivers);
   if (!wanted.at_once || outlines.bodies().empty() || (!makes_lists && is_known && has_listed_bodies_)) return;
@@ -56,7 +59,10 @@ DCEM_INLINE void KeptHalf::go_on_with_lists(const BeamSource& source, std::size_
   constexpr std::size_t mirrors_for_a_link = 30;
   if (end_->ignored_body && !pay(joins_)) return;
   ++frames_standing_;
-  if (frames_standing_ == 2) half_.settle(), lists_.begin_scenery(source);
+  if (frames_standing_ == 2) {
+    half_.settle();
+    lists_.begin_scenery(source);
+  }
   if (frames_standing_ > 2) has_lists_ = lists_.go_on(source, mirrors_for_a_link * receivers);
 }
 

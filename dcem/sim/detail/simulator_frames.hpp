@@ -98,7 +98,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::choose_remembered() {
   const std::span<const Device> receivers = scene_.receivers();
   is_remembered_.assign(receivers.size(), 1);
-  if (std::isinf(settings_.most_remembered_bytes)) return;
+  if (plan_.joined == 0 || std::isinf(settings_.most_remembered_bytes)) return;  // nobody looks, or all may
   const auto rests = [&](std::size_t transmitter) { return transmitter_rests_[transmitter] != 0; };
   const auto all_at_rest = std::count_if(transmitter_rests_.begin(), transmitter_rests_.end(), std::identity());
   std::vector<double> bytes(receivers.size());
