@@ -48,6 +48,10 @@ const ConeKernels& cone_kernels() {
   return chosen_kernels().load(std::memory_order_relaxed)->cone;
 }
 
+const CandidateKernels& candidate_kernels() {
+  return chosen_kernels().load(std::memory_order_relaxed)->candidates;
+}
+
 }  // namespace detail
 
 InstructionSet instruction_set() {

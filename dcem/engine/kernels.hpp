@@ -1,7 +1,8 @@
 #pragma once
-/// The walks through the wide tree, and those of cones, compiled several times in one library.
+/// The walks through the wide tree, those of cones and those of candidates, compiled several times in one library.
 #include "dcem/accel/wide/trace/kernels.hpp"
 #include "dcem/paths/halves/cone_kernels.hpp"
+#include "dcem/paths/memory/candidate_kernels.hpp"
 
 namespace dcem::detail {
 
@@ -9,6 +10,7 @@ namespace dcem::detail {
 struct EngineKernels {
   WideKernels wide;
   ConeKernels cone;
+  CandidateKernels candidates;
 };
 
 const EngineKernels& engine_kernels_baseline();

@@ -157,6 +157,7 @@ inline void CandidatePool::find_edges_over(const Scene& scene, const FacetOutlin
     images_m[corner] = mirrored(plane, place_->corners_m()[corner]);
   }
   const Vec3 image = mirror.image_m - reached_.origin_m();
+  edges_.begin_mirror(plane, outlines.sides(mirror.facet));
   reached_.for_each_part_in(mirror.cone, image, static_cast<float>(place_->radius_m()), [&](const EdgePart& part) {
     const WorldWedge& wedge = scene.wedge(WedgeId(part.edge));
     if (holds_edge(plane, wedge.edge, scene.settings().weld_tolerance_m)) return;
@@ -165,7 +166,7 @@ inline void CandidatePool::find_edges_over(const Scene& scene, const FacetOutlin
         images_m, [&](const Vec3& image_m) { return may_face(wedge.edge, image_m - wedge.edge.start_m); });
     if (is_inside) return;
     over_mirrors_.push_back({mirror.number, WedgeId(part.edge)});
-    edges_.add(wedge.edge, part, plane, outlines.sides(mirror.facet));
+    edges_.add_over(plane, wedge.edge, part);
   });
 }
 
