@@ -65,6 +65,9 @@ class BeamFinder {
   /// What may be seen through the mirrors `first` … `last` − 1 of the scenery and, where they are asked for, of bodies:
   /// the same in the same order from any number of threads.
   void look_through(std::size_t first, std::size_t last, bool bodies, int most_pieces, BeamFinds& finds) const;
+  /// What may be seen through all mirrors, as the place in which the end is knows it for any point of it: of the
+  /// scenery.
+  void take_from(const Place& place, BeamFinds& finds) const;
   /// Chosen bodies, over the mirrors `first` … `last` − 1: everything in their cones, without a view.
   void reach_bodies(std::size_t first, std::size_t last, const BodyChoice& bodies, BeamFinds& finds) const;
 

@@ -133,6 +133,34 @@ DCEM_INLINE void BeamFinder::look_through_block(std::size_t first, std::size_t l
   }
 }
 
+DCEM_INLINE void BeamFinder::take_from(const Place& place, BeamFinds& finds) const {
+  const Scene& scene = source_.scene;
+  const Vec3& position_m = source_.half.position_m();
+  std::vector<char> is_beside(place.mirrors().size());
+  for (std::size_t at = 0; at < is_beside.size(); ++at) {
+    const PlaceMirror& mirror = place.mirrors()[at];
+    is_beside[at] = mirror.side * signed_distance_m(scene.facet(mirror.facet).plane, position_m) > 0.0;
+  }
+  const auto for_each_before = [&](auto lit, auto&& visit) {
+    for (const std::uint32_t at : place.beams()->mirrors_before(lit)) {
+      if (is_beside[at] != 0) visit(place.mirrors()[at].number);
+    }
+  };
+  for (std::uint32_t facet = 0; facet < scene.facets().size(); ++facet) {
+    for_each_before(FacetId(facet), [&](std::uint32_t mirror) { finds.pairs.push_back({facet, mirror}); });
+  }
+  for (std::uint32_t number = 0; number < scene.wedges().size(); ++number) {
+    const Wedge& edge = scene.wedge(WedgeId(number)).edge;
+    for_each_before(WedgeId(number), [&](std::uint32_t mirror) {
+      const EdgePart part = lit_part(WedgeId(number), mirror);
+      const Vec3 image_m = mirrors_[mirror].image_m + source_.lanes.origin_m();
+      if (part.from > part.to || !may_face(edge, image_m - edge.start_m)) return;
+      finds.lit.push_back(part);
+      finds.lit_edges.push_back(number);
+    });
+  }
+}
+
 DCEM_INLINE void BeamFinder::reach_bodies(std::size_t first, std::size_t last, const BodyChoice& bodies,
                                           BeamFinds& finds) const {
   const std::span<const FacetOutlines::BodyFacets> facets_of = source_.outlines.bodies();

@@ -20,6 +20,9 @@ class BeamLists {
   static constexpr std::uint32_t nothing = BeamTable::nothing;
   /// Of an end that is looked at once.
   void find_all(const BeamSource& source);
+  /// Of an end in a place that knows what may be seen through its mirrors: the images in all of them must be laid out.
+  /// `moved` as in `find_bodies`.
+  void find_from(const BeamSource& source, const Place& place, std::span<const char> moved);
   /// Of an end that stands, what does not change while bodies move …
   void find_scenery(const BeamSource& source);
   /// … or a part of it after the other: what is seen directly, and then, until it says that all is there, what is seen

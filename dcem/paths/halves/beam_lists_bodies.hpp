@@ -18,6 +18,18 @@ DCEM_INLINE void BeamLists::find_all(const BeamSource& source) {
   tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0]);
 }
 
+DCEM_INLINE void BeamLists::find_from(const BeamSource& source, const Place& place, std::span<const char> moved) {
+  note_mirrors(source, 0, 1);
+  found_ = {};
+  tables_ = {};
+  const BeamFinder finder(source, mirrors_);
+  finder.find_parts(half_->layers()[0], BeamFinder::few_pieces, found_[0]);
+  finder.take_from(place, found_[0]);
+  tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0]);
+  found_[0] = {};
+  find_bodies(source, moved);
+}
+
 DCEM_INLINE void BeamLists::find_scenery(const BeamSource& source) {
   begin_scenery(source);
   go_on(source, mirrors_.size());

@@ -53,10 +53,9 @@ class CrowdImages {
       if (side * signed_distance_m(plane, image_m) > in_plane_guard_m) beside_m_.push_back(image_m);
     }
     if (beside_m_.empty()) return false;
-    common_cone(gates_.outlines().sides(middle), plane, side * plane.normal, beside_m_, lanes_.origin_m(), cone_);
     twice_ = mirrored(plane, mirror.middle_m + lanes_.origin_m()) - lanes_.origin_m();
-    const double slack_m = 1e-3 + 2e-6 * (glm::length(twice_) + lanes_.reach_m());
-    add_mirrored(mirror.cone.first(mirror.cone.size() - 1), plane, lanes_.origin_m(), slack_m, cone_);
+    common_cone_over_two(gates_.outlines().sides(middle), plane, side, beside_m_, mirror.cone, lanes_.origin_m(),
+                         glm::length(twice_) + lanes_.reach_m(), cone_);
     twice_error_m_ = gates_.error_with(2.0 * glm::length(twice_) + lanes_.reach_m());
     for (std::size_t pack = 0; pack < pack_count(); ++pack) {
       const LanePoints& images = images_[place].packs[pack];

@@ -29,9 +29,11 @@ class KeptHalf {
   explicit KeptHalf(int map_pixels = PathHalf::default_pixels) : half_(map_pixels) {}
 
   /// From now on a device that moves by no more than this from frame to frame takes what it may see from the place that
-  /// it is in; its images are laid out at once or when they are asked for.
-  void keep_places(double longest_step_m, bool images_at_once) {
+  /// it is in; its images are laid out at once or when they are asked for. `over_mirrors`: places know what is seen
+  /// through their mirrors, too.
+  void keep_places(double longest_step_m, bool images_at_once, bool over_mirrors = false) {
     keeps_places_ = true;
+    over_mirrors_ = over_mirrors;
     longest_step_m_ = longest_step_m;
     images_at_once_ = images_at_once;
   }
@@ -106,6 +108,7 @@ class KeptHalf {
   static PlaceBox place_ahead(const Vec3& before_m, const Vec3& now_m);
 
   HalfSettings looked_at_twice_from(HalfSettings settings, bool closer) const {
+    if (over_mirrors_) return settings;
     if (closer || !keeps_places_) settings.closer_from = closer ? 0 : very_many;
     return settings;
   }
@@ -123,7 +126,7 @@ class KeptHalf {
   PathHalf half_;
   BeamLists lists_;
   bool has_scenery_ = false, has_bodies_ = false, has_lists_ = false, is_closer_ = false, keeps_places_ = false;
-  bool images_at_once_ = false, has_listed_bodies_ = false;
+  bool images_at_once_ = false, over_mirrors_ = false, has_listed_bodies_ = false;
   double longest_step_m_ = 0.0;
   std::size_t joins_ = 0;            ///< since the device stands
   std::size_t frames_standing_ = 0;  ///< in which lists have been worked on

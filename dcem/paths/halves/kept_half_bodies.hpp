@@ -51,7 +51,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
 DCEM_INLINE void KeptHalf::forget() {
   if (!end_) return;
   KeptHalf nothing(half_.map_pixels());
-  if (keeps_places_) nothing.keep_places(longest_step_m_, images_at_once_);
+  if (keeps_places_) nothing.keep_places(longest_step_m_, images_at_once_, over_mirrors_);
   *this = std::move(nothing);
 }
 
@@ -70,10 +70,11 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
                                   const Vec3& step_m, const HalfSettings& settings) {
   step_m_ = glm::length(step_m);
   HalfSettings of_place = settings;
-  of_place.closer_from = very_many;  // it takes as long as it saves, or longer
+  if (!over_mirrors_) of_place.closer_from = very_many;  // it takes as long as it saves, or longer
   const auto is_in = [&](const auto& place) { return place && place->box().holds(end.position_m); };
   if (!is_in(place_)) place_.reset();
-  if (!place_ && is_in(next_)) {
+  // A device that hardly moves is in the place long before it is known: it comes into it when that is wanted.
+  if (!place_ && is_in(next_) && (!over_mirrors_ || frames_to_next_ <= 1)) {
     while (!next_->is_known()) next_->go_on(scene, outlines, of_place);
     place_ = std::move(next_);
   }
@@ -87,17 +88,19 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
 
 DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
                                         const Vec3& step_m, const HalfSettings& settings) {
-  constexpr int most_frames = 8, steps_of_others = 2;
+  constexpr int most_frames = 8;
+  const int steps_of_others = over_mirrors_ ? 12 : 2;  // so many as their pools have; of short ones fewer pay
   if (place_) {
     frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
   } else if (--frames_to_next_ <= 0 || !next_) {
     next_.reset();  // missed, or none
-    frames_to_next_ = most_frames / 2;
+    // Meanwhile the device looks itself, through its mirrors, too, if places do.
+    frames_to_next_ = over_mirrors_ ? most_frames : most_frames / 2;
   }
   if (frames_to_next_ > most_frames) return;
   if (!next_) {
     const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
-    next_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m));
+    next_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m), over_mirrors_);
   }
   const int all = next_->steps_left() + steps_of_others, now = (all + frames_to_next_) / (frames_to_next_ + 1);
   for (int step = 0; step < now && !next_->is_known(); ++step) next_->go_on(scene, outlines, settings);

@@ -20,6 +20,10 @@ inline JoinOrders joined_orders(const PathSearchSettings& settings) {
 inline bool joins_triples(const PathSearchSettings& settings) {
   return settings.joined >= 3 && settings.max_interactions >= 3 && settings.max_reflections >= 2;
 }
+/// Whether the candidates of a place are all that such a search may find there.
+inline bool pools_cover(const PathSearchSettings& settings) {
+  return settings.max_interactions >= 1 && (settings.max_diffractions <= 1 || settings.max_interactions <= 1);
+}
 /// Of an end of links. Where three elements are joined, each of its mirrors costs so much that it pays to look twice;
 /// where one is, no view is so wide that it does.
 inline HalfSettings half_settings(const PathSearchSettings& settings) {

@@ -6,9 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "dcem/paths/halves/shared_beams.hpp"
 #include "dcem/paths/halves/sight.hpp"
 
 namespace dcem {
@@ -40,6 +43,7 @@ struct PlaceBox {
 struct PlaceMirror {
   FacetId facet;
   std::uint32_t number;             ///< of the facet among the mirrors of the place's scenery
+  double side;                      ///< of it, 1 or −1
   Vec3 image_m;                     ///< of the middle of the place
   std::span<const HalfSpace> cone;  ///< what any image may see through the mirror, from the middle of the scene
 };
@@ -49,12 +53,18 @@ class Place {
   /// Pixels along a side of the view map: those of a device (`PathHalf`).
   static constexpr int map_pixels = 256;
 
-  /// Of which nothing is known yet.
-  explicit Place(const PlaceBox& box) : box_(box), corners_m_(box.corners_m()), sight_(map_pixels) {
+  /// Of which nothing is known yet; `over_mirrors`: what is seen through its mirrors is to be known, too.
+  explicit Place(const PlaceBox& box, bool over_mirrors = false)
+      : box_(box), corners_m_(box.corners_m()), sight_(map_pixels) {
     sight_.look_from_within(corners_m_);
+    if (!over_mirrors) return;
+    beams_ = std::make_unique<SharedBeams>();
+    beams_->begin(true);
+    steps_left_ += beam_steps;
   }
-  Place(const Scene& scene, const FacetOutlines& outlines, const PlaceBox& box, const HalfSettings& settings)
-      : Place(box) {
+  Place(const Scene& scene, const FacetOutlines& outlines, const PlaceBox& box, const HalfSettings& settings,
+        bool over_mirrors = false)
+      : Place(box, over_mirrors) {
     while (!is_known()) go_on(scene, outlines, settings);
   }
   Place(const Place&) = delete;
@@ -73,12 +83,18 @@ class Place {
   const SeenLayer& scenery() const { return scenery_; }
   /// The mirrors among it, in the same order; those whose plane cuts the box twice.
   std::span<const PlaceMirror> mirrors() const { return mirrors_; }
+  /// What of the scenery some point of the box may light over these mirrors; none where that is not asked for.
+  const SharedBeams* beams() const { return beams_.get(); }
+  /// The images in a mirror of the corners of what of the box is on its side.
+  void find_images(const Plane& plane, const PlaceMirror& mirror, std::vector<Vec3>& result_m) const;
   /// How far a point of the box may be from its middle.
   double radius_m() const { return glm::length(box_.half_m); }
 
  private:
   void take_mirrors(const Scene& scene, const FacetOutlines& outlines);
+  void look_through_mirrors(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int step);
 
+  static constexpr int beam_steps = 8;
   PlaceBox box_;
   std::array<Vec3, 8> corners_m_;
   Sight sight_;
@@ -86,6 +102,7 @@ class Place {
   SeenLayer scenery_;
   std::vector<HalfSpace> planes_;
   std::vector<PlaceMirror> mirrors_;
+  std::unique_ptr<SharedBeams> beams_;
 };
 
 }  // namespace dcem

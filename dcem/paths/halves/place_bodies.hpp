@@ -36,10 +36,37 @@ DCEM_INLINE std::array<Vec3, 8> PlaceBox::corners_m() const {
 }
 
 DCEM_INLINE void Place::go_on(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings) {
-  sight_.find_scenery_step(Sight::scenery_steps - steps_left_, scene, outlines, settings, scenery_);
-  if (--steps_left_ > 0) return;
+  const int later = beams_ ? beam_steps : 0, step = Sight::scenery_steps + later - steps_left_;
+  --steps_left_;
+  if (step >= Sight::scenery_steps) {
+    return look_through_mirrors(scene, outlines, settings, step - Sight::scenery_steps);
+  }
+  sight_.find_scenery_step(step, scene, outlines, settings, scenery_);
+  if (steps_left_ > later) return;
   sight_.settle();
   take_mirrors(scene, outlines);
+}
+
+/// One of `beam_steps` parts of them.
+DCEM_INLINE void Place::look_through_mirrors(const Scene& scene, const FacetOutlines& outlines,
+                                             const HalfSettings& settings, int step) {
+  const auto part = static_cast<std::size_t>(step);
+  const std::size_t first = mirrors_.size() * part / beam_steps, last = mirrors_.size() * (part + 1) / beam_steps;
+  std::vector<Vec3> images_m;
+  for (std::size_t at = first; at < last; ++at) {
+    const PlaceMirror& mirror = mirrors_[at];
+    find_images(scene.facet(mirror.facet).plane, mirror, images_m);
+    const SharedMirror shared{mirror.facet, mirror.cone, images_m};
+    beams_->look_through(scene, outlines, outlines.middle_m(), settings, shared, static_cast<std::uint32_t>(at), false);
+  }
+  if (steps_left_ > 0) return;
+  beams_->lay_out(scene);
+  beams_->fit();
+}
+
+DCEM_INLINE void Place::find_images(const Plane& plane, const PlaceMirror& mirror, std::vector<Vec3>& result_m) const {
+  box_.corners_beside(plane, mirror.side, result_m);
+  for (Vec3& point_m : result_m) point_m = mirrored(plane, point_m);
 }
 
 DCEM_INLINE void Place::take_mirrors(const Scene& scene, const FacetOutlines& outlines) {
@@ -55,7 +82,7 @@ DCEM_INLINE void Place::take_mirrors(const Scene& scene, const FacetOutlines& ou
       common_cone(outlines.sides(facet), plane, side * plane.normal, corners_m, outlines.middle_m(), cone);
       planes_.insert(planes_.end(), cone.begin(), cone.end());
       ends.push_back(planes_.size());
-      mirrors_.push_back({facet, number, mirrored(plane, box_.middle_m), {}});
+      mirrors_.push_back({facet, number, side, mirrored(plane, box_.middle_m), {}});
     }
   }
   for (std::size_t at = 0; at < ends.size(); ++at) {

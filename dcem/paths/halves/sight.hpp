@@ -95,8 +95,10 @@ class Sight {
   /// The image must not lie in the mirror's plane.
   void look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, const Vec3& image_m,
                     const std::optional<BodyId>& ignored_body);
-  /// The same of the images of several points, which ride on nothing, on one side of the mirror.
-  void look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, std::span<const Vec3> images_m);
+  /// The same of the images of several points, which ride on nothing, on one side of the mirror; of `all_between` them:
+  /// of the convex body of which they are the corners.
+  void look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, std::span<const Vec3> images_m,
+                    bool all_between = false);
 
   /// Works out what may be seen of the scenery. `pool`: looks into many cells at once; none: the calling thread does.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer,

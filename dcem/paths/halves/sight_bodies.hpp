@@ -74,11 +74,12 @@ DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& ou
 }
 
 DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror,
-                                     std::span<const Vec3> images_m) {
+                                     std::span<const Vec3> images_m, bool all_between) {
   const WorldFacet& facet = scene.facet(mirror);
   Vec3 middle_m(0.0);  // not that of a box around them, which may be on the other side of the mirror
   for (const Vec3& image_m : images_m) middle_m += image_m / static_cast<double>(images_m.size());
   take_points(images_m, middle_m);
+  is_body_ = all_between;
   beam_.emplace(mirror, facet.plane, outlines.sides(mirror), images_m, outlines.of(mirror).lift_m);
   map_.look_through(middle_m_, scene.hull_m(facet), MirrorBeam::room_m, beam_->inwards(), offsets_m_);
 }

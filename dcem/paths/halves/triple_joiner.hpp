@@ -33,23 +33,25 @@ class TripleJoiner {
   /// Calls `visit(sequence)`, from the receiver outwards, for each sequence of three elements; seldom twice for one.
   template <typename Visit>
   void for_each_sequence(const BeamLists& receiver, const BeamLists& transmitter, Visit&& visit) {
-    const Ends ends{receiver, transmitter};
-    for (const BeamTable& near : receiver.tables()) {
-      for (const BeamTable& far : transmitter.tables()) join(ends, near, far, visit);
-    }
+    join_where(
+        receiver, transmitter, [](std::size_t, std::size_t) { return true; }, visit);
+  }
+
+  /// The same of sequences over a body, in at least one of their elements.
+  template <typename Visit>
+  void for_each_body_sequence(const BeamLists& receiver, const BeamLists& transmitter, Visit&& visit) {
+    constexpr std::size_t scenery = BeamLists::of_scenery;
+    const auto takes = [](std::size_t near, std::size_t far) { return near != scenery || far != scenery; };
+    join_where(receiver, transmitter, takes, visit);
   }
 
   /// The same of sequences over a body that has moved, in at least one of their elements: then it is in what one of the
   /// ends reaches over moved bodies.
   template <typename Visit>
   void for_each_moved_sequence(const BeamLists& receiver, const BeamLists& transmitter, Visit&& visit) {
-    const Ends ends{receiver, transmitter};
-    for (std::size_t near = 0; near < receiver.tables().size(); ++near) {
-      for (std::size_t far = 0; far < transmitter.tables().size(); ++far) {
-        if (near != BeamLists::of_moved && far != BeamLists::of_moved) continue;
-        join(ends, receiver.tables()[near], transmitter.tables()[far], visit);
-      }
-    }
+    constexpr std::size_t moved = BeamLists::of_moved;
+    const auto takes = [](std::size_t near, std::size_t far) { return near == moved || far == moved; };
+    join_where(receiver, transmitter, takes, visit);
   }
 
  private:
@@ -61,6 +63,16 @@ class TripleJoiner {
     const BeamLists& lists;
     const BeamTable& table;
   };
+
+  template <typename Takes, typename Visit>
+  void join_where(const BeamLists& receiver, const BeamLists& transmitter, Takes&& takes, Visit& visit) {
+    const Ends ends{receiver, transmitter};
+    for (std::size_t near = 0; near < receiver.tables().size(); ++near) {
+      for (std::size_t far = 0; far < transmitter.tables().size(); ++far) {
+        if (takes(near, far)) join(ends, receiver.tables()[near], transmitter.tables()[far], visit);
+      }
+    }
+  }
 
   const Scene& scene() const { return gates_.scene(); }
   /// The image of an end in one of its mirrors.

@@ -14,6 +14,7 @@
 #include "dcem/paths/memory/candidate_pool.hpp"
 #include "dcem/paths/memory/key_table.hpp"
 #include "dcem/paths/memory/sure_blocker.hpp"
+#include "dcem/paths/memory/triple_ways.hpp"
 #include "dcem/paths/memory/way_finder.hpp"
 
 namespace dcem {
@@ -33,6 +34,7 @@ struct PoolJudge {
 struct PoolSource {
   const Scene& scene;
   const FacetOutlines& outlines;
+  const LaneScene& lanes;
   const BeamLists& reached;  ///< by the transmitter
   JoinOrders orders;
 };
@@ -42,17 +44,28 @@ class PooledLink {
   void forget() {
     pool_.reset();
     next_.reset();
+    triples_.reset();
+    next_triples_.reset();
     slots_ = {};
+    triple_slots_ = {};
   }
   bool is_of(const Place& place) const { return pool_ && &pool_->place() == &place; }
 
   /// Finds candidates of a place that will be entered after so many frames: a share of them.
   void prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames) {
     if (!next_ || &next_->place() != place.get()) {
+      next_triples_ =
+          place->beams() != nullptr ? std::make_unique<TriplePool>(place, source.reached, source.orders) : nullptr;
       next_ = std::make_unique<CandidatePool>(std::move(place), source.reached, source.orders);
     }
-    const int share = (next_->steps_left() + frames) / (frames + 1);  // the frame in which it is entered has one, too
-    for (int step = 0; step < share && next_->steps_left() > 0; ++step) next_->go_on(source.scene, source.outlines);
+    const int share = (steps_left() + frames) / (frames + 1);  // the frame in which it is entered has one, too
+    for (int step = 0; step < share && steps_left() > 0; ++step) {
+      if (next_->steps_left() > 0) {
+        next_->go_on(source.scene, source.outlines);
+      } else {
+        next_triples_->go_on(source.scene, source.outlines, source.lanes);
+      }
+    }
   }
 
   /// Goes over to another place. What is known of a candidate that both places have is kept.
@@ -71,6 +84,7 @@ class PooledLink {
     }
     slots_ = std::move(slots);
     pool_ = std::move(next);
+    enter_triples();
   }
 
   /// Calls `solve(sequence) -> bool` for candidates that may carry a path; it says whether they do.
@@ -82,9 +96,40 @@ class PooledLink {
       if (way_m_ < slot.refused_until_m || !pool_->aim(judge.gates, judge.receiver.position_m, number, way_)) return;
       const bool was_open = slot.is_open;
       slot.is_open = was_open && solve(way_.elements);
-      if (slot.is_open || is_refused(judge, slot) || was_open) return;
+      const auto reach_m = [&](double moved_m) {
+        return way_reach_m(judge.gates.scene(), judge.receiver.position_m, way_, moved_m);
+      };
+      if (slot.is_open || is_masked(judge, slot, reach_m) || is_stopped_by_any(judge, slot, reach_m) || was_open)
+        return;
       slot.is_open = solve(way_.elements);
     });
+  }
+
+  /// The same for candidates of three elements, after the others.
+  template <typename Index, typename Solve>
+  void for_each_open_triple(const PoolJudge<Index>& judge, const BeamLists& reached, Solve&& solve) {
+    if (!triples_) return;
+    TripleWays ways(judge.gates, judge.outlines, judge.receiver.position_m, pool_->place().sight(), reached);
+    const std::span<const Triple> all = triples_->candidates();
+    for (std::size_t number = 0; number < all.size(); ++number) {
+      Slot& slot = triple_slots_[number];
+      if (way_m_ < slot.refused_until_m) continue;
+      const bool was_open = std::exchange(slot.is_open, false);
+      const auto refuses = [&](double moved_m) { return ways.refuses(all[number], moved_m); };
+      // Most are refused, and for as long as they were the last time.
+      const bool is_refused = holds_ahead(slot, refuses) || holds_for_a_while(slot, refuses, Ahead::fails);
+      slot.is_masked = is_refused && ways.is_hidden();
+      if (is_refused) continue;
+      way_.elements.assign(all[number].begin(), all[number].end());
+      way_.points_m = ways.points_m();
+      const auto reach_m = [&](double moved_m) {
+        ways.work_out(all[number], moved_m);
+        return ways.reach_m();
+      };
+      if (was_open) slot.is_open = solve(way_.elements);
+      if (slot.is_open || (ways.has_points() && is_stopped_by_any(judge, slot, reach_m)) || was_open) continue;
+      slot.is_open = solve(way_.elements);
+    }
   }
 
  private:
@@ -95,46 +140,74 @@ class PooledLink {
     bool is_known = false, is_open = false, is_masked = false;
   };
 
+  int steps_left() const { return next_->steps_left() + (next_triples_ ? next_triples_->steps_left() : 0); }
+
+  /// What is known of something for as far ahead as would be asked first: nothing, or that it does not hold; what may
+  /// move holds for now alone.
+  enum class Ahead { unknown, fails, not_asked };
+
+  /// It pays to ask for no less than the frame after the next one.
+  float shortest_ahead_m() const { return static_cast<float>(1.5 * step_m_); }
+
   void note_step(const Vec3& receiver_m) {
     if (before_m_) step_m_ = glm::distance(*before_m_, receiver_m);
     way_m_ += 1.000001 * step_m_ + 1e-9;
     before_m_ = receiver_m;
   }
 
-  /// Whether the candidate aimed at surely carries no path; if so, until when, and by what.
-  template <typename Index>
-  bool is_refused(const PoolJudge<Index>& judge, Slot& slot) {
-    slot.is_masked = is_masked(judge, slot);
-    if (slot.is_masked) return true;
-    if (slot.is_known && is_stopped(judge, slot)) return true;
+  /// Goes over to the candidates of three elements of the next place.
+  void enter_triples() {
+    const std::unique_ptr<TriplePool> before = std::exchange(triples_, std::move(next_triples_));
+    const std::vector<Slot> known = std::exchange(triple_slots_, {});
+    if (!triples_) return;
+    const std::span<const Triple> all = triples_->candidates();
+    triple_slots_.resize(all.size());
+    const std::span<const Triple> old = before ? before->candidates() : std::span<const Triple>{};
+    for (std::size_t now = 0, then = 0; now < all.size(); ++now) {
+      while (then < old.size() && old[then] < all[now]) ++then;
+      if (then == old.size()) break;
+      if (old[then] != all[now]) continue;
+      triple_slots_[now] = known[then];
+      if (known[then].is_masked) triple_slots_[now].refused_until_m = 0.0;
+    }
+  }
+
+  /// Whether something opaque surely stops the candidate aimed at; if so, until when, and what it is.
+  /// `reach_m(moved_m)` says how far the points of the way may move.
+  template <typename Index, typename Reach>
+  bool is_stopped_by_any(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach_m) {
+    if (slot.is_known && is_stopped(judge, slot, reach_m)) return true;
     points_m_.assign(way_.points_m.rend() - static_cast<std::ptrdiff_t>(way_.elements.size()), way_.points_m.rend());
     const auto blocker =
         judge.ways.blocker(judge.transmitter, judge.receiver, way_.elements, points_m_, judge.counters);
     if (!blocker) return false;
     slot.blocker = *blocker;
     slot.is_known = true;
-    return is_stopped(judge, slot);
+    return is_stopped(judge, slot, reach_m);
   }
 
-  template <typename Index>
-  bool is_masked(const PoolJudge<Index>& judge, Slot& slot) const {
+  /// Whether an end surely does not see the point of the candidate aimed at that is next to it; if so, until when.
+  template <typename Index, typename Reach>
+  bool is_masked(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach_m) const {
     const Scene& scene = judge.gates.scene();
     const Sight &near = pool_->place().sight(), &far = judge.transmitter_half.sight();
-    return holds_for_a_while(judge, slot, [&](const std::array<double, 2>& moved_m) {
+    slot.is_masked = holds_for_a_while(slot, [&](double receiver_moved_m) {
+      const WayReach moved_m = reach_m(receiver_moved_m);
       return hides(scene, judge.outlines, near, 0, moved_m) ||
              hides(scene, judge.outlines, far, way_.elements.size() - 1, moved_m);
     });
+    return slot.is_masked;
   }
   bool hides(const Scene& scene, const FacetOutlines& outlines, const Sight& sight, std::size_t at,
-             const std::array<double, 2>& moved_m) const {
+             const WayReach& moved_m) const {
     const SequenceElement element = way_.elements[at];
     const double nearer = element.is_edge() ? sight.nearer_on(scene, outlines, element.edge())
                                             : sight.nearer_on(scene, outlines, element.mirror());
     return sight.map().hides(way_.points_m[at], nearer, moved_m[at]);
   }
 
-  template <typename Index>
-  bool is_stopped(const PoolJudge<Index>& judge, Slot& slot) const {
+  template <typename Index, typename Reach>
+  bool is_stopped(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach_m) const {
     const Scene& scene = judge.gates.scene();
     const std::size_t leg = slot.blocker.leg, count = way_.elements.size();
     std::array<FacetId, 4> own;
@@ -157,34 +230,37 @@ class PooledLink {
                    {judge.transmitter.ignored_body, judge.receiver.ignored_body}};
     const bool may_move = scene.facet(facet).body != BodyId(0);
     return holds_for_a_while(
-        judge, slot,
-        [&](const std::array<double, 2>& moved_m, double receiver_moved_m) {
+        slot,
+        [&](double receiver_moved_m) {
+          const WayReach moved_m = reach_m(receiver_moved_m);
           vague.from_moved_m = leg == 0 ? 0.0 : moved_m[count - leg];
           vague.to_moved_m = leg == count ? receiver_moved_m : moved_m[count - 1 - leg];
           return surely_stops(scene, judge.outlines, slot.blocker.triangle, vague);
         },
-        may_move);
+        may_move ? Ahead::not_asked : Ahead::unknown);
   }
 
-  /// Whether something holds now; if it does for some while, too, notes until when: `holds` is asked how far the points
-  /// of the way, and the receiver, may have moved. What may move holds for now alone.
-  template <typename Index, typename Holds>
-  bool holds_for_a_while(const PoolJudge<Index>& judge, Slot& slot, Holds&& holds, bool now_alone = false) const {
-    const auto asked = [&](const std::array<double, 2>& moved_m, double receiver_moved_m) {
-      if constexpr (std::is_invocable_v<Holds, const std::array<double, 2>&>)
-        return holds(moved_m);
-      else
-        return holds(moved_m, receiver_moved_m);
-    };
-    if (!asked({0.0, 0.0}, 0.0)) return false;
+  /// Whether something holds for as far ahead as is asked for next; notes it.
+  template <typename Holds>
+  bool holds_ahead(Slot& slot, Holds&& holds) const {
+    const float moved_m = std::min(slot.ahead_m, longest_ahead_m);
+    if (moved_m < shortest_ahead_m() || !holds(moved_m)) return false;
+    slot.refused_until_m = way_m_ + moved_m;
+    slot.ahead_m = 2.0F * moved_m;
+    return true;
+  }
+
+  /// Whether something holds now; if it does for some while, too, notes until when: `holds(moved_m)` is asked for all
+  /// places that the receiver may have moved to.
+  template <typename Holds>
+  bool holds_for_a_while(Slot& slot, Holds&& holds, Ahead ahead = Ahead::unknown) const {
+    if (!holds(0.0)) return false;
     // Twice as far as the last time that it held, a quarter as far as the last time that it did not.
-    constexpr float longest_m = 4.0F;
-    const auto shortest_m = static_cast<float>(1.5 * step_m_);
-    for (int attempt = 0; attempt < 2 && !now_alone; ++attempt) {
-      const float moved_m = std::min(slot.ahead_m, longest_m);
+    const float shortest_m = shortest_ahead_m();
+    for (int attempt = 0; attempt < 2 && ahead != Ahead::not_asked; ++attempt) {
+      const float moved_m = std::min(slot.ahead_m, longest_ahead_m);
       if (moved_m < shortest_m) break;
-      const auto reach_m = way_reach_m(judge.gates.scene(), judge.receiver.position_m, way_, moved_m);
-      const bool held = asked(reach_m, moved_m);
+      const bool held = (attempt > 0 || ahead != Ahead::fails) && holds(moved_m);
       if (held) slot.refused_until_m = way_m_ + moved_m;
       slot.ahead_m = held ? 2.0F * moved_m : 0.25F * moved_m;
       if (held) break;
@@ -193,7 +269,10 @@ class PooledLink {
     return true;
   }
 
+  static constexpr float longest_ahead_m = 4.0F;
   std::unique_ptr<CandidatePool> pool_, next_;
+  std::unique_ptr<TriplePool> triples_, next_triples_;  ///< none where no more than two elements are asked for
+  std::vector<Slot> triple_slots_;
   std::vector<Slot> slots_;
   double way_m_ = 0.0, step_m_ = 0.0;  ///< that the receiver has come, in all and since the frame before
   std::optional<Vec3> before_m_;

@@ -101,11 +101,17 @@ void BasicSimulator<Surface, Index>::choose_remembered() {
   if (plan_.joined == 0 || std::isinf(settings_.most_remembered_bytes)) return;  // nobody looks, or all may
   const auto rests = [&](std::size_t transmitter) { return transmitter_rests_[transmitter] != 0; };
   const auto all_at_rest = std::count_if(transmitter_rests_.begin(), transmitter_rests_.end(), std::identity());
+  const bool triples = joins_triples(search_settings({}));
   std::vector<double> bytes(receivers.size());
   pool_->for_each_quick(receivers.size(), [&](std::size_t index) {
-    if (!state_of(receivers[index]).present) return;
+    const DeviceState state = state_of(receivers[index]);
+    if (!state.present) return;
+    const std::optional<LinkEnd>& before = receivers_[index].end;
+    const bool walks = before && before->position_m != state.position_m;
     const auto at_rest = choice_.takes_all() ? all_at_rest : std::ranges::count_if(chosen_[index], rests);
-    bytes[index] = detail::remembered_receiver_bytes + static_cast<double>(at_rest) * detail::remembered_link_bytes;
+    bytes[index] = detail::remembered_receiver_bytes +
+                   static_cast<double>(at_rest) *
+                       (detail::remembered_link_bytes + (triples && walks ? detail::remembered_triples_bytes : 0.0));
   });
   double needed_bytes = 0.0;
   for (std::size_t index = 0; index < bytes.size(); ++index) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "dcem/paths/halves/half_joiner.hpp"
+#include "dcem/paths/halves/triple_joiner.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/simulator_memory.hpp"
 
@@ -39,22 +40,45 @@ void BasicSimulator<Surface, Index>::look_anew(Following& following, ReceiverRoo
   if (known == nullptr) look_from(scene_, following.search, *outlines_, *lanes_, following.end, room);
 }
 
-/// The same where sequences of three elements are joined: what a receiver that stands reaches over its mirrors is kept.
+/// The same where sequences of three elements are joined: what a receiver that stands reaches over its mirrors is kept,
+/// and what one that moves may reach from its place.
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::look_for_triples(Following& following, detail::ReceiverMemory& memory,
                                                       ReceiverRoom& room, bool stands) const {
   const PathSearchSettings& search = following.search;
-  const KeptHalf* known = following.as_transmitter;
-  if (known == nullptr && stands) {
-    const HalfLists lists{lanes_.get(), true, true, 0, nullptr, BeamFinder::few_pieces};
-    memory.half.update(scene_, *outlines_, following.end, half_settings(search), lists, change_->moved());
-    known = &memory.half;
-  } else {
-    memory.half.forget_bodies();
+  if (const KeptHalf* const known = following.as_transmitter) {
+    memory.half.forget_bodies();  // nobody tells it how they move
+    memory.forget_pools();
+    following.half = &known->half();
+    following.lists = known->lists();
+    return;
   }
-  if (known == nullptr) return look_from(scene_, search, *outlines_, *lanes_, following.end, room);
-  following.half = &known->half();
-  following.lists = known->lists();
+  const HalfSettings settings = half_settings(search);
+  memory.half.keep_places(detail::longest_step_of_triples_m, false, true);
+  HalfLists lists;
+  if (stands) lists = {lanes_.get(), true, true, 0, nullptr, BeamFinder::few_pieces};
+  memory.half.update(scene_, *outlines_, following.end, settings, lists, change_->moved());
+  following.half = &memory.half.half();
+  if (stands || !memory.half.is_in_places()) memory.forget_pools();  // it looks itself
+  if (stands) {
+    following.lists = memory.half.lists();
+    return;
+  }
+  const BeamSource source{scene_, *outlines_, *lanes_, memory.half.half(), settings, true};
+  const Place* const place = memory.half.place().get();
+  if (place == nullptr) return room.lists.find_all(source);
+  if (outlines_->bodies().empty() && all_rest(following.transmitters)) return;
+  memory.half.lay_out_images(scene_, *outlines_);
+  room.lists.find_from(source, *place, change_->moved());
+}
+
+/// Whether all transmitters are where they were in the frame before.
+template <SurfaceModel Surface, SpatialIndex Index>
+bool BasicSimulator<Surface, Index>::all_rest(const TransmitterEnds& transmitters) const {
+  for (std::size_t transmitter = 0; transmitter < transmitters.link.size(); ++transmitter) {
+    if (transmitters.link[transmitter] && transmitter_rests_[transmitters.number(transmitter)] == 0) return false;
+  }
+  return true;
 }
 
 /// All paths of a link, from sequences found from both ends. Where the ends stand, all that may carry a path later is
@@ -97,10 +121,9 @@ bool BasicSimulator<Surface, Index>::joins_anew(const Following& following, cons
 template <SurfaceModel Surface, SpatialIndex Index>
 bool BasicSimulator<Surface, Index>::may_pool(const Following& following, const KeptHalf& half, std::size_t transmitter,
                                               bool rests) const {
-  const PathSearchSettings& search = following.search;
-  const bool is_covered = search.max_interactions >= 1 && !joins_triples(search) &&
-                          (search.max_diffractions <= 1 || search.max_interactions <= 1);
-  return is_covered && !rests && half.is_in_places() && following.transmitters.halves[transmitter].lists() != nullptr;
+  const bool stands = transmitter_rests_[following.transmitters.number(transmitter)] != 0;
+  return pools_cover(following.search) && !rests && stands && following.half == &half.half() && half.is_in_places() &&
+         following.transmitters.halves[transmitter].lists() != nullptr;
 }
 
 /// Finds some of the candidates of the place that the receiver will be in next.
@@ -109,7 +132,7 @@ void BasicSimulator<Surface, Index>::prepare_pool(FollowedLink& link, const Kept
   auto next = half.next_place();
   if (!next) return;
   const BeamLists& reached = *link.of.transmitters.halves[link.transmitter].lists();
-  link.memory.pooled.prepare({scene_, *outlines_, reached, joined_orders(link.of.search)}, std::move(next),
+  link.memory.pooled.prepare({scene_, *outlines_, *lanes_, reached, joined_orders(link.of.search)}, std::move(next),
                              half.frames_to_next());
 }
 
@@ -121,7 +144,7 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Fol
   const Following& following = link.of;
   const KeptHalf& mast = following.transmitters.halves[link.transmitter];
   if (!pooled.is_of(*half.place())) {
-    pooled.enter({scene_, *outlines_, *mast.lists(), joined_orders(following.search)}, half.place());
+    pooled.enter({scene_, *outlines_, *lanes_, *mast.lists(), joined_orders(following.search)}, half.place());
   }
   std::vector<PathContribution> paths;
   const auto solve = [&](const Sequence& sequence) {
@@ -132,11 +155,15 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Fol
   };
   solve({});
   const JoinGates gates(scene_, *outlines_);
-  pooled.for_each_open(
-      PoolJudge<Index>{gates, *outlines_, link.from(), following.end, mast.half(), link.ways, link.counters.solver},
-      solve);
-  HalfJoiner(scene_, *outlines_, joined_orders(following.search))
-      .for_each_body_sequence(*following.half, mast.half(), solve);
+  const PoolJudge<Index> judge{gates,       *outlines_, link.from(),         following.end,
+                               mast.half(), link.ways,  link.counters.solver};
+  pooled.for_each_open(judge, solve);
+  pooled.for_each_open_triple(judge, *mast.lists(), solve);
+  const JoinOrders orders = joined_orders(following.search);
+  HalfJoiner(scene_, *outlines_, orders).for_each_body_sequence(*following.half, mast.half(), solve);
+  if (joins_triples(following.search) && !outlines_->bodies().empty()) {
+    TripleJoiner(scene_, *outlines_, *lanes_, orders).for_each_body_sequence(*following.lists, *mast.lists(), solve);
+  }
   prepare_pool(link, half);
   return paths;
 }
