@@ -66,20 +66,18 @@ class FacetOutlines {
     return std::all_of(all.begin(), all.end(), inside);
   }
 
-  /// Calls `visit(facet)` for facets of the scenery of which some point, moved out of the plane by `times` its lift,
-  /// may be moved by `most_m` along its line of sight, seen from a point or from what is within `radius_m` of it.
+  /// Calls `visit(facet)` for facets of the scenery of which the plane is, by less than `times` the facet's lift, at a
+  /// point or at what is within `radius_m` of it.
   template <typename Visit>
-  void for_each_grazed(const Vec3& point_m, double radius_m, double times, double most_m, Visit&& visit) const {
+  void for_each_grazed(const Vec3& point_m, double radius_m, double times, Visit&& visit) const {
     const Vec3 from = point_m - middle_m_;
     const auto x = static_cast<float>(from.x), y = static_cast<float>(from.y), z = static_cast<float>(from.z);
-    const auto away_m = static_cast<float>(glm::length(from) + radius_m);
     const auto room_m = static_cast<float>(radius_m + 1e-2 + 1e-6 * glm::length(from));
-    const auto share = static_cast<float>(1.001 * times / most_m);
+    const auto share = static_cast<float>(1.001 * times);
     for (std::size_t first = 0; first < items_.size(); first += simd_lanes) {
       const PlaneLanes& eight = planes_[first / simd_lanes];
       const Float8 off = Float8(eight.x) * x + Float8(eight.y) * y + Float8(eight.z) * z - Float8(eight.offset);
-      const Float8 moved = Float8(eight.lift) * (Float8(eight.reach) + away_m) * share;
-      std::uint32_t left = (simd::absolute(off) <= moved + room_m).bits();
+      std::uint32_t left = (simd::absolute(off) <= Float8(eight.lift) * share + room_m).bits();
       for (; left != 0; left &= left - 1) {
         const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(left));
         if (at < items_.size()) visit(FacetId(items_[at]));
@@ -120,9 +118,9 @@ class FacetOutlines {
     std::uint32_t right = 0;             ///< the second child; the first one follows the node. 0: a leaf
   };
 
-  /// Eight planes in single precision, counted from the middle, with the lift and how far the facet reaches from there.
+  /// Eight planes in single precision, counted from the middle, with the lift.
   struct PlaneLanes {
-    std::array<float, simd_lanes> x{}, y{}, z{}, offset{}, lift{}, reach{};
+    std::array<float, simd_lanes> x{}, y{}, z{}, offset{}, lift{};
   };
 
   /// Nearest first; of equals the one with the smaller number, so that the order is that of the scene alone.

@@ -115,14 +115,11 @@ DCEM_INLINE void FacetOutlines::lay_out_planes(const Scene& scene) {
     PlaneLanes& eight = planes_[at / simd_lanes];
     const std::size_t lane = at % simd_lanes;
     const Plane& plane = scene.facets()[items_[at]].plane;
-    const FacetOutline& outline = outlines_[items_[at]];
     eight.x[lane] = static_cast<float>(plane.normal.x);
     eight.y[lane] = static_cast<float>(plane.normal.y);
     eight.z[lane] = static_cast<float>(plane.normal.z);
     eight.offset[lane] = static_cast<float>(glm::dot(plane.normal, plane.point_m - middle_m_));
-    eight.lift[lane] = static_cast<float>(outline.lift_m);
-    const Vec3 farthest = glm::max(glm::abs(outline.box.min - middle_m_), glm::abs(outline.box.max - middle_m_));
-    eight.reach[lane] = static_cast<float>(glm::length(farthest));
+    eight.lift[lane] = static_cast<float>(outlines_[items_[at]].lift_m);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dcem/paths/halves/facet_outlines.hpp"
+#include "dcem/paths/halves/may_face.hpp"
 #include "dcem/paths/halves/mirror_beam.hpp"
 #include "dcem/paths/halves/view_cells.hpp"
 #include "dcem/paths/halves/view_map.hpp"
@@ -18,32 +19,6 @@
 #include "dcem/paths/solve/edge_rules.hpp"
 
 namespace dcem {
-
-namespace detail {
-
-/// The angle between a way and its part `along` where `across` is the other, both positive, to within 0.004 rad:
-/// arctan x ≈ π/4 x + 0.273 x (1 − x) (Rajan et al., "Efficient approximations for the arctangent function", IEEE
-/// Signal Processing Magazine 23 (3), 2006, eq. 9).
-inline double rough_angle_rad(double along, double across) {
-  const bool is_steep = across > along;
-  const double slope = is_steep ? along / across : across / along;
-  const double angle_rad = slope * (0.25 * pi + 0.273 * (1.0 - slope));
-  return is_steep ? 0.5 * pi - angle_rad : angle_rad;
-}
-
-}  // namespace detail
-
-/// Whether a direction away from an edge may lie in its exterior; at grazing the solver decides.
-inline bool may_face(const Wedge& wedge, const Vec3& away_m) {
-  const double up = glm::dot(away_m, wedge.normal);
-  if (up >= 0.0) return true;  // the exterior has more than half a turn
-  const double along = glm::dot(away_m, wedge.tangent), off_rad = detail::rough_angle_rad(std::abs(along), -up);
-  const double rough_rad = along > 0.0 ? 2.0 * pi - off_rad : pi + off_rad;
-  if (rough_rad < wedge.exterior_angle_rad - 0.005) return true;
-  if (rough_rad > wedge.exterior_angle_rad + 0.005 && rough_rad < 2.0 * pi - 0.005) return false;
-  const double azimuth = azimuth_rad(wedge, away_m);
-  return azimuth <= wedge.exterior_angle_rad + 1e-6 || azimuth >= 2.0 * pi - 1e-6;
-}
 
 class ThreadPool;
 
@@ -83,10 +58,16 @@ struct SeenLayer {
 
 class Sight {
  public:
+  /// A leg that grazes a mirror may ignore what lies along it for a long way. Facets for which that is a larger share
+  /// of the way are looked at one by one, whatever hides the box they are in.
+  static constexpr double longest_lift_share = 0.005;
+  /// By which factor boxes of all other facets count as nearer.
+  static constexpr double nearer_boxes = 1.0 / (1.0 - longest_lift_share);
+
   explicit Sight(int map_pixels) : map_(map_pixels) {}
 
-  /// Looks from one end.
-  void look_from(const LinkEnd& end);
+  /// Looks from one end. `pool`: empties the map; none: the calling thread does.
+  void look_from(const LinkEnd& end, ThreadPool* pool = nullptr);
   /// Looks from several points at once, which ride on nothing and touch nothing.
   void look_from(std::span<const Vec3> points_m);
   /// Looks from all of a convex body at once, of which these are the corners; what stands in it may touch things.
@@ -100,7 +81,8 @@ class Sight {
   void look_through(const Scene& scene, const FacetOutlines& outlines, FacetId mirror, std::span<const Vec3> images_m,
                     bool all_between = false);
 
-  /// Works out what may be seen of the scenery. `pool`: looks into many cells at once; none: the calling thread does.
+  /// Works out what may be seen of the scenery. `pool`: looks at several faces, and into many cells, at once; none: the
+  /// calling thread does.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer,
                     ThreadPool* pool = nullptr);
   /// The same in so many steps, numbered from 0, one after the other.
@@ -126,6 +108,8 @@ class Sight {
   void settle() {
     settle_map();
     seen_ = {};
+    grazed_ = {};
+    found_ = {};
     shown_ = {};
     cells_ = {};
     cell_map_.reset();
@@ -156,9 +140,6 @@ class Sight {
   }
 
  private:
-  /// A leg that grazes a mirror may ignore what lies along it for a long way. Facets for which that is more than
-  /// this are looked at one by one, whatever hides the box they are in.
-  static constexpr double longest_lift_m = 0.05;
   /// Triangles that leave their facet's plane by more hide as they are, not as the facet's hull. 2 µm from 13 cm away
   /// are 0.002 of a pixel.
   static constexpr double flat_m = 2e-6;
@@ -184,22 +165,23 @@ class Sight {
     }
     return is_body_ && lowest_m <= 0.0 && highest_m >= 0.0 ? 0.0 : least_m;
   }
-  /// Whether a facet is grazed so that some point of it, lifted, is farther in front than boxes allow for.
+  /// Whether a facet is grazed so that a point of it, lifted, is farther in front than boxes allow for.
   bool is_lifted_far(const Scene& scene, const FacetOutlines& outlines, FacetId id) const {
-    const FacetOutline& outline = outlines.of(id);
-    const Vec3 farthest_m =
-        glm::max(glm::abs(outline.box.min - position_m()), glm::abs(outline.box.max - position_m()));
-    const double middle_m = std::abs(signed_distance_m(scene.facet(id).plane, position_m()));
-    const double most_m = lift_share() * outline.lift_m * glm::length(farthest_m);
-    if ((middle_m - radius_m_) * longest_lift_m > most_m) return false;
-    return least_distance_m(scene.facet(id).plane) * longest_lift_m <= most_m;
+    const double lift_m = lift_share() * outlines.of(id).lift_m;
+    return least_distance_m(scene.facet(id).plane) * longest_lift_share <= lift_m;
   }
   void take_points(std::span<const Vec3> points_m, const Vec3& middle_m);
+  using FaceSpan = ViewMap::FaceSpan;
   void look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                       std::vector<FacetId>& seen);
+                       std::vector<FacetId>& seen, ThreadPool* pool);
+  void look_at_each_face(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                         std::vector<FacetId>& seen, ThreadPool* pool);
+  /// On some faces of the map.
+  void look_at_faces(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                     const FaceSpan& faces, std::vector<FacetId>& seen);
   void look_at_bodies(const Scene& scene, const FacetOutlines& outlines, const BodyChoice& bodies,
                       std::vector<FacetId>& seen) const;
-  bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) const;
+  bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id, const FaceSpan& faces = {}) const;
   /// Where it pays.
   void look_closer(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                    std::vector<FacetId>& seen, ThreadPool* pool);
@@ -207,12 +189,14 @@ class Sight {
                      std::span<const FacetId> seen, ThreadPool* pool);
   void look_into(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int cell,
                  std::span<const FacetId> seen, ViewMap& map);
-  void cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings,
-             ViewMap& map) const;
+  void cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings, ViewMap& map,
+             const FaceSpan& faces = {}) const;
   static void count_sheets(const Scene& scene, const HalfSettings& settings, ViewMap& map);
   /// `sheet`: its plane, where it is a sheet that a path may cross; null: nothing passes.
-  void cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet, ViewMap& map) const;
-  void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet, ViewMap& map) const;
+  void cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet, ViewMap& map,
+                       const FaceSpan& faces) const;
+  void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet, ViewMap& map,
+                    const FaceSpan& faces) const;
   /// Whether all points are in a facet's plane: nothing is reflected there, though its edges may diffract.
   bool is_along(const Plane& plane) const {
     return std::all_of(points_m_.begin(), points_m_.end(), [&](const Vec3& point_m) {
@@ -231,7 +215,9 @@ class Sight {
     return std::none_of(points_m_.begin(), points_m_.end(),
                         [&](const Vec3& point_m) { return may_face(wedge, point_m - wedge.start_m); });
   }
-  void finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer) const;
+  /// `pool`: asks about the edges, of a map that is settled; none: the calling thread does.
+  void finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer,
+              ThreadPool* pool = nullptr) const;
 
   ViewMap map_;
   std::vector<Vec3> points_m_, offsets_m_;  ///< of several: from their middle
@@ -242,7 +228,9 @@ class Sight {
   bool is_body_ = false;  ///< the points are the corners of a body that is looked from
   std::optional<BodyId> ignored_body_;
   std::vector<FacetId> mounted_on_;
-  std::vector<char> seen_;
+  std::vector<FacetId> grazed_;
+  std::array<std::vector<FacetId>, 6> found_;  ///< by face
+  std::vector<unsigned char> seen_;            ///< by facet, a bit for each face on which it may be seen
   detail::ViewCells cells_;
   std::optional<ViewMap> cell_map_;  ///< of one cell after the other; none where no view is looked at twice
   std::vector<char> shown_;          ///< by place among the facets that are looked at again
@@ -253,4 +241,5 @@ class Sight {
 #if !defined(DCEM_ENGINE)
 #include "dcem/paths/halves/sight_bodies.hpp"
 #include "dcem/paths/halves/sight_closer_bodies.hpp"
+#include "dcem/paths/halves/sight_covers_bodies.hpp"
 #endif

@@ -1,12 +1,13 @@
 #pragma once
-/// Bodies of sight.hpp: how a `Sight` finds what may be seen, and what hides it.
+/// Bodies of sight.hpp: how a `Sight` finds what may be seen.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "dcem/core/build_mode.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/paths/halves/sight.hpp"
-#include "dcem/paths/query/leg_filter.hpp"
 
 namespace dcem {
 
@@ -19,8 +20,12 @@ DCEM_INLINE void collect_edges(const Scene& scene, std::span<const FacetId> face
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 }
 
-DCEM_INLINE void Sight::look_from(const LinkEnd& end) {
-  map_.look_from(end.position_m);
+DCEM_INLINE void Sight::look_from(const LinkEnd& end, ThreadPool* pool) {
+  if (pool == nullptr) {
+    map_.look_from(end.position_m);
+  } else {
+    map_.look_from(end.position_m, *pool);
+  }
   points_m_.assign(1, end.position_m);
   radius_m_ = 0.0;
   is_body_ = false;
@@ -84,23 +89,63 @@ DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& ou
   map_.look_through(middle_m_, scene.hull_m(facet), MirrorBeam::room_m, beam_->inwards(), offsets_m_);
 }
 
+/// From one point face by face: each is looked at in one order of its own, however many threads there are.
 DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                                        std::vector<FacetId>& seen) {
+                                        std::vector<FacetId>& seen, ThreadPool* pool) {
   seen_.assign(outlines.size(), 0);
   count_sheets(scene, settings, map_);
   reach_m_ = settings.reach_m + radius_m_ + in_reach_m;
-  const auto look_at = [&](FacetId id) {
-    if (seen_[id.value] != 0 || !may_see(scene, outlines, id)) return;
-    seen_[id.value] = 1;
-    seen.push_back(id);
-    cover(scene, outlines, id, settings, map_);
-  };
-  const auto hidden = [&](const Aabb<double>& box) { return is_out_of_view(box) || map_.hides(box, longest_lift_m); };
-  outlines.visit_from(position_m(), hidden, look_at);
-  outlines.for_each_grazed(position_m(), radius_m_, lift_share(), longest_lift_m, [&](FacetId id) {
-    if (is_lifted_far(scene, outlines, id) && !is_out_of_view(outlines.of(id).box)) look_at(id);
+  grazed_.clear();
+  outlines.for_each_grazed(position_m(), radius_m_, lift_share() / longest_lift_share, [&](FacetId id) {
+    if (is_lifted_far(scene, outlines, id) && !is_out_of_view(outlines.of(id).box)) grazed_.push_back(id);
   });
+  if (map_.faces() == 1 || !map_.is_of_one_point()) {
+    look_at_faces(scene, outlines, settings, {}, seen);
+  } else {
+    look_at_each_face(scene, outlines, settings, seen, pool);
+  }
   map_.forget_sheets();
+}
+
+DCEM_INLINE void Sight::look_at_each_face(const Scene& scene, const FacetOutlines& outlines,
+                                          const HalfSettings& settings, std::vector<FacetId>& seen, ThreadPool* pool) {
+  const auto faces = static_cast<std::size_t>(map_.faces());
+  const auto look = [&](std::size_t number) {
+    const FaceSpan face{static_cast<int>(number), static_cast<int>(number) + 1};
+    found_[number].clear();
+    look_at_faces(scene, outlines, settings, face, found_[number]);
+    if (pool != nullptr) map_.settle(face);
+  };
+  if (pool == nullptr) {
+    for (std::size_t face = 0; face < faces; ++face) look(face);
+  } else {
+    pool->for_each(faces, [&](std::size_t face, unsigned) { look(face); });
+  }
+  for (std::size_t face = 0; face < faces; ++face) {
+    const unsigned before = (1U << face) - 1U;
+    for (const FacetId id : found_[face]) {
+      if ((seen_[id.value] & before) == 0) seen.push_back(id);
+    }
+  }
+}
+
+DCEM_INLINE void Sight::look_at_faces(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                                      const FaceSpan& faces, std::vector<FacetId>& seen) {
+  const auto bit = static_cast<unsigned char>(1U << static_cast<unsigned>(faces.first));
+  const bool is_one = faces.last - faces.first == 1;
+  const auto look_at = [&](FacetId id) {
+    if (is_one && map_.is_beside(outlines.of(id).box, faces.first)) return;
+    std::atomic_ref<unsigned char> marks(seen_[id.value]);  // others mark it for their faces
+    if ((marks.load(std::memory_order_relaxed) & bit) != 0 || !may_see(scene, outlines, id, faces)) return;
+    marks.fetch_or(bit, std::memory_order_relaxed);
+    seen.push_back(id);
+    cover(scene, outlines, id, settings, map_, faces);
+  };
+  const auto hidden = [&](const Aabb<double>& box) {
+    return is_out_of_view(box) || map_.hides(box, nearer_boxes, faces);
+  };
+  outlines.visit_from(position_m(), hidden, look_at);
+  for (const FacetId id : grazed_) look_at(id);
 }
 
 DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& outlines, const BodyChoice& bodies,
@@ -109,7 +154,7 @@ DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& 
     const FacetOutlines::BodyFacets& body = outlines.bodies()[number];
     if (body.box.empty() || !bodies.takes(number + 1)) continue;  // body 0 is the scenery
     if (is_out_of_view(body.box)) continue;
-    const bool is_hidden = map_.hides(body.box, longest_lift_m);
+    const bool is_hidden = map_.hides(body.box, nearer_boxes);
     for (std::uint32_t index = body.first; index < body.first + body.count; ++index) {
       const FacetId id(index);
       if (is_hidden && !is_lifted_far(scene, outlines, id)) continue;
@@ -127,10 +172,10 @@ DCEM_INLINE void Sight::find_scenery_step(int step, const Scene& scene, const Fa
                                           const HalfSettings& settings, SeenLayer& layer, ThreadPool* pool) {
   if (step == 0) {
     layer.mirrors.clear();
-    look_at_scenery(scene, outlines, settings, layer.mirrors);
+    look_at_scenery(scene, outlines, settings, layer.mirrors, pool);
   }
   if (step == 1) look_closer(scene, outlines, settings, layer.mirrors, pool);
-  if (step == 2) finish(scene, outlines, settings, layer);
+  if (step == 2) finish(scene, outlines, settings, layer, pool);
 }
 
 DCEM_INLINE void Sight::find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
@@ -143,74 +188,27 @@ DCEM_INLINE void Sight::find_bodies(const Scene& scene, const FacetOutlines& out
 DCEM_INLINE void Sight::find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                     bool bodies, std::vector<FacetId>& seen) {
   seen.clear();
-  look_at_scenery(scene, outlines, settings, seen);
+  look_at_scenery(scene, outlines, settings, seen, nullptr);
   look_closer(scene, outlines, settings, seen, nullptr);
   if (bodies) look_at_bodies(scene, outlines, {}, seen);
 }
 
-DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id) const {
+DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id,
+                                const FaceSpan& faces) const {
   const WorldFacet& facet = scene.facet(id);
   if (!facet.present || facet.body == ignored_body_) return false;
-  if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, id));
+  if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, id), faces);
   if (id == beam_->mirror() || beam_->is_beside(outlines.of(id).box)) return false;
   detail::InsetOutline inside;
   if (!inside.assign(scene.hull_m(facet))) return true;
   if (!beam_->cut(inside)) return inside.is_full();
-  return map_.shows(inside.corners(), facet.plane, nearer_on(scene, outlines, id));
-}
-
-/// Notes the part of an outline that is beyond the mirror, where one is looked through.
-DCEM_INLINE void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet,
-                                     ViewMap& map) const {
-  detail::InsetOutline beyond;
-  if (beam_) {
-    if (!beyond.assign(corners_m) || !beam_->cut_to_occluder(beyond)) return;
-    corners_m = beyond.corners();
-  }
-  if (sheet == nullptr) return map.cover(corners_m, plane);
-  map.cover_sheet(corners_m, plane, *sheet);
-}
-
-DCEM_INLINE void Sight::cover(const Scene& scene, const FacetOutlines& outlines, FacetId id,
-                              const HalfSettings& settings, ViewMap& map) const {
-  const WorldFacet& facet = scene.facet(id);
-  const FacetOutline& outline = outlines.of(id);
-  const Plane* const sheet = facet.transmits && settings.sheets > 0 ? &facet.plane : nullptr;
-  if (sheet != nullptr && settings.sheets > detail::SheetLayers::most_crossed) return;
-  if (least_distance_m(facet.plane) <= 2.0 * outline.lift_m) return;  // an end that touches it looks past it
-  if (outline.stray_m > flat_m) return cover_triangles(scene, facet, sheet, map);
-  const double side = signed_distance_m(facet.plane, position_m());
-  Plane plane = facet.plane;
-  plane.point_m -= (side > 0.0 ? 1.0 : -1.0) * outline.stray_m * plane.normal;  // where it is farthest
-  if (outline.fills_hull) return cover_beyond(scene.hull_m(facet), plane, sheet, map);
-  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    cover_beyond(scene.corners_m(facet.first_triangle + triangle), plane, sheet, map);
-  }
-}
-
-/// A leg takes parallel sheets for one that lie within the weld tolerance of each other, or stray as far as facets may.
-/// A thousand of them on top of each other, or fifty fanned out, would be needed to join what is told apart.
-DCEM_INLINE void Sight::count_sheets(const Scene& scene, const HalfSettings& settings, ViewMap& map) {
-  const double pile_m = 1e3 * scene.settings().weld_tolerance_m + 2.0 * facet_reach_m(scene);
-  map.count_sheets(std::clamp(settings.sheets, 1, detail::SheetLayers::most_crossed), pile_m);
-}
-
-DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet,
-                                        ViewMap& map) const {
-  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    const std::array<Vec3, 3> corners_m = scene.corners_m(facet.first_triangle + triangle);
-    const Vec3 normal = glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]);
-    const double size = glm::length(normal);
-    if (!(size > 1e-6)) continue;  // a sliver's normal says little, and it hides little
-    const Plane plane{corners_m[0], normal / size};
-    if (least_distance_m(plane) > 0.01) cover_beyond(corners_m, plane, sheet, map);
-  }
+  return map_.shows(inside.corners(), facet.plane, nearer_on(scene, outlines, id), faces);
 }
 
 /// Adds the edges. Where a point of an edge is seen from its exterior, so is one of its faces beside it: but for a
 /// third facet that touches it there, and then nothing diffracts.
 DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                               SeenLayer& layer) const {
+                               SeenLayer& layer, ThreadPool* pool) const {
   const auto out_of_reach = [&](WedgeId id) {
     const WorldWedge& wedge = scene.wedge(id);
     if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules) || is_inside(wedge.edge)) return true;
@@ -221,7 +219,17 @@ DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines
   std::ranges::sort(layer.mirrors);
   collect_edges(scene, settings.edges ? std::span<const FacetId>(layer.mirrors) : std::span<const FacetId>(),
                 layer.edges);
-  std::erase_if(layer.edges, out_of_reach);
+  if (pool == nullptr) {
+    std::erase_if(layer.edges, out_of_reach);
+  } else {
+    std::vector<char> is_out(layer.edges.size());
+    pool->for_each_quick(is_out.size(), [&](std::size_t at) { is_out[at] = out_of_reach(layer.edges[at]) ? 1 : 0; });
+    std::size_t kept = 0;
+    for (std::size_t at = 0; at < is_out.size(); ++at) {
+      if (is_out[at] == 0) layer.edges[kept++] = layer.edges[at];
+    }
+    layer.edges.resize(kept);
+  }
   std::erase_if(layer.mirrors, [&](FacetId id) {
     return std::ranges::binary_search(mounted_on_, id) || is_along(scene.facet(id).plane);
   });

@@ -71,6 +71,11 @@ inline std::optional<WindowFrame> frame_of_window(const Vec3& from_m, const Wind
   return WindowFrame{across / wide, along / high, depth, wide * across, high * along};
 }
 
+/// Some faces of a view, one after the other; without a word all of them.
+struct FaceSpan {
+  int first = 0, last = 6;  ///< one past the last
+};
+
 /// Some of the six faces of a cube along the axes, or the one face of a window.
 class ViewFaces {
  public:
@@ -87,6 +92,8 @@ class ViewFaces {
   }
 
   int count() const { return count_; }
+  /// Those of a span that are there.
+  FaceSpan in(const FaceSpan& faces) const { return {faces.first, std::min(faces.last, count_)}; }
   FacePoint point(int face, const Vec3& offset_m) const {
     if (window_) {
       return {glm::dot(window_->across, offset_m), glm::dot(window_->along, offset_m),

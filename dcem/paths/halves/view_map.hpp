@@ -6,6 +6,8 @@
 /// pixels that it touches are filled by surfaces that are nearer. The map errs on one side alone: what it calls hidden
 /// cannot be seen from the point; what it shows may be hidden nevertheless.
 /// Source: conservative rasterization as in Hasselgren, Akenine-Möller and Ohlsson, GPU Gems 2, chapter 42, 2005.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +15,7 @@
 #include <vector>
 
 #include "dcem/core/error.hpp"
+#include "dcem/core/raw_vector.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/plane.hpp"
 #include "dcem/paths/halves/face_outline.hpp"
@@ -22,8 +25,13 @@
 
 namespace dcem {
 
+class ThreadPool;
+
+/// Surfaces are noted and asked for on all faces, or on some of them: what is said of a face depends on nothing that
+/// was noted on another, and threads may work on a face each.
 class ViewMap {
  public:
+  using FaceSpan = detail::FaceSpan;
   /// What is nearer by this factor is never hidden.
   static constexpr double always_seen = 1e30;
 
@@ -41,6 +49,9 @@ class ViewMap {
     faces_ = {};
     clear(cube_pixels_);
   }
+  /// The same of one point, emptied by all threads: what is several megabytes large takes longest where it has never
+  /// been used.
+  void look_from(const Vec3& point_m, ThreadPool& pool);
   /// The same of points that look through a convex window, and `room_m` around it: there is nothing else to be seen.
   /// `inwards`: the normals of planes by the point which all of it is inside.
   void look_through(const Vec3& point_m, std::span<const Vec3> window_m, double room_m, std::span<const Vec3> inwards,
@@ -62,28 +73,38 @@ class ViewMap {
   }
   const Vec3& from_m() const { return from_m_; }
   int pixels() const { return pixels_; }
+  int faces() const { return faces_.count(); }
+  /// Whether it is that of one point alone.
+  bool is_of_one_point() const { return offsets_m_.empty(); }
 
   /// From now on a way may cross so many sheets: what is behind more of them is hidden. Parallel ones no farther apart
   /// than `pile_m` are one. Before anything is covered.
-  void count_sheets(int crossed, double pile_m) { sheets_.count(crossed, pile_m); }
+  void count_sheets(int crossed, double pile_m) {
+    for (detail::SheetLayers& sheets : sheets_) sheets.count(crossed, pile_m);
+  }
 
-  /// Notes a convex polygon, corners in order around it, that nothing passes.
-  void cover(std::span<const Vec3> corners_m, const Plane& plane);
+  /// Notes a convex polygon, corners in order around it, that nothing passes. Of several points on all faces at once.
+  void cover(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on = {});
   /// Notes a convex polygon of a sheet with a plane of its own. Sheets that a leg might count as one are one.
-  void cover_sheet(std::span<const Vec3> corners_m, const Plane& plane, const Plane& sheet);
+  void cover_sheet(std::span<const Vec3> corners_m, const Plane& plane, const Plane& sheet, const FaceSpan& on = {});
   /// Nothing more is covered.
   void forget_sheets() { sheets_ = {}; }
 
   /// Whether a convex polygon, its distance divided by `nearer` ≥ 1, may be seen.
-  bool shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer) const;
+  bool shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer, const FaceSpan& on = {}) const;
   /// Whether a straight line, its distance divided by `nearer` ≥ 1, may be seen.
   bool shows(const Vec3& from_m, const Vec3& to_m, double nearer) const;
   /// Whether a point that is known to within `beside_m`, its distance divided by `nearer` ≥ 1, is hidden for sure.
   bool hides(const Vec3& point_m, double nearer, double beside_m = 0.0) const;
-  /// Whether all of a box is hidden for sure, and would be `margin_m` nearer.
-  bool hides(const Aabb<double>& box, double margin_m) const;
+  /// Whether nothing of a box is over a face.
+  bool is_beside(const Aabb<double>& box, int face) const {
+    const auto [low, high] = faces_.box(face, {box.min - from_m_, box.max - from_m_});
+    return is_beside(low, high);
+  }
+  /// Whether all of a box, its distance divided by `nearer` ≥ 1, is hidden for sure; what is beside the faces is.
+  bool hides(const Aabb<double>& box, double nearer, const FaceSpan& on = {}) const;
   /// Ends drawing for now: from here on questions write nothing, and several threads may ask.
-  void settle();
+  void settle(const FaceSpan& on = {});
 
  private:
   static constexpr int tile_pixels = 8;
@@ -99,12 +120,17 @@ class ViewMap {
   };
 
   void clear(int pixels) {
+    make_room(pixels);
+    std::ranges::fill(nearness_, 0.0F);
+  }
+  /// The same, but for the pixels.
+  void make_room(int pixels) {
     pixels_ = pixels;
     tiles_ = pixels / tile_pixels;
-    nearness_.assign(static_cast<std::size_t>(faces_.count() * pixels * pixels), 0.0F);
+    nearness_.resize(static_cast<std::size_t>(faces_.count() * pixels * pixels));
     tile_nearness_.assign(static_cast<std::size_t>(faces_.count() * tiles_ * tiles_), 0.0F);
     tile_is_old_.assign(tile_nearness_.size(), 0);
-    sheets_.clear();
+    for (detail::SheetLayers& sheets : sheets_) sheets.clear();
   }
   Nearness nearness_of(int face, const Vec3& normal, double distance_m) const {
     const detail::FacePoint turned = faces_.normal(face, normal);
@@ -126,11 +152,12 @@ class ViewMap {
   bool shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, double nearer) const;
   bool box_is_hidden(int face, const detail::FaceRows& rows, float nearness) const;
   template <typename Fill>
-  void cover_with(std::span<const Vec3> corners_m, const Plane& plane, Fill&& fill);
+  void cover_with(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on, Fill&& fill);
   template <typename Fill>
-  void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, Fill&& fill);
-  /// Calls `fill(row, begin, end, base, step)` for runs of pixels that an outline fills: of the row that begins at the
-  /// pixel `row`, where the nearness in a column is base + step · column.
+  void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, const FaceSpan& on,
+                      Fill&& fill);
+  /// Calls `fill(face, row, begin, end, base, step)` for runs of pixels that an outline fills: of the row that begins
+  /// at the pixel `row` of the face, where the nearness in a column is base + step · column.
   template <typename Fill>
   void cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, Fill&& fill);
   /// From the first to the last.
@@ -149,14 +176,16 @@ class ViewMap {
     renew_tile(face, tile_row, column);
     return nearness <= tile_nearness_[tile];
   }
-  bool hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high, double margin_m) const;
+  static bool is_beside(const detail::FacePoint& low, const detail::FacePoint& high) {
+    const double far = high.depth;
+    return far <= 0.0 || low.across > far || -high.across > far || low.along > far || -high.along > far;
+  }
+  bool hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high, double nearer) const;
   /// What single precision may add to or take from a nearness that is summed over a row.
   static double slack_of(const Nearness& nearness, int pixels) {
     return 4e-7 * ((std::abs(nearness.by_column) + std::abs(nearness.by_row)) * pixels + std::abs(nearness.at_origin));
   }
-  float* row(int face, int number) {
-    return nearness_.data() + static_cast<std::size_t>((face * pixels_ + number) * pixels_);
-  }
+  float* pixels_of(int face) { return nearness_.data() + static_cast<std::size_t>(face * pixels_ * pixels_); }
   const float* row(int face, int number) const {
     return nearness_.data() + static_cast<std::size_t>((face * pixels_ + number) * pixels_);
   }
@@ -165,16 +194,17 @@ class ViewMap {
   detail::ViewFaces faces_;
   Vec3 from_m_{0.0};
   std::vector<Vec3> offsets_m_;  ///< of further points
-  std::vector<float> nearness_;  ///< 1/depth of what fills the pixel; 0: nothing does
+  RawVector<float> nearness_;    ///< 1/depth of what fills the pixel; 0: nothing does
   // Worked out when they are asked for, until the map is settled.
-  mutable std::vector<float> tile_nearness_;  ///< no more than the smallest of 8 × 8 pixels …
-  mutable std::vector<char> tile_is_old_;     ///< … and whether it may be less
-  detail::SheetLayers sheets_;                ///< while surfaces are covered
-  std::vector<Vec3> normals_;                 ///< room for sides that have been moved
+  mutable std::vector<float> tile_nearness_;   ///< no more than the smallest of 8 × 8 pixels …
+  mutable std::vector<char> tile_is_old_;      ///< … and whether it may be less
+  std::array<detail::SheetLayers, 6> sheets_;  ///< by face, while surfaces are covered
+  std::vector<Vec3> normals_;                  ///< room for sides that have been moved
 };
 
 }  // namespace dcem
 
 #if !defined(DCEM_ENGINE)
 #include "dcem/paths/halves/view_map_bodies.hpp"
+#include "dcem/paths/halves/view_map_questions_bodies.hpp"
 #endif

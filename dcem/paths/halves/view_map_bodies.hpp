@@ -1,5 +1,5 @@
 #pragma once
-/// Bodies of view_map.hpp.
+/// Bodies of view_map.hpp: how a view is emptied, and what surfaces fill in it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,13 +8,24 @@
 #include <span>
 
 #include "dcem/core/build_mode.hpp"
+#include "dcem/core/thread_pool.hpp"
 #include "dcem/paths/halves/view_map.hpp"
 
 namespace dcem {
 
-DCEM_INLINE void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane) {
-  cover_with(corners_m, plane, [&](std::size_t row, int begin, int end, float base, float step) {
-    float* const pixel = nearness_.data() + row;
+DCEM_INLINE void ViewMap::look_from(const Vec3& point_m, ThreadPool& pool) {
+  from_m_ = point_m;
+  offsets_m_.clear();
+  faces_ = {};
+  make_room(cube_pixels_);
+  pool.for_each(static_cast<std::size_t>(faces()), [&](std::size_t face, unsigned) {
+    std::fill_n(pixels_of(static_cast<int>(face)), pixels_ * pixels_, 0.0F);
+  });
+}
+
+DCEM_INLINE void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on) {
+  cover_with(corners_m, plane, on, [&](int face, std::size_t row, int begin, int end, float base, float step) {
+    float* const pixel = pixels_of(face) + row;
     for (int column = begin; column < end; ++column) {
       const float here = base + step * static_cast<float>(column);
       pixel[column] = pixel[column] < here ? here : pixel[column];
@@ -22,35 +33,46 @@ DCEM_INLINE void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& pl
   });
 }
 
-DCEM_INLINE void ViewMap::cover_sheet(std::span<const Vec3> corners_m, const Plane& plane, const Plane& sheet) {
+DCEM_INLINE void ViewMap::cover_sheet(std::span<const Vec3> corners_m, const Plane& plane, const Plane& sheet,
+                                      const FaceSpan& on) {
   double around_m = 0.0, farthest_m = 0.0;
   for (const Vec3& offset_m : offsets_m_) around_m = std::max(around_m, glm::length(offset_m));
   for (const Vec3& corner_m : corners_m) farthest_m = std::max(farthest_m, glm::distance(corner_m, from_m_));
-  sheets_.take(sheet.normal, signed_distance_m(sheet, from_m_), farthest_m + around_m, nearness_.size());
-  cover_with(corners_m, plane, [&](std::size_t row, int begin, int end, float base, float step) {
+  const auto pixels = static_cast<std::size_t>(pixels_ * pixels_);
+  int taken = -1;  // the last face whose sheets this is one of
+  cover_with(corners_m, plane, on, [&](int face, std::size_t row, int begin, int end, float base, float step) {
+    detail::SheetLayers& sheets = sheets_[static_cast<std::size_t>(face)];
+    if (face != taken) {
+      sheets.take(sheet.normal, signed_distance_m(sheet, from_m_), farthest_m + around_m, pixels);
+      taken = face;
+    }
+    float* const nearness = pixels_of(face);
     for (int column = begin; column < end; ++column) {
       const std::size_t pixel = row + static_cast<std::size_t>(column);
       const float here = base + step * static_cast<float>(column);
-      if (here > nearness_[pixel]) nearness_[pixel] = std::max(nearness_[pixel], sheets_.add(pixel, here));
+      if (here > nearness[pixel]) nearness[pixel] = std::max(nearness[pixel], sheets.add(pixel, here));
     }
   });
 }
 
 template <typename Fill>
-void ViewMap::cover_with(std::span<const Vec3> corners_m, const Plane& plane, Fill&& fill) {
+void ViewMap::cover_with(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on, Fill&& fill) {
   const double distance_m = -signed_distance_m(plane, from_m_);
   if (corners_m.size() > detail::FaceOutline::most_corners || distance_m == 0.0) return;
-  if (offsets_m_.empty()) return cover_as_it_is(corners_m, plane, distance_m, fill);
+  if (offsets_m_.empty()) return cover_as_it_is(corners_m, plane, distance_m, on, fill);
   normals_.clear();
   detail::InsetOutline smaller;
   if (!sides_moved_in(corners_m, plane, from_m_, offsets_m_, normals_)) return;
   if (!inset_outline(corners_m, from_m_, normals_, smaller)) return;
-  if (smaller.count <= detail::FaceOutline::most_corners) cover_as_it_is(smaller.corners(), plane, distance_m, fill);
+  if (smaller.count > detail::FaceOutline::most_corners) return;
+  cover_as_it_is(smaller.corners(), plane, distance_m, on, fill);
 }
 
 template <typename Fill>
-void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, Fill&& fill) {
-  for (int face = 0; face < faces_.count(); ++face) {
+void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, const FaceSpan& on,
+                             Fill&& fill) {
+  const FaceSpan faces = faces_.in(on);
+  for (int face = faces.first; face < faces.last; ++face) {
     detail::FaceOutline outline;
     // Over the rim, so that pixels at the rim are filled, too.
     if (outline_on(face, corners_m, 1.02, outline) && outline.size() >= 3) {
@@ -78,7 +100,7 @@ void ViewMap::cover_on(int face, const detail::FaceOutline& outline, const Nearn
     if (begin >= end) continue;
     const auto base = static_cast<float>(
         (nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column - pad) * (1.0 - rounding));
-    fill(static_cast<std::size_t>((face * pixels_ + number) * pixels_), begin, end, base, step);
+    fill(face, static_cast<std::size_t>(number * pixels_), begin, end, base, step);
     first_column = std::min(first_column, begin);
     last_column = std::max(last_column, end - 1);
   }
@@ -104,8 +126,9 @@ DCEM_INLINE void ViewMap::renew_tile(int face, int tile_row, int column) const {
   tile_is_old_[tile] = 0;
 }
 
-DCEM_INLINE void ViewMap::settle() {
-  for (int face = 0; face < faces_.count(); ++face) {
+DCEM_INLINE void ViewMap::settle(const FaceSpan& on) {
+  const FaceSpan faces = faces_.in(on);
+  for (int face = faces.first; face < faces.last; ++face) {
     for (int tile_row = 0; tile_row < tiles_; ++tile_row) {
       for (int column = 0; column < tiles_; ++column) {
         if (tile_is_old_[static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column)] == 0) continue;
@@ -113,179 +136,6 @@ DCEM_INLINE void ViewMap::settle() {
       }
     }
   }
-}
-
-DCEM_INLINE bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer) const {
-  const double distance_m = -signed_distance_m(plane, from_m_);
-  const bool says_nothing = std::abs(distance_m) < 1e-6 || nearer >= always_seen;
-  if (says_nothing || corners_m.size() > detail::FaceOutline::most_corners) return true;
-  for (int face = 0; face < faces_.count(); ++face) {
-    detail::FaceOutline outline;
-    if (outline_on(face, corners_m, 1.0 + 1e-6, outline) &&
-        shows_on(face, outline, nearness_of(face, plane.normal, distance_m), nearer)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nearer) const {
-  const std::array<Vec3, 2> ends_m{from_m, to_m};
-  for (int face = 0; face < faces_.count(); ++face) {
-    detail::FaceOutline line;
-    if (!outline_on(face, ends_m, 1.0 + 1e-6, line)) continue;
-    const detail::FacePoint &first = line[0], &last = line[line.size() > 1 ? 1 : 0];
-    const double near = std::min(first.depth, last.depth), far = std::max(first.depth, last.depth);
-    if (near < 1e-3) return true;
-    // A piece is taken to be as near as its nearer end.
-    const int pieces = 1 + static_cast<int>(std::min(15.0, 8.0 * (far / near - 1.0)));
-    const auto at = [&](int number) -> detail::FacePoint {
-      const double share = static_cast<double>(number) / pieces;
-      return {first.across + share * (last.across - first.across), first.along + share * (last.along - first.along),
-              first.depth + share * (last.depth - first.depth)};
-    };
-    for (int piece = 0; piece < pieces; ++piece) {
-      detail::FaceOutline part;
-      part.add(at(piece));
-      part.add(at(piece + 1));
-      const double nearest = 1.0 / std::min(part[0].depth, part[1].depth);
-      if (shows_on(face, part, {0.0, 0.0, nearest}, nearer)) return true;
-    }
-  }
-  return false;
-}
-
-DCEM_INLINE bool ViewMap::shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness,
-                                   double nearer) const {
-  detail::FaceRows rows;
-  if (!rows.take(outline, pixels_)) return false;
-  const auto grown = static_cast<float>(nearer * (1.0 + rounding));
-  const auto top = static_cast<float>(rows.nearest());
-  if (box_is_hidden(face, rows, top * grown)) return false;
-  rows.find_touched();
-  constexpr float hair = 1e-3F;  // of a pixel
-  const auto step = static_cast<float>(nearness.by_column);
-  const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
-  for (int number = rows.first(); number <= rows.last(); ++number) {
-    const int begin = std::max(0, static_cast<int>(std::floor(rows.from(number) - hair)));
-    const int end = std::min(pixels_ - 1, static_cast<int>(std::floor(rows.to(number) + hair)));
-    const auto base =
-        static_cast<float>(nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column + pad);
-    const float* const pixel = row(face, number);
-    int seen = 0;
-    for (int column = begin; column <= end; ++column) {
-      const float plane = base + step * static_cast<float>(column);
-      seen |= static_cast<int>((plane < top ? plane : top) * grown > pixel[column]);
-    }
-    if (seen != 0) return true;
-  }
-  return false;
-}
-
-/// Whether all that is in the box around an outline is nearer than its nearest corner: pixel by pixel where the box is
-/// small, by tiles otherwise. Cheaper than to ask row by row, and most that is asked about is hidden.
-DCEM_INLINE bool ViewMap::box_is_hidden(int face, const detail::FaceRows& rows, float nearness) const {
-  constexpr double hair = 1e-3;  // of a pixel
-  const int first = std::max(0, static_cast<int>(std::floor(rows.low()[0] - hair)));
-  const int last = std::min(pixels_ - 1, static_cast<int>(std::floor(rows.high()[0] + hair)));
-  if (last - first < tile_pixels) {
-    for (int number = rows.first(); number <= rows.last(); ++number) {
-      const float* const pixel = row(face, number);
-      for (int column = first; column <= last; ++column) {
-        if (nearness > pixel[column]) return false;
-      }
-    }
-    return true;
-  }
-  for (int tile_row = rows.first() / tile_pixels; tile_row <= rows.last() / tile_pixels; ++tile_row) {
-    for (int column = first / tile_pixels; column <= last / tile_pixels; ++column) {
-      if (!tile_hides(face, tile_row, column, nearness)) return false;
-    }
-  }
-  return true;
-}
-
-DCEM_INLINE bool ViewMap::hides(const Vec3& point_m, double nearer, double beside_m) const {
-  const Vec3 offset_m = point_m - from_m_, size = glm::abs(offset_m);
-  const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-  const double depth = size[axis];
-  if (depth < 1e-3) return false;
-  // Moved by beside_m, the point moves by less than this on the face; close to a rim of it the map says nothing.
-  const double blur = 2.5 * beside_m / depth;
-  if (blur > 0.5) return false;
-  const double across = offset_m[(axis + 1) % 3] / depth, along = offset_m[(axis + 2) % 3] / depth;
-  if (beside_m > 0.0 && std::max(std::abs(across), std::abs(along)) + blur >= 1.0) return false;
-  const auto pixel = [&](double place) {
-    return std::clamp(static_cast<int>((place + 1.0) * 0.5 * pixels_), 0, pixels_ - 1);
-  };
-  const int face = 2 * axis + (offset_m[axis] < 0.0 ? 1 : 0);
-  const auto nearness = static_cast<float>(nearer * (1.0 + rounding) / (depth - beside_m));
-  const PixelRange rows{pixel(along - blur), pixel(along + blur)}, columns{pixel(across - blur), pixel(across + blur)};
-  const bool is_small = rows.last - rows.first < tile_pixels && columns.last - columns.first < tile_pixels;
-  return is_small ? pixels_hide(face, rows, columns, nearness) : tiles_hide(face, rows, columns, nearness);
-}
-
-DCEM_INLINE bool ViewMap::pixels_hide(int face, const PixelRange& rows, const PixelRange& columns,
-                                      float nearness) const {
-  for (int number = rows.first; number <= rows.last; ++number) {
-    const float* const pixels = row(face, number);
-    for (int column = columns.first; column <= columns.last; ++column) {
-      if (nearness > pixels[column]) return false;
-    }
-  }
-  return true;
-}
-
-/// The same, tile by tile. Tiles are not renewed for it: several threads may ask.
-DCEM_INLINE bool ViewMap::tiles_hide(int face, const PixelRange& rows, const PixelRange& columns,
-                                     float nearness) const {
-  const auto within = [](const PixelRange& all, int tile) {
-    return PixelRange{std::max(all.first, tile * tile_pixels),
-                      std::min(all.last, tile * tile_pixels + tile_pixels - 1)};
-  };
-  for (int tile_row = rows.first / tile_pixels; tile_row <= rows.last / tile_pixels; ++tile_row) {
-    for (int column = columns.first / tile_pixels; column <= columns.last / tile_pixels; ++column) {
-      const auto tile = static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column);
-      if (nearness <= tile_nearness_[tile]) continue;
-      if (!pixels_hide(face, within(rows, tile_row), within(columns, column), nearness)) return false;
-    }
-  }
-  return true;
-}
-
-DCEM_INLINE bool ViewMap::hides(const Aabb<double>& box, double margin_m) const {
-  const Vec3 low_m = box.min - from_m_, high_m = box.max - from_m_;
-  const bool inside = low_m.x <= 0 && low_m.y <= 0 && low_m.z <= 0 && high_m.x >= 0 && high_m.y >= 0 && high_m.z >= 0;
-  if (inside) return false;
-  for (int face = 0; face < faces_.count(); ++face) {
-    const auto [low, high] = faces_.box(face, {low_m, high_m});
-    if (!hides_on(face, low, high, margin_m)) return false;
-  }
-  return true;
-}
-
-DCEM_INLINE bool ViewMap::hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high,
-                                   double margin_m) const {
-  const double far = high.depth;
-  if (far <= 0.0 || low.across > far || -high.across > far || low.along > far || -high.along > far) return true;
-  // No nearer than where the face's pyramid is wide enough to hold any of the box.
-  const double depth = std::max({low.depth, 0.0, low.across, -high.across, low.along, -high.along});
-  if (depth - margin_m < 1e-3) return false;
-  const auto first = [&](double bound) {
-    const double seen = bound / (bound >= 0.0 ? far : depth);
-    return std::max(0, static_cast<int>(std::floor((seen + 1.0) * 0.5 * tiles_ - 1e-6)));
-  };
-  const auto last = [&](double bound) {
-    const double seen = bound / (bound >= 0.0 ? depth : far);
-    return std::min(tiles_ - 1, static_cast<int>(std::floor(std::min(seen + 1.0, 3.0) * 0.5 * tiles_ + 1e-6)));
-  };
-  const auto nearness = static_cast<float>((1.0 + rounding) / (depth - margin_m));
-  for (int tile_row = first(low.along); tile_row <= last(high.along); ++tile_row) {
-    for (int column = first(low.across); column <= last(high.across); ++column) {
-      if (!tile_hides(face, tile_row, column, nearness)) return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace dcem

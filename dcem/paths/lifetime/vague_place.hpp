@@ -53,14 +53,11 @@ class VaguePlace {
   const SeenLayer& bodies() const { return bodies_; }
 
  private:
-  /// What is lifted by more in front of what hides it is not left out: as `Sight` has it for bodies that stand.
-  static constexpr double longest_lift_m = 0.05;
-
   void find_bodies(const Scene& scene, const FacetOutlines& outlines, const VagueScene& vague,
                    const HalfSettings& settings) {
     for (const FacetOutlines::BodyFacets& body : outlines.bodies()) {
       if (body.box.empty()) continue;
-      const bool is_hidden = place_.sight().map().hides(inflated(body.box, moved_m_), longest_lift_m);
+      const bool is_hidden = place_.sight().map().hides(inflated(body.box, moved_m_), Sight::nearer_boxes);
       for (std::uint32_t index = body.first; index < body.first + body.count; ++index) {
         const FacetId id(index);
         if (scene.facet(id).present && !(is_hidden && !is_grazed(scene, outlines, vague, id)))
@@ -70,15 +67,14 @@ class VaguePlace {
     if (settings.edges) collect_edges(scene, bodies_.mirrors, bodies_.edges);
     std::erase_if(bodies_.edges, [&](WedgeId id) { return !diffracts(scene.wedge(id), settings.rules); });
   }
-  /// Whether the end may come so close to the plane of a facet that its legs ignore things far in front of it.
+  /// Whether the end may come so close to the plane of a facet that its legs ignore things far in front of it: as
+  /// `Sight` has it for bodies that stand.
   bool is_grazed(const Scene& scene, const FacetOutlines& outlines, const VagueScene& vague, FacetId id) const {
     const Vec3 middle_m = place_.box().middle_m;
-    const FacetOutline& outline = outlines.of(id);
     const VaguePoint end{middle_m, place_.radius_m()};
     const double away_m =
         std::abs(signed_distance_m(scene.facet(id).plane, middle_m)) - vague.seen_moved_m(scene.facet(id).body, end);
-    const Vec3 farthest_m = glm::max(glm::abs(outline.box.min - middle_m), glm::abs(outline.box.max - middle_m));
-    return away_m * longest_lift_m <= 2.0 * outline.lift_m * (glm::length(farthest_m) + place_.radius_m() + moved_m_);
+    return away_m * Sight::longest_lift_share <= 2.0 * outlines.of(id).lift_m;
   }
 
   Place place_;

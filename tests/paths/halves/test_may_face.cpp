@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "dcem/paths/halves/sight.hpp"
+#include "dcem/paths/halves/may_face.hpp"
 #include "tests/paths/small_scenes.hpp"
 
 namespace test_may_face {

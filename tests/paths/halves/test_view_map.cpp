@@ -123,9 +123,9 @@ TEST_CASE("what fills the whole view hides everything behind it, and nothing in 
   CHECK(map.hides(Vec3(3, 1, 1), 1.0));
   CHECK_FALSE(map.hides(Vec3(1.9, 1, 1), 1.0));
   CHECK_FALSE(map.hides(Vec3(-3, 1, 1), 1.0));
-  CHECK(map.hides(Aabb<double>{Vec3(3, -1, -1), Vec3(4, 1, 1)}, 0.5));
-  CHECK_FALSE(map.hides(Aabb<double>{Vec3(2.4, -1, -1), Vec3(4, 1, 1)}, 0.5));  // within the margin
-  CHECK_FALSE(map.hides(Aabb<double>{Vec3(-1, -1, -1), Vec3(4, 1, 1)}, 0.0));   // it holds the point
+  CHECK(map.hides(Aabb<double>{Vec3(3, -1, -1), Vec3(4, 1, 1)}, 1.25));
+  CHECK_FALSE(map.hides(Aabb<double>{Vec3(2.4, -1, -1), Vec3(4, 1, 1)}, 1.25));  // as if it began at 1.92
+  CHECK_FALSE(map.hides(Aabb<double>{Vec3(-1, -1, -1), Vec3(4, 1, 1)}, 1.0));    // it holds the point
   CHECK_FALSE(map.shows(Vec3(3, -1, 0), Vec3(3, 1, 0), 1.0));
   CHECK(map.shows(Vec3(3, -1, 0), Vec3(3, 1, 0), 1.6));   // as if it were at 1.9
   CHECK(map.shows(Vec3(3, -40, 0), Vec3(3, 1, 0), 1.0));  // one end looks past the wall

@@ -1,0 +1,190 @@
+#pragma once
+/// Bodies of view_map.hpp: what is asked of a view.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "dcem/core/build_mode.hpp"
+#include "dcem/paths/halves/view_map.hpp"
+
+namespace dcem {
+
+DCEM_INLINE bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer,
+                                const FaceSpan& on) const {
+  const double distance_m = -signed_distance_m(plane, from_m_);
+  const bool says_nothing = std::abs(distance_m) < 1e-6 || nearer >= always_seen;
+  if (says_nothing || corners_m.size() > detail::FaceOutline::most_corners) return true;
+  const FaceSpan faces = faces_.in(on);
+  for (int face = faces.first; face < faces.last; ++face) {
+    detail::FaceOutline outline;
+    if (outline_on(face, corners_m, 1.0 + 1e-6, outline) &&
+        shows_on(face, outline, nearness_of(face, plane.normal, distance_m), nearer)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nearer) const {
+  const std::array<Vec3, 2> ends_m{from_m, to_m};
+  for (int face = 0; face < faces_.count(); ++face) {
+    detail::FaceOutline line;
+    if (!outline_on(face, ends_m, 1.0 + 1e-6, line)) continue;
+    const detail::FacePoint &first = line[0], &last = line[line.size() > 1 ? 1 : 0];
+    const double near = std::min(first.depth, last.depth), far = std::max(first.depth, last.depth);
+    if (near < 1e-3) return true;
+    // A piece is taken to be as near as its nearer end.
+    const int pieces = 1 + static_cast<int>(std::min(15.0, 8.0 * (far / near - 1.0)));
+    const auto at = [&](int number) -> detail::FacePoint {
+      const double share = static_cast<double>(number) / pieces;
+      return {first.across + share * (last.across - first.across), first.along + share * (last.along - first.along),
+              first.depth + share * (last.depth - first.depth)};
+    };
+    for (int piece = 0; piece < pieces; ++piece) {
+      detail::FaceOutline part;
+      part.add(at(piece));
+      part.add(at(piece + 1));
+      const double nearest = 1.0 / std::min(part[0].depth, part[1].depth);
+      if (shows_on(face, part, {0.0, 0.0, nearest}, nearer)) return true;
+    }
+  }
+  return false;
+}
+
+DCEM_INLINE bool ViewMap::shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness,
+                                   double nearer) const {
+  detail::FaceRows rows;
+  if (!rows.take(outline, pixels_)) return false;
+  const auto grown = static_cast<float>(nearer * (1.0 + rounding));
+  const auto top = static_cast<float>(rows.nearest());
+  if (box_is_hidden(face, rows, top * grown)) return false;
+  rows.find_touched();
+  constexpr float hair = 1e-3F;  // of a pixel
+  const auto step = static_cast<float>(nearness.by_column);
+  const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
+  for (int number = rows.first(); number <= rows.last(); ++number) {
+    const int begin = std::max(0, static_cast<int>(std::floor(rows.from(number) - hair)));
+    const int end = std::min(pixels_ - 1, static_cast<int>(std::floor(rows.to(number) + hair)));
+    const auto base =
+        static_cast<float>(nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column + pad);
+    const float* const pixel = row(face, number);
+    int seen = 0;
+    for (int column = begin; column <= end; ++column) {
+      const float plane = base + step * static_cast<float>(column);
+      seen |= static_cast<int>((plane < top ? plane : top) * grown > pixel[column]);
+    }
+    if (seen != 0) return true;
+  }
+  return false;
+}
+
+/// Whether all that is in the box around an outline is nearer than its nearest corner: pixel by pixel where the box is
+/// small, by tiles otherwise. Cheaper than to ask row by row, and most that is asked about is hidden.
+DCEM_INLINE bool ViewMap::box_is_hidden(int face, const detail::FaceRows& rows, float nearness) const {
+  constexpr double hair = 1e-3;  // of a pixel
+  const int first = std::max(0, static_cast<int>(std::floor(rows.low()[0] - hair)));
+  const int last = std::min(pixels_ - 1, static_cast<int>(std::floor(rows.high()[0] + hair)));
+  if (last - first < tile_pixels) {
+    for (int number = rows.first(); number <= rows.last(); ++number) {
+      const float* const pixel = row(face, number);
+      for (int column = first; column <= last; ++column) {
+        if (nearness > pixel[column]) return false;
+      }
+    }
+    return true;
+  }
+  for (int tile_row = rows.first() / tile_pixels; tile_row <= rows.last() / tile_pixels; ++tile_row) {
+    for (int column = first / tile_pixels; column <= last / tile_pixels; ++column) {
+      if (!tile_hides(face, tile_row, column, nearness)) return false;
+    }
+  }
+  return true;
+}
+
+DCEM_INLINE bool ViewMap::hides(const Vec3& point_m, double nearer, double beside_m) const {
+  const Vec3 offset_m = point_m - from_m_, size = glm::abs(offset_m);
+  const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+  const double depth = size[axis];
+  if (depth < 1e-3) return false;
+  // Moved by beside_m, the point moves by less than this on the face; close to a rim of it the map says nothing.
+  const double blur = 2.5 * beside_m / depth;
+  if (blur > 0.5) return false;
+  const double across = offset_m[(axis + 1) % 3] / depth, along = offset_m[(axis + 2) % 3] / depth;
+  if (beside_m > 0.0 && std::max(std::abs(across), std::abs(along)) + blur >= 1.0) return false;
+  const auto pixel = [&](double place) {
+    return std::clamp(static_cast<int>((place + 1.0) * 0.5 * pixels_), 0, pixels_ - 1);
+  };
+  const int face = 2 * axis + (offset_m[axis] < 0.0 ? 1 : 0);
+  const auto nearness = static_cast<float>(nearer * (1.0 + rounding) / (depth - beside_m));
+  const PixelRange rows{pixel(along - blur), pixel(along + blur)}, columns{pixel(across - blur), pixel(across + blur)};
+  const bool is_small = rows.last - rows.first < tile_pixels && columns.last - columns.first < tile_pixels;
+  return is_small ? pixels_hide(face, rows, columns, nearness) : tiles_hide(face, rows, columns, nearness);
+}
+
+DCEM_INLINE bool ViewMap::pixels_hide(int face, const PixelRange& rows, const PixelRange& columns,
+                                      float nearness) const {
+  for (int number = rows.first; number <= rows.last; ++number) {
+    const float* const pixels = row(face, number);
+    for (int column = columns.first; column <= columns.last; ++column) {
+      if (nearness > pixels[column]) return false;
+    }
+  }
+  return true;
+}
+
+/// The same, tile by tile. Tiles are not renewed for it: several threads may ask.
+DCEM_INLINE bool ViewMap::tiles_hide(int face, const PixelRange& rows, const PixelRange& columns,
+                                     float nearness) const {
+  const auto within = [](const PixelRange& all, int tile) {
+    return PixelRange{std::max(all.first, tile * tile_pixels),
+                      std::min(all.last, tile * tile_pixels + tile_pixels - 1)};
+  };
+  for (int tile_row = rows.first / tile_pixels; tile_row <= rows.last / tile_pixels; ++tile_row) {
+    for (int column = columns.first / tile_pixels; column <= columns.last / tile_pixels; ++column) {
+      const auto tile = static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column);
+      if (nearness <= tile_nearness_[tile]) continue;
+      if (!pixels_hide(face, within(rows, tile_row), within(columns, column), nearness)) return false;
+    }
+  }
+  return true;
+}
+
+DCEM_INLINE bool ViewMap::hides(const Aabb<double>& box, double nearer, const FaceSpan& on) const {
+  const Vec3 low_m = box.min - from_m_, high_m = box.max - from_m_;
+  const bool inside = low_m.x <= 0 && low_m.y <= 0 && low_m.z <= 0 && high_m.x >= 0 && high_m.y >= 0 && high_m.z >= 0;
+  if (inside) return false;
+  const FaceSpan faces = faces_.in(on);
+  for (int face = faces.first; face < faces.last; ++face) {
+    const auto [low, high] = faces_.box(face, {low_m, high_m});
+    if (!hides_on(face, low, high, nearer)) return false;
+  }
+  return true;
+}
+
+DCEM_INLINE bool ViewMap::hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high,
+                                   double nearer) const {
+  if (is_beside(low, high)) return true;
+  const double far = high.depth;
+  // No nearer than where the face's pyramid is wide enough to hold any of the box.
+  const double depth = std::max({low.depth, 0.0, low.across, -high.across, low.along, -high.along});
+  if (depth < 1e-3) return false;
+  const auto first = [&](double bound) {
+    const double seen = bound / (bound >= 0.0 ? far : depth);
+    return std::max(0, static_cast<int>(std::floor((seen + 1.0) * 0.5 * tiles_ - 1e-6)));
+  };
+  const auto last = [&](double bound) {
+    const double seen = bound / (bound >= 0.0 ? depth : far);
+    return std::min(tiles_ - 1, static_cast<int>(std::floor(std::min(seen + 1.0, 3.0) * 0.5 * tiles_ + 1e-6)));
+  };
+  const auto nearness = static_cast<float>(nearer * (1.0 + rounding) / depth);
+  for (int tile_row = first(low.along); tile_row <= last(high.along); ++tile_row) {
+    for (int column = first(low.across); column <= last(high.across); ++column) {
+      if (!tile_hides(face, tile_row, column, nearness)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace dcem
