@@ -54,7 +54,14 @@ class BeamLists {
   /// Of all of them, as `BeamTable` has it: the places of the mirrors over which the end may light a facet …
   template <typename Visit>
   void for_each_mirror_before(FacetId facet, Visit&& visit) const {
-    for (const BeamTable& table : tables_) std::ranges::for_each(table.mirrors_before(facet), visit);
+    constexpr std::size_t ahead = 8;
+    for (const BeamTable& table : tables_) {
+      const std::span<const std::uint32_t> before = table.mirrors_before(facet);
+      for (std::size_t at = 0; at < before.size(); ++at) {
+        if (at + ahead < before.size()) __builtin_prefetch(&mirrors_[before[at + ahead]].image_m);
+        visit(before[at]);
+      }
+    }
   }
   /// … the parts of edges that the end may see …
   std::vector<EdgePart> parts() const {

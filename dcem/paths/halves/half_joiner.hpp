@@ -16,6 +16,7 @@
 #include "dcem/paths/halves/layer_joiner.hpp"
 #include "dcem/paths/halves/pair_gates.hpp"
 #include "dcem/paths/halves/path_half.hpp"
+#include "dcem/paths/halves/waiting_pairs.hpp"
 #include "dcem/paths/sequence.hpp"
 
 namespace dcem {
@@ -101,40 +102,56 @@ class HalfJoiner {
 
   template <typename Visit>
   void listed_mirrors(const PathHalf& receiver, const HalfLayer& near, const BeamLists& reached, Visit& visit) {
-    for (std::size_t at = 0; at < near.mirrors.size(); ++at) {
+    const auto ask = [&](std::uint32_t at, std::uint32_t place) {
+      const BeamMirror& far = reached.mirrors()[place];
+      gates_.mirrors(receiver, near.mirrors[at], near.images_m[at], reached.half(), far.facet,
+                     far.image_m + reached.origin_m(), visit);
+    };
+    const auto facet_of = [&](std::uint32_t place) { return reached.mirrors()[place].facet; };
+    for (std::uint32_t at = 0; at < near.mirrors.size(); ++at) {
       reached.for_each_mirror_before(near.mirrors[at], [&](std::uint32_t place) {
         const BeamMirror& far = reached.mirrors()[place];
         const float error_m = 1e-6F * static_cast<float>(glm::length(far.image_m));
-        if (!may_hold(near.cones[at], far.image_m, error_m)) return;
-        gates_.mirrors(receiver, near.mirrors[at], near.images_m[at], reached.half(), far.facet,
-                       far.image_m + reached.origin_m(), visit);
+        if (may_hold(near.cones[at], far.image_m, error_m)) waiting_.add(at, place);
       });
+      waiting_.ask_if_many(gates_.gates(), facet_of, ask);
     }
+    waiting_.ask_all(gates_.gates(), facet_of, ask);
   }
 
   /// Edges of which the transmitter sees a part, over the receiver's mirrors.
   template <typename Visit>
   void mirrors_to_parts(const PathHalf& receiver, const HalfLayer& near, const BeamLists& reached, Visit& visit) {
-    for (std::size_t at = 0; at < near.mirrors.size(); ++at) {
-      const Vec3& image_m = near.images_m[at];
-      const auto join = [&](const EdgePart& part) {
-        const WedgeId edge(part.edge);
-        gates_.mirror_to_edge(receiver, near.mirrors[at], image_m, reached.half(), edge, false, visit);
-      };
-      reached.for_each_part_in(near.cones[at], image_m - reached.origin_m(), 0.0F, join);
+    const auto ask = [&](std::uint32_t at, std::uint32_t edge) {
+      gates_.mirror_to_edge(receiver, near.mirrors[at], near.images_m[at], reached.half(), WedgeId(edge), false, visit);
+    };
+    const auto edge_of = [](std::uint32_t edge) { return WedgeId(edge); };
+    for (std::uint32_t at = 0; at < near.mirrors.size(); ++at) {
+      reached.for_each_part_in(near.cones[at], near.images_m[at] - reached.origin_m(), 0.0F,
+                               [&](const EdgePart& part) { waiting_.add(at, part.edge); });
+      waiting_.ask_if_many(gates_.gates(), edge_of, ask);
     }
+    waiting_.ask_all(gates_.gates(), edge_of, ask);
   }
 
   /// Edges that the receiver sees, lit over the transmitter's mirrors.
   template <typename Visit>
   void listed_edges(const PathHalf& receiver, const HalfLayer& near, const BeamLists& reached, Visit& visit) {
     const Vec3 end = receiver.position_m() - reached.origin_m();
-    for (const WedgeId edge : near.edges) {
-      reached.for_each_lit_part(edge, end, 0.0F, [&](const EdgePart&, std::uint32_t place) {
-        const BeamMirror& far = reached.mirrors()[place];
-        gates_.mirror_to_edge(reached.half(), far.facet, far.image_m + reached.origin_m(), receiver, edge, true, visit);
+    const auto ask = [&](std::uint32_t at, std::uint32_t place) {
+      const BeamMirror& far = reached.mirrors()[place];
+      gates_.mirror_to_edge(reached.half(), far.facet, far.image_m + reached.origin_m(), receiver, near.edges[at], true,
+                            visit);
+    };
+    const auto facet_of = [&](std::uint32_t place) { return reached.mirrors()[place].facet; };
+    for (std::uint32_t at = 0; at < near.edges.size(); ++at) {
+      reached.for_each_lit_part(near.edges[at], end, 0.0F, [&](const EdgePart&, std::uint32_t place) {
+        __builtin_prefetch(&reached.mirrors()[place]);
+        waiting_.add(at, place);
       });
+      waiting_.ask_if_many(gates_.gates(), facet_of, ask);
     }
+    waiting_.ask_all(gates_.gates(), facet_of, ask);
   }
 
   PairGates gates_;
@@ -142,6 +159,7 @@ class HalfJoiner {
   LayerJoiner layers_;
   BodyJoiner bodies_;
   EdgePairJoiner edge_pairs_;
+  WaitingPairs waiting_;
 };
 
 }  // namespace dcem

@@ -1,6 +1,8 @@
 #pragma once
 /// What a path over known mirrors and edges must pass: whether its points lie on them, and whether its ends see them.
+#include <cstddef>
 #include <optional>
+#include <span>
 
 #include "dcem/paths/halves/path_half.hpp"
 #include "dcem/paths/sequence.hpp"
@@ -13,6 +15,25 @@ class JoinGates {
   JoinGates(const Scene& scene, const FacetOutlines& outlines) : scene_(scene), outlines_(outlines) {}
 
   const Scene& scene() const { return scene_; }
+
+  /// Elements that are soon asked about: in a large city each lies somewhere else in memory, and that takes longer than
+  /// the questions. First the element …
+  void fetch(FacetId facet) const {
+    __builtin_prefetch(&scene_.facet(facet));
+    __builtin_prefetch(&outlines_.of(facet).lift_m);
+  }
+  void fetch(WedgeId edge) const {
+    const auto* const wedge = reinterpret_cast<const char*>(&scene_.wedge(edge));
+    for (std::size_t at = 0; at < sizeof(WorldWedge); at += cache_line) __builtin_prefetch(wedge + at);
+  }
+  /// … and, when that has come, what belongs to it.
+  void fetch_more(FacetId facet) const {
+    const auto sides = std::as_bytes(outlines_.sides(facet));
+    for (std::size_t at = 0; at < sides.size(); at += cache_line) __builtin_prefetch(sides.data() + at);
+  }
+  void fetch_more(WedgeId edge) const {
+    for (const FacetId face : scene_.wedge(edge).facets) fetch(face);
+  }
 
   /// Where a straight way crosses the plane of a facet, strictly between its ends, on or beside the facet.
   std::optional<Vec3> crossing(FacetId facet, const Vec3& from_m, const Vec3& to_m) const {
@@ -43,6 +64,8 @@ class JoinGates {
   static constexpr double beside_m = 2e-3;
 
  private:
+  static constexpr std::size_t cache_line = 64;
+
   const Scene& scene_;
   const FacetOutlines& outlines_;
 };

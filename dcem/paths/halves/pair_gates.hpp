@@ -20,6 +20,7 @@ class PairGates {
       : gates_(scene, outlines), longest_m_(longest_m + rounding_m), is_bounded_(std::isfinite(longest_m)) {}
 
   const Scene& scene() const { return gates_.scene(); }
+  const JoinGates& gates() const { return gates_; }
 
   template <typename Visit>
   void direct(Visit& visit) {
