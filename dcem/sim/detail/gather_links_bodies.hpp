@@ -48,6 +48,21 @@ inline std::vector<std::size_t> places_of(std::span<const std::vector<LinkResult
   return places;
 }
 
+/// Makes room for so many links, and some more, which all threads touch first: the system clears fresh memory page by
+/// page for whoever does.
+inline void make_room(std::vector<LinkResult>& links, std::size_t count, ThreadPool& threads) {
+  constexpr std::size_t page = 4096, pages_at_once = 64;
+  if (links.capacity() >= count) return;
+  links = {};
+  links.reserve(count + count / 16);
+  auto* const bytes = reinterpret_cast<volatile unsigned char*>(links.data());
+  const std::size_t pages = (links.capacity() * sizeof(LinkResult) + page - 1) / page;
+  threads.for_each((pages + pages_at_once - 1) / pages_at_once, [&](std::size_t block, unsigned) {
+    const std::size_t last = std::min(pages, (block + 1) * pages_at_once);
+    for (std::size_t number = block * pages_at_once; number < last; ++number) bytes[number * page] = 0;
+  });
+}
+
 DCEM_INLINE std::vector<LinkResult> gather_links(std::vector<std::vector<LinkResult>>&& by_receiver,
                                                  std::vector<LinkResult>&& room, ThreadPool& pool) {
   const std::vector<std::size_t> first = first_links(by_receiver);
@@ -55,6 +70,7 @@ DCEM_INLINE std::vector<LinkResult> gather_links(std::vector<std::vector<LinkRes
   ThreadPool& threads = first.back() < many_links ? alone : pool;
   const std::vector<std::size_t> places = places_of(by_receiver, first, threads);
   std::vector<LinkResult> all = std::move(room);
+  make_room(all, first.back(), threads);
   all.resize(first.back());
   threads.for_each(by_receiver.size(), [&](std::size_t receiver, unsigned) {
     std::vector<LinkResult> links = std::move(by_receiver[receiver]);
