@@ -66,8 +66,8 @@ class FacetOutlines {
     return std::all_of(all.begin(), all.end(), inside);
   }
 
-  /// Calls `visit(facet)` for facets of the scenery of which the plane is, by less than `times` the facet's lift, at a
-  /// point or at what is within `radius_m` of it.
+  /// Calls `visit(facet)` for facets of the scenery whose plane may be no farther than `times` their lift from a point,
+  /// or from what is within `radius_m` of it, and for some more.
   template <typename Visit>
   void for_each_grazed(const Vec3& point_m, double radius_m, double times, Visit&& visit) const {
     const Vec3 from = point_m - middle_m_;

@@ -61,7 +61,7 @@ class Sight {
   /// A leg that grazes a mirror may ignore what lies along it for a long way. Facets for which that is a larger share
   /// of the way are looked at one by one, whatever hides the box they are in.
   static constexpr double longest_lift_share = 0.005;
-  /// By which factor boxes of all other facets count as nearer.
+  /// By which factor boxes count as nearer, for all other facets.
   static constexpr double nearer_boxes = 1.0 / (1.0 - longest_lift_share);
 
   explicit Sight(int map_pixels) : map_(map_pixels) {}
@@ -107,10 +107,10 @@ class Sight {
   /// Ends looking, too: frees what only that needs.
   void settle() {
     settle_map();
-    seen_ = {};
-    grazed_ = {};
+    seen_ = std::vector<unsigned char>();
+    grazed_ = std::vector<FacetId>();
     found_ = {};
-    shown_ = {};
+    shown_ = std::vector<char>();
     cells_ = {};
     cell_map_.reset();
   }

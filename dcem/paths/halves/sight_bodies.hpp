@@ -101,6 +101,7 @@ DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines&
   });
   if (map_.faces() == 1 || !map_.is_of_one_point()) {
     look_at_faces(scene, outlines, settings, {}, seen);
+    if (pool != nullptr) map_.settle();
   } else {
     look_at_each_face(scene, outlines, settings, seen, pool);
   }

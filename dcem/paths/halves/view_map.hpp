@@ -49,8 +49,8 @@ class ViewMap {
     faces_ = {};
     clear(cube_pixels_);
   }
-  /// The same of one point, emptied by all threads: what is several megabytes large takes longest where it has never
-  /// been used.
+  /// The same of one point, emptied by several threads: what is several megabytes large takes longest where it has
+  /// never been used.
   void look_from(const Vec3& point_m, ThreadPool& pool);
   /// The same of points that look through a convex window, and `room_m` around it: there is nothing else to be seen.
   /// `inwards`: the normals of planes by the point which all of it is inside.

@@ -53,7 +53,7 @@ inline std::vector<std::size_t> places_of(std::span<const std::vector<LinkResult
 inline void make_room(std::vector<LinkResult>& links, std::size_t count, ThreadPool& threads) {
   constexpr std::size_t page = 4096, pages_at_once = 64;
   if (links.capacity() >= count) return;
-  links = {};
+  links = std::vector<LinkResult>();
   links.reserve(count + count / 16);
   auto* const bytes = reinterpret_cast<volatile unsigned char*>(links.data());
   const std::size_t pages = (links.capacity() * sizeof(LinkResult) + page - 1) / page;

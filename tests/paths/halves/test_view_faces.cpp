@@ -120,7 +120,7 @@ TEST_CASE("whatever a finished view shows has been looked at, however close to i
     TracedScene<> traced(scene_of(posters_on_houses(draw)));
     const FacetOutlines outlines(traced.scene);
     for (int place = 0; place < 12; ++place) {
-      // As high as a roof, or beside the plane of a wall: less than a millimetre, or some decimetres away.
+      // As high as a roof, or beside the plane of a wall: some millimetres, or some decimetres away.
       const FacetId wall(static_cast<std::uint32_t>(draw.below(outlines.size())));
       const Plane& plane = traced.scene.facet(wall).plane;
       Vec3 end_m = draw.inside(Vec3(-500, -500, 1), Vec3(500, 500, 12));
