@@ -51,17 +51,11 @@ class BeamLists {
   static constexpr std::size_t of_scenery = 0, of_moved = 1, of_others = 2;
   std::span<const BeamTable, 3> tables() const { return tables_; }
 
-  /// Of all of them, as `BeamTable` has it: the places of the mirrors over which the end may light a facet …
+  /// Of all of them, as `BeamTable` has it: the places of the mirrors over which the end may light a facet, and whose
+  /// images may lie in a cone …
   template <typename Visit>
-  void for_each_mirror_before(FacetId facet, Visit&& visit) const {
-    constexpr std::size_t ahead = 8;
-    for (const BeamTable& table : tables_) {
-      const std::span<const std::uint32_t> before = table.mirrors_before(facet);
-      for (std::size_t at = 0; at < before.size(); ++at) {
-        if (at + ahead < before.size()) __builtin_prefetch(&mirrors_[before[at + ahead]].image_m);
-        visit(before[at]);
-      }
-    }
+  void for_each_mirror_before(FacetId facet, std::span<const HalfSpace> cone, Visit&& visit) const {
+    for (const BeamTable& table : tables_) table.for_each_mirror_before(facet, cone, visit);
   }
   /// … the parts of edges that the end may see …
   std::vector<EdgePart> parts() const {

@@ -15,7 +15,7 @@ DCEM_INLINE void BeamLists::find_all(const BeamSource& source) {
   const BeamFinder finder(source, mirrors_);
   for (const HalfLayer& layer : half_->layers()) finder.find_parts(layer, BeamFinder::many_pieces, found_[0]);
   if (source.over_mirrors) finder.look_through(0, mirrors_.size(), true, BeamFinder::few_pieces, found_[0]);
-  tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0]);
+  tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0], mirrors_);
 }
 
 DCEM_INLINE void BeamLists::find_from(const BeamSource& source, const Place& place, std::span<const char> moved) {
@@ -25,7 +25,7 @@ DCEM_INLINE void BeamLists::find_from(const BeamSource& source, const Place& pla
   const BeamFinder finder(source, mirrors_);
   finder.find_parts(half_->layers()[0], BeamFinder::few_pieces, found_[0]);
   finder.take_from(place, found_[0]);
-  tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0]);
+  tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0], mirrors_);
   found_[0] = {};
   find_bodies(source, moved);
 }
@@ -50,7 +50,7 @@ DCEM_INLINE bool BeamLists::go_on(const BeamSource& source, std::size_t mirrors)
   looked_through_ = last;
   const bool is_done = !source.over_mirrors || last == mirrors_.size();
   if (is_done) {
-    tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0]);
+    tables_[of_scenery].lay_out(source.scene, source.lanes, found_[0], mirrors_);
     found_[0] = {};
   }
   return is_done;
@@ -85,7 +85,7 @@ DCEM_INLINE void BeamLists::find_bodies(const BeamSource& source, std::span<cons
   }
   found_[of_moved] = find_moved(source, moved);
   for (const std::size_t table : {of_moved, of_others}) {
-    tables_[table].lay_out(source.scene, source.lanes, found_[table]);
+    tables_[table].lay_out(source.scene, source.lanes, found_[table], mirrors_);
   }
 }
 

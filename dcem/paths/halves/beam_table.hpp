@@ -16,8 +16,8 @@ class BeamTable {
  public:
   static constexpr std::uint32_t nothing = 0xffffffffU;
 
-  /// The lanes must stay.
-  void lay_out(const Scene& scene, const LaneScene& lanes, const BeamFinds& finds);
+  /// The lanes must stay. `mirrors`: those whose places have been found.
+  void lay_out(const Scene& scene, const LaneScene& lanes, const BeamFinds& finds, std::span<const BeamMirror> mirrors);
 
   /// Facets that are lit over mirrors, ascending, and the places of the mirrors over which one may be …
   std::span<const std::uint32_t> lit_facets() const { return before_rows_.used(); }
@@ -25,6 +25,9 @@ class BeamTable {
     const RowIndex::Row row = before_rows_.row(facet.value);
     return std::span(before_).subspan(row.first, row.last - row.first);
   }
+  /// … of which those whose images may lie in a cone: calls `visit(place)` …
+  template <typename Visit>
+  void for_each_mirror_before(FacetId facet, std::span<const HalfSpace> cone, Visit&& visit) const;
   /// … and edges that are.
   std::span<const std::uint32_t> lit_edges() const { return lit_rows_.used(); }
   /// Calls `visit(part, mirror)` for the parts of an edge that mirrors may light, where the point that diffracts
@@ -69,6 +72,7 @@ class BeamTable {
   const LaneScene* lanes_ = nullptr;
   RowIndex before_rows_, part_rows_, lit_rows_;
   std::vector<std::uint32_t> before_;
+  std::array<std::vector<float>, 3> images_;  ///< of the mirrors in `before_`, and seven numbers more
   std::vector<EdgePart> parts_;
   EdgeClusters part_clusters_;
   std::vector<ConeClusters::Box> body_boxes_;  ///< none where there are parts of the scenery
@@ -76,6 +80,19 @@ class BeamTable {
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
+
+template <typename Visit>
+void BeamTable::for_each_mirror_before(FacetId facet, std::span<const HalfSpace> cone, Visit&& visit) const {
+  const RowIndex::Row row = before_rows_.row(facet.value);
+  if (row.first == row.last) return;
+  const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      visit(before_[row.first + first + static_cast<std::size_t>(std::countr_zero(lanes))]);
+    }
+  };
+  const PointRow images{{&images_[0][row.first], &images_[1][row.first], &images_[2][row.first]}, row.last - row.first};
+  detail::cone_kernels().points(images, cone, told_to(visit_eight));
+}
 
 template <typename Visit>
 void BeamTable::for_each_lit_part(WedgeId edge, Visit&& visit) const {

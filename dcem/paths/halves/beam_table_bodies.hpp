@@ -1,16 +1,25 @@
 #pragma once
 /// Bodies of beam_table.hpp.
+#include <algorithm>
+
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/beam_table.hpp"
 
 namespace dcem {
 
-DCEM_INLINE void BeamTable::lay_out(const Scene& scene, const LaneScene& lanes, const BeamFinds& finds) {
+DCEM_INLINE void BeamTable::lay_out(const Scene& scene, const LaneScene& lanes, const BeamFinds& finds,
+                                    std::span<const BeamMirror> mirrors) {
   lanes_ = &lanes;
   before_.resize(finds.pairs.size());
   before_rows_.build(
       scene.facets().size(), finds.pairs.size(), 1, [&](std::size_t item) { return finds.pairs[item][0]; },
       [&](std::size_t item, std::uint32_t place) { before_[place] = finds.pairs[item][1]; });
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float>& places = images_[static_cast<std::size_t>(axis)];
+    places.assign(before_.size() + simd_lanes - 1, 0.0F);
+    std::ranges::transform(before_, places.begin(),
+                           [&](std::uint32_t mirror) { return static_cast<float>(mirrors[mirror].image_m[axis]); });
+  }
   lay_out_parts(scene, finds);
   lay_out_lit_parts(scene, finds);
 }

@@ -95,7 +95,8 @@ class ConeList {
   std::vector<std::size_t> first_{0};
 };
 
-/// Items, each with a box, in clusters of eight, and clusters in groups of eight: those that a cone may hold.
+/// Items, each with a box, in clusters of eight, clusters in groups of eight, and groups in blocks of eight: those that
+/// a cone may hold.
 class ConeClusters {
  public:
   /// `box_of(item)` for the items 0 … count − 1, counted from the origin of the cones.
@@ -109,25 +110,16 @@ class ConeClusters {
     }
     items_.clear();
     arrange(items, centre);
-    const std::size_t clusters = items_.size() / simd_lanes, groups = (clusters + simd_lanes - 1) / simd_lanes;
-    clusters_.assign(groups, EightBoxes{});
-    groups_.assign((groups + simd_lanes - 1) / simd_lanes, EightBoxes{});
-    boxes_.clear();
-    for (std::size_t group = 0; group < groups; ++group) {
-      Aabb<double> all;
-      for (std::size_t cluster = group * simd_lanes; cluster < std::min(clusters, (group + 1) * simd_lanes);
-           ++cluster) {
-        Aabb<double> box;
-        for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
-          const std::uint32_t item = items_[cluster * simd_lanes + lane];
-          if (item != nothing) box.extend(box_of(item));
-        }
-        set(clusters_[group], cluster % simd_lanes, box);
-        all.extend(box);
-      }
-      set(groups_[group / simd_lanes], group % simd_lanes, all);
-      boxes_.push_back(at(groups_[group / simd_lanes], group % simd_lanes));
+    std::vector<Aabb<double>> boxes(items_.size() / simd_lanes);
+    for (std::size_t at = 0; at < items_.size(); ++at) {
+      if (items_[at] != nothing) boxes[at / simd_lanes].extend(box_of(items_[at]));
     }
+    clusters_ = in_eights(boxes);
+    boxes = around_eights(boxes);
+    boxes_.clear();
+    for (const Aabb<double>& group : boxes) boxes_.push_back(ConeClusters::box_of(group));
+    groups_ = in_eights(boxes);
+    blocks_ = in_eights(around_eights(boxes));
     item_boxes_.clear();
   }
   /// The same, and each item can be asked by itself.
@@ -161,7 +153,7 @@ class ConeClusters {
   /// The items in the order of the clusters, eight to a cluster, the last places of which may hold `nothing`.
   std::span<const std::uint32_t> items() const { return items_; }
 
-  BoxTree tree() const { return {groups_, clusters_}; }
+  BoxTree tree() const { return {blocks_, groups_, clusters_}; }
 
   /// Calls `visit(item)` for those of eight items, from `first` on, whose bits are set.
   template <typename Visit>
@@ -183,14 +175,22 @@ class ConeClusters {
   static void set(EightBoxes& boxes, std::size_t lane, const Aabb<double>& box) {
     const Box own = box_of(box);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      boxes.centre[axis][lane] = own.centre[axis];
-      boxes.half[axis][lane] = own.half[axis];
+      boxes.corner[axis][lane] = own.centre[axis] - own.half[axis];
+      boxes.corner[axis + 3][lane] = own.centre[axis] + own.half[axis];
     }
     boxes.used |= 1U << lane;
   }
-  static Box at(const EightBoxes& boxes, std::size_t lane) {
-    const auto& [centre, half, used] = boxes;
-    return {{centre[0][lane], centre[1][lane], centre[2][lane]}, {half[0][lane], half[1][lane], half[2][lane]}};
+
+  static std::vector<EightBoxes> in_eights(const std::vector<Aabb<double>>& boxes) {
+    std::vector<EightBoxes> eights((boxes.size() + simd_lanes - 1) / simd_lanes);
+    for (std::size_t at = 0; at < boxes.size(); ++at) set(eights[at / simd_lanes], at % simd_lanes, boxes[at]);
+    return eights;
+  }
+  /// Boxes around eight of them each.
+  static std::vector<Aabb<double>> around_eights(const std::vector<Aabb<double>>& boxes) {
+    std::vector<Aabb<double>> around((boxes.size() + simd_lanes - 1) / simd_lanes);
+    for (std::size_t at = 0; at < boxes.size(); ++at) around[at / simd_lanes].extend(boxes[at]);
+    return around;
   }
 
   /// Halves along the longest side, at whole clusters and, where there are many, at whole groups.
@@ -218,7 +218,7 @@ class ConeClusters {
   }
 
   std::vector<std::uint32_t> items_;
-  std::vector<EightBoxes> clusters_, groups_, item_boxes_;
+  std::vector<EightBoxes> clusters_, groups_, blocks_, item_boxes_;
   std::vector<Box> boxes_;
 };
 

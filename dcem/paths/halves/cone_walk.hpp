@@ -1,94 +1,97 @@
 #pragma once
 /// Walks through clusters of boxes, and of what lies in them, that a cone may reach: the inmost loops of joining.
 ///
-/// What is walked through holds plain numbers and is the same for every processor; the walks stand under the name of
-/// the instructions that they are compiled for (core/instruction_set.hpp), and all say the same (cone_kernels.hpp).
+/// What is walked through is the same for every processor (cone_items.hpp); the walks stand under the name of the
+/// instructions that they are compiled for (core/instruction_set.hpp), and all say the same (cone_kernels.hpp).
+#include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "dcem/core/simd.hpp"
+#include "dcem/paths/halves/cone_items.hpp"
 
 namespace dcem {
 
-/// The half space normal·x ≥ offset.
-struct HalfSpace {
-  float x, y, z, offset;
-};
-
-/// Eight numbers side by side.
-using EightFloats = std::array<float, simd_lanes>;
-
-/// Eight boxes as centres and half sizes.
-struct EightBoxes {
-  std::array<EightFloats, 3> centre{}, half{};
-  std::uint32_t used = 0;  ///< bit i: lane i holds a box
-};
-
-/// Clusters of eight items, and groups of eight clusters, by their boxes; boxes are nested likewise.
-struct BoxTree {
-  std::span<const EightBoxes> groups, clusters;
-};
-
-/// Eight parts of edges, each on its edge's line, as one end sees them.
-struct EightParts {
-  std::array<EightFloats, 3> start{}, direction{};
-  EightFloats from{}, to{};         ///< along the edge
-  EightFloats place{}, distance{};  ///< of the end, along the edge and from its line
-};
-
-/// Eight images of an end, and what each of them sees through its mirror: as many half spaces as a mirror of four sides
-/// has.
-struct EightImages {
-  static constexpr std::size_t plane_count = 5;
-  std::array<EightFloats, 3> place{};
-  std::array<std::array<EightFloats, 4>, plane_count> planes{};
-};
-
-/// A place that counts from where cones do, or whatever is within `moved_m` of it.
-struct ConeTarget {
-  float x, y, z;
-  float slack_m;  ///< how far a place may be off, in single precision
-  float moved_m;
-};
-
-/// Is told of eight items, which stand from `first` on: those whose bits are set may be reached.
-struct EightsVisitor {
-  void (*visit)(void* context, std::size_t first, std::uint32_t lanes);
-  void* context;
-
-  [[gnu::always_inline]] void operator()(std::size_t first, std::uint32_t lanes) const { visit(context, first, lanes); }
-};
-
 inline namespace DCEM_ISA {
 
-/// The boxes of which some point may be in a cone.
-[[gnu::always_inline]] inline std::uint32_t boxes_met(const EightBoxes& boxes, std::span<const HalfSpace> cone) {
-  const Float8 x(boxes.centre[0]), y(boxes.centre[1]), z(boxes.centre[2]);
-  const Float8 dx(boxes.half[0]), dy(boxes.half[1]), dz(boxes.half[2]);
-  std::uint32_t met = boxes.used;
-  for (const HalfSpace& plane : cone) {
-    const Float8 reach = x * plane.x + y * plane.y + z * plane.z + dx * std::abs(plane.x) + dy * std::abs(plane.y) +
-                         dz * std::abs(plane.z);
-    met &= (Float8(plane.offset) <= reach).bits();
-    if (met == 0) break;
+/// So many half spaces are asked about without looking whether anything is left: most mirrors have four sides.
+inline constexpr std::size_t planes_at_once = 5;
+
+/// A cone as boxes are asked about it: of each half space the coordinates of the corner that is farthest inside. Of
+/// many half spaces those after the first sixteen are left out.
+class ConeCorners {
+ public:
+  explicit ConeCorners(std::span<const HalfSpace> cone) : count_(std::min(cone.size(), side_.size())) {
+    for (std::size_t at = 0; at < count_; ++at) {
+      const HalfSpace& plane = cone[at];
+      side_[at] = {plane, {plane.x < 0.0F ? 0U : 3U, plane.y < 0.0F ? 1U : 4U, plane.z < 0.0F ? 2U : 5U}};
+    }
   }
-  return met;
+
+  /// The boxes of which some point may be in the cone.
+  [[gnu::always_inline]] std::uint32_t meets(const EightBoxes& boxes) const {
+    Mask8 met = Float8(0.0F) <= Float8(0.0F);
+    for (std::size_t at = 0; at < count_; ++at) {
+      if (at == planes_at_once && met.bits() == 0) return 0;
+      const auto& [plane, corner] = side_[at];
+      const Float8 x(boxes.corner[corner[0]]), y(boxes.corner[corner[1]]), z(boxes.corner[corner[2]]);
+      met = met & (Float8(plane.offset) <= x * plane.x + y * plane.y + z * plane.z);
+    }
+    return boxes.used & met.bits();
+  }
+
+ private:
+  struct Side {
+    HalfSpace plane;
+    std::array<std::uint32_t, 3> corner;
+  };
+  std::array<Side, 16> side_;
+  std::size_t count_;
+};
+
+/// Takes away from what is not `out` yet what is not in a cone: `depth(plane)` is how far inside it may be.
+template <typename Depth>
+[[gnu::always_inline]] inline std::uint32_t left_in(std::span<const HalfSpace> cone, Mask8 out, Depth&& depth) {
+  for (std::size_t at = 0; at < cone.size(); ++at) {
+    if (at == planes_at_once && out.bits() == 0xffU) return 0;
+    out = out | (depth(cone[at]) < Float8(cone[at].offset));
+  }
+  return ~out.bits() & 0xffU;
 }
 
-/// Calls `visit(cluster)` for each cluster that a cone may reach.
+/// Calls `visit(number)` for those of eight, the first of which is number 8 · `of`, whose bits are set.
 template <typename Visit>
-[[gnu::always_inline]] inline void walk_clusters(const BoxTree& tree, std::span<const HalfSpace> cone, Visit&& visit) {
-  for (std::size_t upper = 0; upper < tree.groups.size(); ++upper) {
-    for (std::uint32_t met = boxes_met(tree.groups[upper], cone); met != 0; met &= met - 1) {
-      const std::size_t group = upper * simd_lanes + static_cast<std::size_t>(std::countr_zero(met));
-      for (std::uint32_t inside = boxes_met(tree.clusters[group], cone); inside != 0; inside &= inside - 1) {
-        visit(group * simd_lanes + static_cast<std::size_t>(std::countr_zero(inside)));
-      }
+[[gnu::always_inline]] inline void for_each_lane(std::size_t of, std::uint32_t lanes, Visit&& visit) {
+  for (; lanes != 0; lanes &= lanes - 1) visit(of * simd_lanes + static_cast<std::size_t>(std::countr_zero(lanes)));
+}
+
+/// Tells of the eights of which `met(eight)` has lanes, among those whose clusters a cone may reach.
+///
+/// Which have is as good as chance, and a wrong guess costs more than a question: so all of a block are asked, one
+/// after the other without a branch, and then told of.
+template <typename Met>
+[[gnu::always_inline]] inline void tell_of_clusters(const BoxTree& tree, const ConeCorners& cone, Met&& met,
+                                                    const EightsVisitor& visit) {
+  std::array<std::uint32_t, std::size_t{simd_lanes} * simd_lanes> reached, lanes;
+  const auto ask_block = [&](std::size_t block) {
+    std::size_t count = 0, found = 0;
+    for_each_lane(block, cone.meets(tree.groups[block]), [&](std::size_t group) {
+      for_each_lane(group, cone.meets(tree.clusters[group]),
+                    [&](std::size_t eight) { reached[count++] = static_cast<std::uint32_t>(eight); });
+    });
+    for (std::size_t at = 0; at < count; ++at) {
+      const std::uint32_t eight = reached[at], bits = met(eight);
+      reached[found] = eight;
+      lanes[found] = bits;
+      found += bits != 0 ? 1 : 0;
     }
+    for (std::size_t at = 0; at < found; ++at) visit(std::size_t{reached[at]} * simd_lanes, lanes[at]);
+  };
+  for (std::size_t blocks = 0; blocks < tree.blocks.size(); ++blocks) {
+    for_each_lane(blocks, cone.meets(tree.blocks[blocks]), ask_block);
   }
 }
 
@@ -127,67 +130,72 @@ template <bool end_moves>
   if (target.moved_m > 0.0F) {
     reach = reach + edge_point_reach_m(end_moves ? distance : own_distance, sum, between, target.moved_m);
   }
-  std::uint32_t left = ~((point + reach < from) | (to + reach < point)).bits() & 0xffU;
-  if (left == 0) return 0;
+  const Mask8 beside = (point + reach < from) | (to + reach < point);
   Float8 room = far;
   if (target.moved_m > 0.0F) {
     point = simd::minimum(simd::maximum(point, from), to);
     room = far + reach;
   }
   const Float8 px = sx + point * ex, py = sy + point * ey, pz = sz + point * ez;
-  for (const HalfSpace& plane : cone) {
-    left &= ~(px * plane.x + py * plane.y + pz * plane.z + room < Float8(plane.offset)).bits();
-    if (left == 0) break;
-  }
-  return left;
+  return left_in(cone, beside,
+                 [&](const HalfSpace& plane) { return px * plane.x + py * plane.y + pz * plane.z + room; });
+}
+
+/// Which of eight points may lie in a cone.
+[[gnu::always_inline]] inline std::uint32_t points_met(const Float8& x, const Float8& y, const Float8& z,
+                                                       std::span<const HalfSpace> cone) {
+  const Float8 error_m = Float8(1e-6F) * (simd::absolute(x) + simd::absolute(y) + simd::absolute(z));
+  return left_in(cone, Float8(0.0F) < Float8(0.0F),
+                 [&](const HalfSpace& plane) { return x * plane.x + y * plane.y + z * plane.z + error_m; });
 }
 
 /// Images that may lie in a cone, and may see a target through their mirrors.
 [[gnu::always_inline]] inline std::uint32_t images_met(const EightImages& images, std::span<const HalfSpace> cone,
                                                        const ConeTarget& target) {
-  const Float8 x(images.place[0]), y(images.place[1]), z(images.place[2]);
-  const Float8 error_m = Float8(1e-6F) * (simd::absolute(x) + simd::absolute(y) + simd::absolute(z));
-  std::uint32_t left = 0xffU;
-  for (const HalfSpace& plane : cone) {
-    left &= ~(x * plane.x + y * plane.y + z * plane.z + error_m < Float8(plane.offset)).bits();
-    if (left == 0) return 0;
-  }
+  const std::uint32_t inside =
+      points_met(Float8(images.place[0]), Float8(images.place[1]), Float8(images.place[2]), cone);
+  if (inside == 0) return 0;  // most: their planes need not come from memory
   const float room_m = target.moved_m + target.slack_m;
+  Mask8 out = Float8(0.0F) < Float8(0.0F);
   for (const auto& plane : images.planes) {
-    const Float8 inside =
+    const Float8 depth =
         Float8(plane[0]) * target.x + Float8(plane[1]) * target.y + Float8(plane[2]) * target.z + room_m;
-    left &= ~(inside < Float8(plane[3])).bits();
-    if (left == 0) return 0;
+    out = out | (depth < Float8(plane[3]));
   }
-  return left;
+  return inside & ~out.bits();
+}
+
+/// Tells of the points of a row that may lie in a cone.
+inline void visit_points(const PointRow& row, std::span<const HalfSpace> cone, const EightsVisitor& visit) {
+  const auto [x, y, z] = row.place;
+  for (std::size_t first = 0; first < row.count; first += simd_lanes) {
+    std::uint32_t lanes = points_met(Float8::load(x + first), Float8::load(y + first), Float8::load(z + first), cone);
+    if (row.count - first < simd_lanes) lanes &= (1U << (row.count - first)) - 1U;
+    if (lanes != 0) visit(first, lanes);
+  }
 }
 
 /// Tells of the items that may be in a cone; `boxes`: of the items, in eights.
 inline void visit_boxes(const BoxTree& tree, std::span<const EightBoxes> boxes, std::span<const HalfSpace> cone,
                         const EightsVisitor& visit) {
-  walk_clusters(tree, cone, [&](std::size_t cluster) {
-    const std::uint32_t lanes = boxes_met(boxes[cluster], cone);
-    if (lanes != 0) visit(cluster * simd_lanes, lanes);
-  });
+  const ConeCorners corners(cone);
+  tell_of_clusters(
+      tree, corners, [&](std::size_t eight) { return corners.meets(boxes[eight]); }, visit);
 }
 
 /// The same of parts of edges, as `parts_met` has it …
 template <bool end_moves>
 inline void visit_parts(const BoxTree& tree, std::span<const EightParts> parts, std::span<const HalfSpace> cone,
                         const ConeTarget& target, const EightsVisitor& visit) {
-  walk_clusters(tree, cone, [&](std::size_t cluster) {
-    const std::uint32_t lanes = parts_met<end_moves>(parts[cluster], cone, target);
-    if (lanes != 0) visit(cluster * simd_lanes, lanes);
-  });
+  const auto met = [&](std::size_t eight) { return parts_met<end_moves>(parts[eight], cone, target); };
+  tell_of_clusters(tree, ConeCorners(cone), met, visit);
 }
 
 /// … and of images, as `images_met` has it.
 inline void visit_images(const BoxTree& tree, std::span<const EightImages> images, std::span<const HalfSpace> cone,
                          const ConeTarget& target, const EightsVisitor& visit) {
-  walk_clusters(tree, cone, [&](std::size_t cluster) {
-    const std::uint32_t lanes = images_met(images[cluster], cone, target);
-    if (lanes != 0) visit(cluster * simd_lanes, lanes);
-  });
+  const auto met = [&](std::size_t eight) { return images_met(images[eight], cone, target); };
+  tell_of_clusters(tree, ConeCorners(cone), met, visit);
 }
 
 }  // namespace DCEM_ISA

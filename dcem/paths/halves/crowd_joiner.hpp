@@ -94,11 +94,9 @@ class CrowdJoiner {
 
   template <typename Visit>
   void mirror_pairs(FacetId last, const Vec3& image_m, Visit& visit) {
-    mast().for_each_mirror_before(last, [&](std::uint32_t mirror) {
+    mast().for_each_mirror_before(last, cone_, [&](std::uint32_t mirror) {
       const BeamMirror& first = mast().mirrors()[mirror];
-      if (!may_hold(cone_, first.image_m, 1e-6F * static_cast<float>(glm::length(first.image_m))) ||
-          !may_hold(first.cone, image_m, gates_.radius_m()))
-        return;
+      if (!may_hold(first.cone, image_m, gates_.radius_m())) return;
       const LanePoints apex(first.image_m);
       const Float8 error_m(gates_.error_with(glm::length(first.image_m) + glm::length(image_m)));
       for (std::size_t pack = 0; pack < images_.size(); ++pack) {

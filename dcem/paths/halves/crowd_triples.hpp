@@ -84,12 +84,10 @@ class CrowdTriples {
 
   template <typename Visit>
   void join_mirrors(std::uint32_t place, FacetId middle, Visit& visit) {
-    mast().for_each_mirror_before(middle, [&](std::uint32_t mirror) {
+    mast().for_each_mirror_before(middle, images_.cone(), [&](std::uint32_t mirror) {
       const BeamMirror& first = mast().mirrors()[mirror];
+      if (!may_hold(first.cone, images_.middle_m(), gates_.radius_m() + images_.error_m())) return;
       const double length_m = glm::length(first.image_m);
-      if (!may_hold(images_.cone(), first.image_m, 1e-6F * static_cast<float>(length_m)) ||
-          !may_hold(first.cone, images_.middle_m(), gates_.radius_m() + images_.error_m()))
-        return;
       const LanePoints apex(first.image_m);
       const Float8 error_m(images_.error_m() + LaneScene::error_m(length_m));
       for (std::size_t pack = 0; pack < pack_count(); ++pack) {

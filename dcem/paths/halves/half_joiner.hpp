@@ -109,10 +109,9 @@ class HalfJoiner {
     };
     const auto facet_of = [&](std::uint32_t place) { return reached.mirrors()[place].facet; };
     for (std::uint32_t at = 0; at < near.mirrors.size(); ++at) {
-      reached.for_each_mirror_before(near.mirrors[at], [&](std::uint32_t place) {
-        const BeamMirror& far = reached.mirrors()[place];
-        const float error_m = 1e-6F * static_cast<float>(glm::length(far.image_m));
-        if (may_hold(near.cones[at], far.image_m, error_m)) waiting_.add(at, place);
+      reached.for_each_mirror_before(near.mirrors[at], near.cones[at], [&](std::uint32_t place) {
+        __builtin_prefetch(&reached.mirrors()[place]);
+        waiting_.add(at, place);
       });
       waiting_.ask_if_many(gates_.gates(), facet_of, ask);
     }

@@ -60,7 +60,7 @@ struct InsetOutline {
 
 /// The sides of a convex polygon as half spaces through a point P = from_m, each moved inwards so far that what is
 /// inside all of them and behind the polygon is hidden by it from all points P + offsets_m[i], too. False where a point
-/// is not clearly on the same side of the plane as P.
+/// is not clearly on the same side of the plane as P, or there are too many corners.
 ///
 /// With d the distance of P from the plane, n its normal towards P, and m the normal of a side in the plane, inwards,
 /// the plane through P and the side has the normal N = m + (β/d) n, β being the distance of P's foot outside the side.
@@ -69,26 +69,31 @@ struct InsetOutline {
 inline bool sides_moved_in(std::span<const Vec3> corners_m, const Plane& plane, const Vec3& from_m,
                            std::span<const Vec3> offsets_m, std::vector<Vec3>& normals) {
   constexpr double hair_m = 1e-5;  // corners may be off the plane by some micrometres
-  const double side = signed_distance_m(plane, from_m), distance_m = std::abs(side);
-  const Vec3 towards = side > 0.0 ? plane.normal : -plane.normal;
+  const double height_m = signed_distance_m(plane, from_m), distance_m = std::abs(height_m);
+  const Vec3 towards = height_m > 0.0 ? plane.normal : -plane.normal;
   double reach_m = 0.0;
   for (const Vec3& offset_m : offsets_m) reach_m = std::max(reach_m, std::abs(glm::dot(towards, offset_m)));
-  if (!(distance_m > 1.001 * reach_m + hair_m)) return false;
+  if (!(distance_m > 1.001 * reach_m + hair_m) || corners_m.size() > detail::InsetOutline::capacity) return false;
   Vec3 centre_m(0.0);
   for (const Vec3& corner : corners_m) centre_m += corner / static_cast<double>(corners_m.size());
+  const std::size_t first = normals.size();
   for (std::size_t index = 0; index < corners_m.size(); ++index) {
     const Vec3 &from = corners_m[index], &to = corners_m[index + 1 == corners_m.size() ? 0 : index + 1];
     Vec3 inward = glm::cross(plane.normal, to - from);
     const double length = glm::length(inward);
     if (!(length > 1e-9)) continue;  // its neighbours move the corner by as much
     inward *= (glm::dot(inward, centre_m - from) < 0.0 ? -1.0 : 1.0) / length;
-    const Vec3 through = inward + glm::dot(inward, from - from_m) / distance_m * towards;
-    double moved = 0.0;
-    for (const Vec3& offset_m : offsets_m) {
-      moved = std::max(moved, -glm::dot(through, offset_m) / (distance_m + glm::dot(towards, offset_m)));
-    }
-    normals.push_back(through + (moved + hair_m / distance_m) * towards);
+    normals.push_back(inward + glm::dot(inward, from - from_m) / distance_m * towards);
   }
+  const std::span<Vec3> sides = std::span(normals).subspan(first);
+  std::array<double, detail::InsetOutline::capacity> moved{};
+  for (const Vec3& offset_m : offsets_m) {
+    const Vec3 back = offset_m / -(distance_m + glm::dot(towards, offset_m));
+    for (std::size_t side = 0; side < sides.size(); ++side) {
+      moved[side] = std::max(moved[side], glm::dot(sides[side], back));
+    }
+  }
+  for (std::size_t side = 0; side < sides.size(); ++side) sides[side] += (moved[side] + hair_m / distance_m) * towards;
   return true;
 }
 

@@ -139,12 +139,12 @@ inline void CandidatePool::find_single_mirrors() {
 inline void CandidatePool::find_over_mirror(const Scene& scene, const FacetOutlines& outlines,
                                             const PlaceMirror& mirror) {
   const Vec3 image = mirror.image_m - reached_.origin_m();
-  for (const std::uint32_t far : reached_.tables()[BeamLists::of_scenery].mirrors_before(mirror.facet)) {
-    if (orders_.reflections < 2) break;
-    const BeamMirror& first = reached_.mirrors()[far];
-    const float error_m = 1e-6F * static_cast<float>(glm::length(first.image_m));
-    if (!may_hold(mirror.cone, first.image_m, error_m)) continue;
-    if (may_hold(first.cone, image, static_cast<float>(place_->radius_m()))) mirrors_.push_back({mirror.number, far});
+  const BeamTable& table = reached_.tables()[BeamLists::of_scenery];
+  if (orders_.reflections >= 2) {
+    table.for_each_mirror_before(mirror.facet, mirror.cone, [&](std::uint32_t far) {
+      const BeamMirror& first = reached_.mirrors()[far];
+      if (may_hold(first.cone, image, static_cast<float>(place_->radius_m()))) mirrors_.push_back({mirror.number, far});
+    });
   }
   if (orders_.diffractions >= 1) find_edges_over(scene, outlines, mirror);
 }
