@@ -27,7 +27,7 @@ inline bool pools_cover(const PathSearchSettings& settings) {
 /// Of an end of links. Where three elements are joined, each of its mirrors costs so much that it pays to look twice;
 /// where one is, no view is so wide that it does.
 inline HalfSettings half_settings(const PathSearchSettings& settings) {
-  constexpr std::size_t many = 2'500;  // by measurement, where two are joined
+  constexpr std::size_t many = 5'000;  // small facets, by measurement, where two are joined
   const bool pairs = settings.max_interactions >= 2;
   const std::size_t closer_from = joins_triples(settings) ? 0 : pairs ? many : std::numeric_limits<std::size_t>::max();
   return {settings.max_diffractions > 0,

@@ -31,8 +31,8 @@ struct HalfSettings {
   /// A path crosses at most so many sheets: what is behind more of them is hidden.
   int sheets = std::numeric_limits<int>::max();
   EdgeRules rules{};
-  /// Where at least so many facets of the scenery may be seen, the view is looked at twice. That only takes away what
-  /// nothing comes of.
+  /// Where at least so many facets of the scenery may be seen that are small in the map, the view is looked at twice.
+  /// That only takes away what nothing comes of.
   std::size_t closer_from = std::numeric_limits<std::size_t>::max();
   /// Nothing farther than this counts as seen, along the way over a mirror where one is looked through.
   double reach_m = std::numeric_limits<double>::infinity();
@@ -182,6 +182,8 @@ class Sight {
   void look_at_bodies(const Scene& scene, const FacetOutlines& outlines, const BodyChoice& bodies,
                       std::vector<FacetId>& seen) const;
   bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id, const FaceSpan& faces = {}) const;
+  /// How many of some facets are not wider than a few pixels of the map: those that others hide only in finer ones.
+  std::size_t count_small(const FacetOutlines& outlines, std::span<const FacetId> seen) const;
   /// Where it pays.
   void look_closer(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                    std::vector<FacetId>& seen, ThreadPool* pool);

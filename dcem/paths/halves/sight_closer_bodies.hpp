@@ -14,10 +14,20 @@
 
 namespace dcem {
 
+DCEM_INLINE std::size_t Sight::count_small(const FacetOutlines& outlines, std::span<const FacetId> seen) const {
+  constexpr double small_pixels = 4.0;  // in the middle of a face, by measurement
+  const double share = small_pixels / (0.5 * map_.pixels());
+  return static_cast<std::size_t>(std::ranges::count_if(seen, [&](FacetId id) {
+    const Aabb<double>& box = outlines.of(id).box;
+    return glm::length(box.extent()) < share * glm::distance(box.center(), position_m());
+  }));
+}
+
 /// Once more, cell by cell, with as many pixels for a crowded cell as a face has in the map: leaves what these show.
 DCEM_INLINE void Sight::look_closer(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                     std::vector<FacetId>& seen, ThreadPool* pool) {
   if (beam_ || seen.size() < settings.closer_from) return;
+  if (settings.closer_from > 0 && count_small(outlines, seen) < settings.closer_from) return;
   cells_.look_from(position_m());
   shown_.assign(seen.size(), 0);
   for (std::uint32_t place = 0; place < seen.size(); ++place) {
