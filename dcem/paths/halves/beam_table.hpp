@@ -19,16 +19,16 @@ class BeamTable {
   /// The lanes must stay. `mirrors`: those whose places have been found.
   void lay_out(const Scene& scene, const LaneScene& lanes, const BeamFinds& finds, std::span<const BeamMirror> mirrors);
 
-  /// Facets that are lit over mirrors, ascending, and the places of the mirrors over which one may be …
+  /// Facets that are lit over mirrors, ascending; the places of the mirrors over which one may be; and, to be visited,
+  /// of those of them whose images may lie in a cone.
   std::span<const std::uint32_t> lit_facets() const { return before_rows_.used(); }
   std::span<const std::uint32_t> mirrors_before(FacetId facet) const {
     const RowIndex::Row row = before_rows_.row(facet.value);
     return std::span(before_).subspan(row.first, row.last - row.first);
   }
-  /// … of which those whose images may lie in a cone: calls `visit(place)` …
   template <typename Visit>
   void for_each_mirror_before(FacetId facet, std::span<const HalfSpace> cone, Visit&& visit) const;
-  /// … and edges that are.
+  /// Edges that are lit over mirrors, ascending.
   std::span<const std::uint32_t> lit_edges() const { return lit_rows_.used(); }
   /// Calls `visit(part, mirror)` for the parts of an edge that mirrors may light, where the point that diffracts
   /// towards `point`, or what is within `radius_m` of it, may lie on the part.

@@ -52,9 +52,11 @@ class ConeCorners {
   std::size_t count_;
 };
 
-/// Takes away from what is not `out` yet what is not in a cone: `depth(plane)` is how far inside it may be.
+/// What is neither `beside` already nor outside of a cone: `depth(plane)` is how far inside it may be.
 template <typename Depth>
-[[gnu::always_inline]] inline std::uint32_t left_in(std::span<const HalfSpace> cone, Mask8 out, Depth&& depth) {
+[[gnu::always_inline]] inline std::uint32_t left_in(std::span<const HalfSpace> cone, const Mask8& beside,
+                                                    Depth&& depth) {
+  Mask8 out = beside;
   for (std::size_t at = 0; at < cone.size(); ++at) {
     if (at == planes_at_once && out.bits() == 0xffU) return 0;
     out = out | (depth(cone[at]) < Float8(cone[at].offset));

@@ -118,7 +118,7 @@ class KeptHalf {
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const HalfSettings& settings,
                     bool closer, ThreadPool* pool);
 
-  static constexpr std::size_t very_many = 20'000;  ///< small facets; three times what a mast over one city sees
+  static constexpr std::size_t very_many = 20'000;  ///< small facets: more than there are in view over one city
   /// Places are 4 m long by measurement: twice as long they take longer for each metre, half as long, too; of devices
   /// that move at least so far in a frame 6 m.
   static constexpr double fast_step_m = 1.0;
