@@ -91,12 +91,10 @@ struct TriplePool::Finder {
   }
 
   void join_mirrors(const PlaceMirror& near, FacetId middle) {
-    for (const std::uint32_t mirror : listed.mirrors_before(middle)) {
+    listed.for_each_mirror_before(middle, cone, [&](std::uint32_t mirror) {
       const BeamMirror& far = reached.mirrors()[mirror];
-      const auto error_m = 1e-6F * static_cast<float>(glm::length(far.image_m));
-      if (!may_hold(cone, far.image_m, error_m) || !may_hold(far.cone, twice, radius_m + twice_error_m)) continue;
-      add(near.facet, middle, far.facet);
-    }
+      if (may_hold(far.cone, twice, radius_m + twice_error_m)) add(near.facet, middle, far.facet);
+    });
   }
 
   void join_edges(const PlaceMirror& near, FacetId middle) {
