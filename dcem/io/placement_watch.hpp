@@ -2,6 +2,7 @@
 /// Devices, grids and vehicles in places where they can hardly be meant to be: kilometres outside the scenery, under
 /// the ground, inside what lets nothing through. A watch looks at each frame and says at the end what it saw, once for
 /// all frames. It knows the scenery and guesses at what is meant: a warning is no error.
+#include <array>
 #include <cstddef>
 #include <map>
 #include <mutex>
@@ -23,6 +24,9 @@ class PlacementWatch {
   /// Everything must outlive the watch.
   PlacementWatch(std::string file, const Simulator& simulator, std::span<const Device> receivers,
                  std::span<const ReceiverGrid> grids);
+  ~PlacementWatch();
+  PlacementWatch(const PlacementWatch&) = delete;
+  PlacementWatch& operator=(const PlacementWatch&) = delete;
 
   /// Looks at the simulator's current frame. Some microseconds for each device and each object.
   void look(const Frame& frame);
@@ -38,35 +42,25 @@ class PlacementWatch {
     bool is_foliage = false;
     bool transmits = false;  ///< somewhere
   };
+  enum class Kind { transmitter, receiver, grid, object };
   enum class Problem { far_outside, under_ground, shut_in, shut_in_alone, drives_through, goes_through };
-  /// What is wrong with whom, and the rest of the sentence.
-  struct Sighting {
-    Problem problem;
-    std::string subject, detail;
-    double extent_m = 0.0;  ///< the detail is that of the frame with the largest one
-    std::vector<std::size_t> frames;
-  };
+  struct Sighting;
+  class Record;
 
-  /// What is seen of one device, grid or object in one frame.
-  struct Note {
-    Problem problem;
-    std::string subject, detail;
-    double extent_m = 0.0;
-  };
-  using Notes = std::vector<Note>;
-
-  /// Calls `look(index, notes)` on all threads, then takes the notes in the order of the indices.
+  /// Calls `look(index)` on all threads.
   template <typename Look>
-  void look_at_each(std::size_t count, Look&& look);
+  void for_each(std::size_t count, Look&& look) const;
+  /// The same, with the record of each.
+  template <typename Look>
+  void look_at_each(Kind kind, std::size_t count, Look&& look);
   void note_rooms();
-  void look_at_place(const Vec3& position_m, const std::string& subject, Notes& notes) const;
-  void look_at_receiver(const Device& device, Notes& notes) const;
-  void look_at_transmitter(std::size_t number, Notes& notes) const;
-  void look_at_grid(const ReceiverGrid& grid, Notes& notes) const;
-  void look_at_object(BodyId body, Notes& notes);
-  void look_at_way(BodyId body, const Vec3& middle_m, const std::string& subject, Notes& notes);
-  void take(Note&& note);
-  bool is_far(const Vec3& position_m, const std::string& subject, Notes& notes) const;
+  void look_at_place(const Vec3& position_m, const std::string& subject, Record& record) const;
+  void look_at_receiver(const Device& device, Record& record) const;
+  void look_at_transmitter(std::size_t number, Record& record) const;
+  void look_at_grid(const ReceiverGrid& grid, Record& record) const;
+  void look_at_object(BodyId body, Record& record);
+  void look_at_way(BodyId body, const Vec3& middle_m, const std::string& subject, Record& record);
+  bool is_far(const Vec3& position_m, const std::string& subject, Record& record) const;
   bool is_under_ground(const Vec3& position_m) const;
   bool ground_is_hit(const Vec3& from_m, const Vec3& direction) const;
   bool wall_is_near(const Vec3& from_m, const Vec3& aside) const;
@@ -79,6 +73,7 @@ class PlacementWatch {
   bool moves_along(BodyId one, BodyId other) const;
   double share_of_receivers_in(const Shell& shell, const std::set<Shell>& own) const;
   std::string name_of(const Shell& shell) const;
+  std::vector<Sighting> sightings() const;
 
   std::string file_;
   const Simulator& simulator_;
@@ -93,8 +88,7 @@ class PlacementWatch {
   std::vector<std::optional<std::vector<Shell>>> houses_before_;
   mutable std::mutex mutex_;                                       ///< of `shell_facts_`
   mutable std::map<BodyId, std::vector<ShellFacts>> shell_facts_;  ///< by number, from 1
-  std::vector<Sighting> sightings_;                                ///< in the order in which they were seen first
-  std::map<std::pair<Problem, std::string>, std::size_t> numbers_;
+  std::array<std::vector<Record>, 4> records_;                     ///< by kind and index
 };
 
 }  // namespace dcem::io

@@ -395,10 +395,20 @@ TEST_CASE("an object of half a kilometre is noticed, and what scatters while nob
 }
 
 TEST_CASE("frames in words") {
-  CHECK(io::frame_ranges({3}) == "frame 3");
-  CHECK(io::frame_ranges({3, 4, 5}) == "frames 3 to 5");
-  CHECK(io::frame_ranges({1, 3, 4}) == "frames 1 and 3 to 4");
-  CHECK(io::frame_ranges({0, 2, 4, 6, 8, 10}) == "frames 0, 2, 4 and others, 6 in all");
+  const auto runs = [](std::initializer_list<std::size_t> frames) {
+    io::FrameRuns of;
+    for (const std::size_t frame : frames) of.add(frame);
+    return of;
+  };
+  CHECK(runs({3}).words() == "frame 3");
+  CHECK(runs({3, 3}).words() == "frame 3");
+  CHECK(runs({3, 4, 5}).words() == "frames 3 to 5");
+  CHECK(runs({1, 3, 4}).words() == "frames 1 and 3 to 4");
+  CHECK(runs({0, 2, 4, 6, 8, 10}).words() == "frames 0, 2, 4 and others, 6 in all");
+  io::FrameRuns both = runs({1, 2, 7});
+  both.add(runs({0, 3, 9}));
+  CHECK(both.words() == "frames 0 to 3, 7 and 9");
+  CHECK(both.first() == 0);
 }
 
 }  // namespace test_misplaced_input

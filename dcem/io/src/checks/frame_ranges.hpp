@@ -1,29 +1,67 @@
 #pragma once
 /// Frames in words. Private to dcem::io.
+#include <algorithm>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dcem::io {
 
-/// "frame 3", "frames 3 to 17", "frames 3 to 17, 20 and 31 to 40": of ascending numbers; of more than four runs the
-/// first three and how many frames there are in all.
-inline std::string frame_ranges(const std::vector<std::size_t>& frames) {
-  constexpr std::size_t most_runs = 4;
-  std::vector<std::string> runs;
-  for (std::size_t at = 0; at < frames.size();) {
-    std::size_t last = at;
-    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
-    runs.push_back(std::to_string(frames[at]) + (last > at ? " to " + std::to_string(frames[last]) : ""));
-    at = last + 1;
+/// Frames without the room of each: runs of neighbours, first and last, that ascend.
+class FrameRuns {
+ public:
+  /// A frame that is the last one or comes after it.
+  void add(std::size_t frame) {
+    if (!runs_.empty() && frame <= runs_.back().second + 1) {
+      runs_.back().second = frame;
+    } else {
+      runs_.emplace_back(frame, frame);
+    }
   }
-  std::string text = frames.size() == 1 ? "frame " : "frames ";
-  const bool all = runs.size() <= most_runs;
-  const std::size_t named = all ? runs.size() : most_runs - 1;
-  for (std::size_t run = 0; run < named; ++run) {
-    text += (run == 0 ? "" : all && run + 1 == named ? " and " : ", ") + runs[run];
+
+  /// Frames anywhere.
+  void add(const FrameRuns& others) {
+    runs_.insert(runs_.end(), others.runs_.begin(), others.runs_.end());
+    std::ranges::sort(runs_);
+    std::vector<Run> joined;
+    for (const Run& run : runs_) {
+      if (!joined.empty() && run.first <= joined.back().second + 1) {
+        joined.back().second = std::max(joined.back().second, run.second);
+      } else {
+        joined.push_back(run);
+      }
+    }
+    runs_ = std::move(joined);
   }
-  return all ? text : text + " and others, " + std::to_string(frames.size()) + " in all";
-}
+
+  std::size_t first() const { return runs_.front().first; }
+
+  /// "frame 3", "frames 3 to 17", "frames 3 to 17, 20 and 31 to 40"; of more than four runs the first three and how
+  /// many frames there are in all.
+  std::string words() const {
+    constexpr std::size_t most_runs = 4;
+    const bool all = runs_.size() <= most_runs;
+    const std::size_t named = all ? runs_.size() : most_runs - 1;
+    std::string text = count() == 1 ? "frame " : "frames ";
+    for (std::size_t at = 0; at < named; ++at) {
+      const auto& [first, last] = runs_[at];
+      text += at == 0 ? "" : all && at + 1 == named ? " and " : ", ";
+      text += std::to_string(first) + (last > first ? " to " + std::to_string(last) : "");
+    }
+    return all ? text : text + " and others, " + std::to_string(count()) + " in all";
+  }
+
+ private:
+  using Run = std::pair<std::size_t, std::size_t>;
+
+  std::size_t count() const {
+    std::size_t frames = 0;
+    for (const auto& [first, last] : runs_) frames += last - first + 1;
+    return frames;
+  }
+
+  std::vector<Run> runs_;
+};
 
 }  // namespace dcem::io

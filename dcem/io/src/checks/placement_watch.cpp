@@ -57,6 +57,48 @@ std::string metres(double length_m) {
 
 }  // namespace
 
+/// What is wrong with whom, and the rest of the sentence.
+struct PlacementWatch::Sighting {
+  Problem problem;
+  std::string subject, detail;
+  double extent_m = 0.0;  ///< the detail is that of the frame with the largest one
+  FrameRuns frames;
+};
+
+/// What has been seen of one device, grid or object, by the thread that looks at it. A vehicle that has left is
+/// followed by another one in the same place of the scene: the subjects of a record may be several.
+class PlacementWatch::Record {
+ public:
+  void begin(std::size_t frame) {
+    frame_ = frame;
+    seen_now_ = 0;
+  }
+
+  /// `detail()` is the rest of the sentence.
+  template <typename Detail>
+  void note(Problem problem, const std::string& subject, double extent_m, Detail&& detail) {
+    const auto last = std::find_if(sightings_.rbegin(), sightings_.rend(), [&](const Sighting& sighting) {
+      return sighting.problem == problem && sighting.subject == subject;
+    });
+    const bool is_new = last == sightings_.rend();
+    if (is_new) sightings_.push_back({problem, subject, detail(), extent_m, {}});
+    Sighting& sighting = is_new ? sightings_.back() : *last;
+    if (extent_m > sighting.extent_m) {
+      sighting.detail = detail();
+      sighting.extent_m = extent_m;
+    }
+    sighting.frames.add(frame_);
+    ++seen_now_;
+  }
+
+  bool nothing_noted() const { return seen_now_ == 0; }                  ///< in this frame
+  const std::vector<Sighting>& sightings() const { return sightings_; }  ///< in the order in which they were seen first
+
+ private:
+  std::vector<Sighting> sightings_;
+  std::size_t frame_ = 0, seen_now_ = 0;
+};
+
 PlacementWatch::PlacementWatch(std::string file, const Simulator& simulator, std::span<const Device> receivers,
                                std::span<const ReceiverGrid> grids)
     : file_(std::move(file)), simulator_(simulator), receivers_(receivers), grids_(grids) {
@@ -65,35 +107,43 @@ PlacementWatch::PlacementWatch(std::string file, const Simulator& simulator, std
   houses_before_.resize(middles_m_.size());
 }
 
+PlacementWatch::~PlacementWatch() = default;
+
 void PlacementWatch::look(const Frame& frame) {
   if (box_.empty()) return;
   frame_ = &frame;
   note_rooms();
-  look_at_each(rooms_.size(), [&](std::size_t number, Notes& notes) { look_at_transmitter(number, notes); });
-  look_at_each(std::min(receivers_.size(), most_watched),
-               [&](std::size_t number, Notes& notes) { look_at_receiver(receivers_[number], notes); });
-  look_at_each(grids_.size(), [&](std::size_t number, Notes& notes) { look_at_grid(grids_[number], notes); });
-  look_at_each(simulator_.scene().bodies().size() - 1,
-               [&](std::size_t number, Notes& notes) { look_at_object(BodyId(number + 1), notes); });
+  look_at_each(Kind::transmitter, rooms_.size(),
+               [&](std::size_t number, Record& record) { look_at_transmitter(number, record); });
+  look_at_each(Kind::receiver, std::min(receivers_.size(), most_watched),
+               [&](std::size_t number, Record& record) { look_at_receiver(receivers_[number], record); });
+  look_at_each(Kind::grid, grids_.size(),
+               [&](std::size_t number, Record& record) { look_at_grid(grids_[number], record); });
+  look_at_each(Kind::object, simulator_.scene().bodies().size() - 1,
+               [&](std::size_t number, Record& record) { look_at_object(BodyId(number + 1), record); });
 }
 
 template <typename Look>
-void PlacementWatch::look_at_each(std::size_t count, Look&& look) {
-  std::vector<Notes> notes((count + at_once - 1) / at_once);
-  simulator_.pool().for_each(notes.size(), [&](std::size_t block, unsigned) {
-    for (std::size_t number = block * at_once; number < std::min(count, (block + 1) * at_once); ++number) {
-      look(number, notes[block]);
-    }
+void PlacementWatch::for_each(std::size_t count, Look&& look) const {
+  simulator_.pool().for_each((count + at_once - 1) / at_once, [&](std::size_t block, unsigned) {
+    for (std::size_t number = block * at_once; number < std::min(count, (block + 1) * at_once); ++number) look(number);
   });
-  for (Notes& of_block : notes) {
-    for (Note& note : of_block) take(std::move(note));
-  }
+}
+
+template <typename Look>
+void PlacementWatch::look_at_each(Kind kind, std::size_t count, Look&& look) {
+  std::vector<Record>& records = records_[static_cast<std::size_t>(kind)];
+  if (records.size() < count) records.resize(count);
+  for_each(count, [&](std::size_t number) {
+    records[number].begin(frame_->index);
+    look(number, records[number]);
+  });
 }
 
 void PlacementWatch::note_rooms() {
   const std::span<const Device> transmitters = simulator_.scene().transmitters();
   rooms_.assign(transmitters.size(), {});
-  look_at_each(transmitters.size(), [&](std::size_t number, Notes&) {
+  for_each(transmitters.size(), [&](std::size_t number) {
     const DeviceState state = simulator_.scene().device_state(transmitters[number], *frame_);
     if (!state.present) return;
     for (const ShellAtPoint& at : simulator_.shells_at(state.position_m))
@@ -103,77 +153,76 @@ void PlacementWatch::note_rooms() {
   for (const std::vector<Shell>& own : rooms_) all_rooms_.insert(own.begin(), own.end());
 }
 
-bool PlacementWatch::is_far(const Vec3& position_m, const std::string& subject, Notes& notes) const {
+bool PlacementWatch::is_far(const Vec3& position_m, const std::string& subject, Record& record) const {
   const double away_m = far_away_m(box_, position_m);
   if (away_m == 0.0) return false;
-  notes.push_back(
-      {Problem::far_outside, subject,
-       "is up to " + metres(away_m) + " outside the box of the scenery; is it in other coordinates or another unit?",
-       away_m});
+  record.note(Problem::far_outside, subject, away_m, [&] {
+    return "is up to " + metres(away_m) +
+           " outside the box of the scenery; is it in other coordinates or another unit?";
+  });
   return true;
 }
 
-void PlacementWatch::look_at_place(const Vec3& position_m, const std::string& subject, Notes& notes) const {
-  if (is_far(position_m, subject, notes) || !is_under_ground(position_m)) return;
+void PlacementWatch::look_at_place(const Vec3& position_m, const std::string& subject, Record& record) const {
+  if (is_far(position_m, subject, record) || !is_under_ground(position_m)) return;
   const double depth_m = box_.min.z - position_m.z;
-  notes.push_back({Problem::under_ground, subject,
-                   depth_m > below_m
-                       ? "is up to " + metres(depth_m) + " below everything in the scenery; is its height meant?"
-                       : "has a broad surface above it and none below; is it under the ground?",
-                   depth_m});
+  record.note(Problem::under_ground, subject, depth_m, [&] {
+    return depth_m > below_m ? "is up to " + metres(depth_m) + " below everything in the scenery; is its height meant?"
+                             : "has a broad surface above it and none below; is it under the ground?";
+  });
 }
 
-void PlacementWatch::look_at_transmitter(std::size_t number, Notes& notes) const {
+void PlacementWatch::look_at_transmitter(std::size_t number, Record& record) const {
   const Device& device = simulator_.scene().transmitters()[number];
   const DeviceState state = simulator_.scene().device_state(device, *frame_);
   if (!state.present) return;
   const std::string subject = "transmitter " + in_quotes(device.id);
-  look_at_place(state.position_m, subject, notes);
+  look_at_place(state.position_m, subject, record);
   for (const Shell& shell : closed_shells(state)) {
     const double share = share_of_receivers_in(shell, {rooms_[number].begin(), rooms_[number].end()});
     if (share >= 0.5) continue;
-    notes.push_back(
-        {Problem::shut_in_alone, subject,
-         "is inside " + name_of(shell) + ", and " +
+    record.note(Problem::shut_in_alone, subject, 0.0, [&] {
+      return "is inside " + name_of(shell) + ", and " +
              (share > 0.0 ? "only " + format_fixed(100.0 * share, 0) + " % of the receivers are" : "no receiver is") +
-             " in there"});
+             " in there";
+    });
   }
 }
 
-void PlacementWatch::look_at_receiver(const Device& device, Notes& notes) const {
+void PlacementWatch::look_at_receiver(const Device& device, Record& record) const {
   const DeviceState state = simulator_.scene().device_state(device, *frame_);
   if (!state.present) return;
   const std::string subject = "receiver " + in_quotes(device.id);
-  look_at_place(state.position_m, subject, notes);
+  look_at_place(state.position_m, subject, record);
   for (const Shell& shell : closed_shells(state)) {
     if (all_rooms_.contains(shell)) continue;
-    notes.push_back({Problem::shut_in, subject, "is inside " + name_of(shell) + ", and no transmitter is in there"});
+    record.note(Problem::shut_in, subject, 0.0,
+                [&] { return "is inside " + name_of(shell) + ", and no transmitter is in there"; });
   }
 }
 
 /// Points of a grid may lie in houses; a grid that lies nowhere near anything is a mistake.
-void PlacementWatch::look_at_grid(const ReceiverGrid& grid, Notes& notes) const {
+void PlacementWatch::look_at_grid(const ReceiverGrid& grid, Record& record) const {
   const Vec3 first_m = grid_point_m(grid, 0, 0), last_m = grid_point_m(grid, grid.rows() - 1, grid.columns() - 1);
   const Vec3 nearest_m = glm::clamp(0.5 * (box_.min + box_.max), glm::min(first_m, last_m), glm::max(first_m, last_m));
-  look_at_place(nearest_m, "grid " + in_quotes(grid.id), notes);
+  look_at_place(nearest_m, "grid " + in_quotes(grid.id), record);
 }
 
-void PlacementWatch::look_at_object(BodyId body, Notes& notes) {
+void PlacementWatch::look_at_object(BodyId body, Record& record) {
   const Scene& scene = simulator_.scene();
   const BodyState& state = scene.body_state(body);
   if (!state.present || !middles_m_[body.value]) return houses_before_[body.value].reset();
   const Pose& pose = state.placement.pose;
   const Vec3 middle_m = pose.position_m + rotation_matrix(pose) * *middles_m_[body.value];
   const std::string subject = (scene.body(body).is_slot ? "vehicle " : "object ") + in_quotes(scene.body_name(body));
-  if (is_foliage(body)) return void(is_far(middle_m, subject, notes));  // all woods of a town are one object
-  const std::size_t noted = notes.size();
-  look_at_place(middle_m, subject, notes);
-  if (notes.size() == noted) look_at_way(body, middle_m, subject, notes);
+  if (is_foliage(body)) return void(is_far(middle_m, subject, record));  // all woods of a town are one object
+  look_at_place(middle_m, subject, record);
+  if (record.nothing_noted()) look_at_way(body, middle_m, subject, record);
 }
 
 /// Vehicles drive into no house. Other objects may be in one that waves pass, as people are; but who was outside in the
 /// frame before went through its wall.
-void PlacementWatch::look_at_way(BodyId body, const Vec3& middle_m, const std::string& subject, Notes& notes) {
+void PlacementWatch::look_at_way(BodyId body, const Vec3& middle_m, const std::string& subject, Record& record) {
   const Scene& scene = simulator_.scene();
   const bool moves = glm::length(scene.body_state(body).placement.velocity.linear_mps) >= moving_mps;
   std::vector<Shell> houses;
@@ -183,29 +232,18 @@ void PlacementWatch::look_at_way(BodyId body, const Vec3& middle_m, const std::s
     const bool is_house = at.body == BodyId{} && lets_through(shell) && !scene.body(body).is_slot;
     if (is_house) houses.push_back(shell);
     if (is_house || !moves || all_rooms_.contains(shell) || moves_along(body, at.body)) continue;
-    notes.push_back(
-        {Problem::drives_through, subject, "is with its middle inside " + name_of(shell) + "; is its way meant?"});
+    record.note(Problem::drives_through, subject, 0.0,
+                [&] { return "is with its middle inside " + name_of(shell) + "; is its way meant?"; });
   }
   std::optional<std::vector<Shell>>& before = houses_before_[body.value];
   std::vector<Shell> crossed;
   if (before) std::ranges::set_symmetric_difference(houses, *before, std::back_inserter(crossed));
   for (const Shell& shell : crossed) {
     if (all_rooms_.contains(shell)) continue;
-    notes.push_back(
-        {Problem::goes_through, subject, "goes through a wall of " + name_of(shell) + "; is its way meant?"});
+    record.note(Problem::goes_through, subject, 0.0,
+                [&] { return "goes through a wall of " + name_of(shell) + "; is its way meant?"; });
   }
   before = std::move(houses);
-}
-
-void PlacementWatch::take(Note&& note) {
-  const auto [number, is_new] = numbers_.try_emplace({note.problem, note.subject}, sightings_.size());
-  if (is_new) sightings_.push_back({note.problem, note.subject, note.detail, note.extent_m, {}});
-  Sighting& sighting = sightings_[number->second];
-  if (note.extent_m > sighting.extent_m) {
-    sighting.detail = std::move(note.detail);
-    sighting.extent_m = note.extent_m;
-  }
-  if (sighting.frames.empty() || sighting.frames.back() != frame_->index) sighting.frames.push_back(frame_->index);
 }
 
 /// Whether the scenery has a surface that a vehicle could stand on, or its underside, from a point in a direction.
@@ -344,13 +382,32 @@ std::string PlacementWatch::name_of(const Shell& shell) const {
   return "a closed part of the scenery" + of + why;
 }
 
+/// Each subject's problem once, in the order in which they were seen first.
+std::vector<PlacementWatch::Sighting> PlacementWatch::sightings() const {
+  std::vector<Sighting> all;
+  std::map<std::pair<Problem, std::string>, std::size_t> numbers;
+  const auto take = [&](const Sighting& sighting) {
+    const auto [number, is_new] = numbers.try_emplace({sighting.problem, sighting.subject}, all.size());
+    if (is_new) return all.push_back(sighting);
+    Sighting& known = all[number->second];
+    known.frames.add(sighting.frames);
+    if (sighting.extent_m <= known.extent_m) return;
+    known.extent_m = sighting.extent_m;
+    known.detail = sighting.detail;
+  };
+  for (const std::vector<Record>& of_kind : records_) {
+    for (const Record& record : of_kind) std::ranges::for_each(record.sightings(), take);
+  }
+  std::ranges::stable_sort(all, {}, [](const Sighting& sighting) { return sighting.frames.first(); });
+  return all;
+}
+
 std::vector<std::string> PlacementWatch::warnings() const {
   std::vector<std::string> lines;
   std::map<Problem, std::size_t> named;
-  for (const Sighting& sighting : sightings_) {
+  for (const Sighting& sighting : sightings()) {
     if (++named[sighting.problem] > most_named) continue;
-    lines.push_back(file_ + ": " + sighting.subject + " " + sighting.detail + " (" + frame_ranges(sighting.frames) +
-                    ")");
+    lines.push_back(file_ + ": " + sighting.subject + " " + sighting.detail + " (" + sighting.frames.words() + ")");
   }
   const std::map<Problem, const char*> words{
       {Problem::far_outside, "far outside the scenery"},   {Problem::under_ground, "under the ground"},
