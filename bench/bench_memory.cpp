@@ -3,7 +3,7 @@
 ///   bench_memory FILE.obj --mast X Y Z [--steps M...] [--cars N...] [--receivers N...] [--reflections N]
 ///                [--diffractions N] [--interactions N] [--frames N] [--warm N] [--within M] [--v2v] [--mast-step M]
 ///                [--threads N]
-///                [--processor-time]
+///                [--processor-time] [--series FILE]
 ///
 /// Receivers and cars drive straight through the streets of a city. Each frame is solved by two simulators in turns,
 /// one that remembers and one that does not, and both must say the same to the last bit: otherwise exit 1. One CSV row
@@ -14,8 +14,10 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,7 @@ struct Options {
   double within_m = 150.0, car_step_m = 1.0;
   std::optional<double> mast_step_m;
   bool between_vehicles = false, alone = false, processor_time = false;
+  std::string series;
   unsigned threads = 1;
 };
 
@@ -88,6 +91,16 @@ struct Contender {
   dcem::CacheCounters cache;
 };
 
+/// Each frame of both, appended: which of them are the longest.
+void write_series(const std::string& file, const DriveOrder& order, const Contender& off, const Contender& exact) {
+  std::ofstream out(file, std::ios::app);
+  for (std::size_t frame = 0; frame < exact.ms.size(); ++frame) {
+    out << order.step_m << ',' << order.cars << ',' << order.receivers << ',' << frame << ','
+        << (frame < off.ms.size() ? off.ms[frame] : 0.0) << ',' << exact.ms[frame] << '\n';
+  }
+  if (!out) throw std::runtime_error(file + ": cannot be written");
+}
+
 bool bench(const Options& options, const DriveOrder& order) {
   const dcem::Scene scene = dcem::bench::street_drive(order);
   Contender off(scene, options, CacheMode::off), exact(scene, options, CacheMode::exact);
@@ -112,6 +125,7 @@ bool bench(const Options& options, const DriveOrder& order) {
     same += dcem::bench::hash_of(own, 0) == dcem::bench::hash_of(expected, 0) ? 1 : 0;
     hash = dcem::bench::hash_of(expected, hash);
   }
+  if (!options.series.empty()) write_series(options.series, order, off, exact);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const auto frames = static_cast<double>(order.frames);
@@ -161,6 +175,7 @@ int main(int count, char** arguments) {
   app.add_option("--threads", options.threads, "of each simulator")->check(CLI::Range(1, 1024));
   app.add_flag("--alone", options.alone, "with memory alone, to look into: nothing is compared");
   app.add_flag("--processor-time", options.processor_time, "of all threads instead of that by the clock");
+  app.add_option("--series", options.series, "a file that each frame is appended to");
   app.add_flag("--v2v", options.between_vehicles, "the transmitter drives, too");
   app.add_option("--mast-step", options.mast_step_m,
                  "of a transmitter that drives, metres a frame; default: as receivers");
