@@ -12,6 +12,7 @@
 #include "dcem/core/build_mode.hpp"
 #include "dcem/core/thread_pool.hpp"
 #include "dcem/paths/halves/beam_finder.hpp"
+#include "dcem/paths/halves/facet_edges.hpp"
 
 namespace dcem {
 

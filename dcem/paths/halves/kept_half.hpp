@@ -68,6 +68,8 @@ class KeptHalf {
   /// Where it will be soon, and in how many frames; none where that is not known.
   std::shared_ptr<const Place> next_place() const { return next_ && next_->is_known() ? next_ : nullptr; }
   int frames_to_next() const { return frames_to_next_; }
+  /// What of that place is still to be worked out, in the steps that it is made in; 0: all is known, or there is none.
+  int steps_to_next() const { return next_ ? next_->steps_left() : 0; }
 
  private:
   void note(const LinkEnd& end, std::size_t receivers) {

@@ -89,20 +89,21 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
 DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
                                         const Vec3& step_m, const HalfSettings& settings) {
   constexpr int most_frames = 8;
-  const int steps_of_others = over_mirrors_ ? 12 : 2;  // so many as their pools have; of short ones fewer pay
+  const int steps_of_others = over_mirrors_ ? 14 : 6;  // as many as their pools have
   if (place_) {
     frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
   } else if (--frames_to_next_ <= 0 || !next_) {
     next_.reset();  // missed, or none
     // Meanwhile the device looks itself, through its mirrors, too, if places do.
-    frames_to_next_ = over_mirrors_ ? most_frames : most_frames / 2;
+    frames_to_next_ = most_frames;
   }
   if (frames_to_next_ > most_frames) return;
   if (!next_) {
     const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
     next_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m), over_mirrors_);
   }
-  const int all = next_->steps_left() + steps_of_others, now = (all + frames_to_next_) / (frames_to_next_ + 1);
+  const int all = next_->steps_left() + steps_of_others, frames = frames_to_next_ + 1,
+            now = (all + frames / 2) / frames;
   for (int step = 0; step < now && !next_->is_known(); ++step) next_->go_on(scene, outlines, settings);
 }
 

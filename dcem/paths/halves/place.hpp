@@ -98,7 +98,7 @@ class Place {
   PlaceBox box_;
   std::array<Vec3, 8> corners_m_;
   Sight sight_;
-  int steps_left_ = Sight::scenery_steps;
+  int steps_left_ = Sight::scenery_steps + 1;  ///< then mirrors
   SeenLayer scenery_;
   std::vector<HalfSpace> planes_;
   std::vector<PlaceMirror> mirrors_;

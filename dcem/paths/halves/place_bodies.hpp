@@ -36,13 +36,12 @@ DCEM_INLINE std::array<Vec3, 8> PlaceBox::corners_m() const {
 }
 
 DCEM_INLINE void Place::go_on(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings) {
-  const int later = beams_ ? beam_steps : 0, step = Sight::scenery_steps + later - steps_left_;
+  const int later = beams_ ? beam_steps : 0, step = Sight::scenery_steps + 1 + later - steps_left_;
   --steps_left_;
-  if (step >= Sight::scenery_steps) {
-    return look_through_mirrors(scene, outlines, settings, step - Sight::scenery_steps);
+  if (step < Sight::scenery_steps) return sight_.find_scenery_step(step, scene, outlines, settings, scenery_);
+  if (step > Sight::scenery_steps) {
+    return look_through_mirrors(scene, outlines, settings, step - Sight::scenery_steps - 1);
   }
-  sight_.find_scenery_step(step, scene, outlines, settings, scenery_);
-  if (steps_left_ > later) return;
   sight_.settle();
   take_mirrors(scene, outlines);
 }

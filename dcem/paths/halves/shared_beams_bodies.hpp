@@ -9,6 +9,7 @@
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/edge_parts.hpp"
+#include "dcem/paths/halves/facet_edges.hpp"
 #include "dcem/paths/halves/shared_beams.hpp"
 
 namespace dcem {

@@ -22,9 +22,6 @@ namespace dcem {
 
 class ThreadPool;
 
-/// The edges of some facets, ascending, each once.
-void collect_edges(const Scene& scene, std::span<const FacetId> facets, std::vector<WedgeId>& edges);
-
 /// What is the same for all halves.
 struct HalfSettings {
   bool edges = true;  ///< look for edges, too
@@ -85,10 +82,10 @@ class Sight {
   /// calling thread does.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer,
                     ThreadPool* pool = nullptr);
-  /// The same in so many steps, numbered from 0, one after the other.
-  static constexpr int scenery_steps = 3;
+  /// The same, looking all around, in so many steps of much the same length, numbered from 0, one after the other.
+  static constexpr int scenery_steps = 6;
   void find_scenery_step(int step, const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                         SeenLayer& layer, ThreadPool* pool = nullptr);
+                         SeenLayer& layer);
   /// The same of bodies, where they are now. The scenery must be known.
   void find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                    const BodyChoice& bodies, SeenLayer& layer) const;
@@ -174,8 +171,11 @@ class Sight {
   using FaceSpan = ViewMap::FaceSpan;
   void look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                        std::vector<FacetId>& seen, ThreadPool* pool);
+  void begin_looking(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings);
+  void look_at_face(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int face);
+  void gather_faces(std::vector<FacetId>& seen);
   void look_at_each_face(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                         std::vector<FacetId>& seen, ThreadPool* pool);
+                         ThreadPool* pool);
   /// On some faces of the map.
   void look_at_faces(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                      const FaceSpan& faces, std::vector<FacetId>& seen);

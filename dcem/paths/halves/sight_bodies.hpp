@@ -7,18 +7,10 @@
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/core/thread_pool.hpp"
+#include "dcem/paths/halves/facet_edges.hpp"
 #include "dcem/paths/halves/sight.hpp"
 
 namespace dcem {
-
-DCEM_INLINE void collect_edges(const Scene& scene, std::span<const FacetId> facets, std::vector<WedgeId>& edges) {
-  edges.clear();
-  for (const FacetId facet : facets) {
-    for (const WedgeId id : scene.wedges_of_facet(facet)) edges.push_back(id);
-  }
-  std::ranges::sort(edges);
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-}
 
 DCEM_INLINE void Sight::look_from(const LinkEnd& end, ThreadPool* pool) {
   if (pool == nullptr) {
@@ -92,6 +84,18 @@ DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& ou
 /// From one point face by face: each is looked at in one order of its own, however many threads there are.
 DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                         std::vector<FacetId>& seen, ThreadPool* pool) {
+  begin_looking(scene, outlines, settings);
+  if (map_.faces() == 1 || !map_.is_of_one_point()) {
+    look_at_faces(scene, outlines, settings, {}, seen);
+    if (pool != nullptr) map_.settle();
+  } else {
+    look_at_each_face(scene, outlines, settings, pool);
+    gather_faces(seen);
+  }
+  map_.forget_sheets();
+}
+
+DCEM_INLINE void Sight::begin_looking(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings) {
   seen_.assign(outlines.size(), 0);
   count_sheets(scene, settings, map_);
   reach_m_ = settings.reach_m + radius_m_ + in_reach_m;
@@ -99,30 +103,31 @@ DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines&
   outlines.for_each_grazed(position_m(), radius_m_, lift_share() / longest_lift_share, [&](FacetId id) {
     if (is_lifted_far(scene, outlines, id) && !is_out_of_view(outlines.of(id).box)) grazed_.push_back(id);
   });
-  if (map_.faces() == 1 || !map_.is_of_one_point()) {
-    look_at_faces(scene, outlines, settings, {}, seen);
-    if (pool != nullptr) map_.settle();
-  } else {
-    look_at_each_face(scene, outlines, settings, seen, pool);
-  }
-  map_.forget_sheets();
 }
 
 DCEM_INLINE void Sight::look_at_each_face(const Scene& scene, const FacetOutlines& outlines,
-                                          const HalfSettings& settings, std::vector<FacetId>& seen, ThreadPool* pool) {
-  const auto faces = static_cast<std::size_t>(map_.faces());
-  const auto look = [&](std::size_t number) {
-    const FaceSpan face{static_cast<int>(number), static_cast<int>(number) + 1};
-    found_[number].clear();
-    look_at_faces(scene, outlines, settings, face, found_[number]);
-    if (pool != nullptr) map_.settle(face);
-  };
+                                          const HalfSettings& settings, ThreadPool* pool) {
   if (pool == nullptr) {
-    for (std::size_t face = 0; face < faces; ++face) look(face);
-  } else {
-    pool->for_each(faces, [&](std::size_t face, unsigned) { look(face); });
+    for (int face = 0; face < map_.faces(); ++face) look_at_face(scene, outlines, settings, face);
+    return;
   }
-  for (std::size_t face = 0; face < faces; ++face) {
+  pool->for_each(static_cast<std::size_t>(map_.faces()), [&](std::size_t number, unsigned) {
+    const auto face = static_cast<int>(number);
+    look_at_face(scene, outlines, settings, face);
+    map_.settle({face, face + 1});
+  });
+}
+
+DCEM_INLINE void Sight::look_at_face(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                                     int face) {
+  std::vector<FacetId>& found = found_[static_cast<std::size_t>(face)];
+  found.clear();
+  look_at_faces(scene, outlines, settings, {face, face + 1}, found);
+}
+
+/// What the faces show, each facet once.
+DCEM_INLINE void Sight::gather_faces(std::vector<FacetId>& seen) {
+  for (std::size_t face = 0; face < static_cast<std::size_t>(map_.faces()); ++face) {
     const unsigned before = (1U << face) - 1U;
     for (const FacetId id : found_[face]) {
       if ((seen_[id.value] & before) == 0) seen.push_back(id);
@@ -166,17 +171,29 @@ DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& 
 
 DCEM_INLINE void Sight::find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                      SeenLayer& layer, ThreadPool* pool) {
-  for (int step = 0; step < scenery_steps; ++step) find_scenery_step(step, scene, outlines, settings, layer, pool);
+  layer.mirrors.clear();
+  look_at_scenery(scene, outlines, settings, layer.mirrors, pool);
+  look_closer(scene, outlines, settings, layer.mirrors, pool);
+  finish(scene, outlines, settings, layer, pool);
 }
 
+/// A face to each side, then those above and below.
 DCEM_INLINE void Sight::find_scenery_step(int step, const Scene& scene, const FacetOutlines& outlines,
-                                          const HalfSettings& settings, SeenLayer& layer, ThreadPool* pool) {
-  if (step == 0) {
+                                          const HalfSettings& settings, SeenLayer& layer) {
+  constexpr int last_look = scenery_steps - 2;
+  DCEM_ASSERT(map_.faces() == last_look + 2);
+  if (step == 0) begin_looking(scene, outlines, settings);
+  if (step < last_look) look_at_face(scene, outlines, settings, step);
+  if (step == last_look) {
+    look_at_face(scene, outlines, settings, step);
+    look_at_face(scene, outlines, settings, step + 1);
     layer.mirrors.clear();
-    look_at_scenery(scene, outlines, settings, layer.mirrors, pool);
+    gather_faces(layer.mirrors);
+    map_.forget_sheets();
   }
-  if (step == 1) look_closer(scene, outlines, settings, layer.mirrors, pool);
-  if (step == 2) finish(scene, outlines, settings, layer, pool);
+  if (step <= last_look) return;
+  look_closer(scene, outlines, settings, layer.mirrors, nullptr);
+  finish(scene, outlines, settings, layer);
 }
 
 DCEM_INLINE void Sight::find_bodies(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dcem/paths/halves/cone.hpp"
+#include "dcem/paths/halves/facet_edges.hpp"
 #include "dcem/paths/halves/place.hpp"
 #include "dcem/paths/lifetime/vague_scene.hpp"
 #include "dcem/paths/sequence.hpp"

@@ -94,7 +94,7 @@ class CandidatePool {
     edges_.fit();
   }
 
-  static constexpr int steps = 4;  ///< mirrors in three parts of them, then edges
+  static constexpr int steps = 6;  ///< mirrors in five parts of them, then edges
   std::shared_ptr<const Place> place_;
   const BeamLists& reached_;
   JoinOrders orders_;

@@ -1,0 +1,168 @@
+/// Places: what any point of one sees is known in it; and they are worked out a little in each frame.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "dcem/paths/halves/facet_edges.hpp"
+#include "dcem/paths/halves/kept_half.hpp"
+#include "tests/paths/small_scenes.hpp"
+
+namespace test_place {
+
+using namespace dcem;
+using namespace dcem::test;
+
+namespace {
+
+/// A ground and houses, some with a sheet before them.
+Scene houses(Draw& draw, int count) {
+  TriangleMesh mesh;
+  add_sheet(mesh, Vec3(0.0), Vec3(80, 0, 0), Vec3(0, 80, 0), "opaque");
+  for (int house = 0; house < count; ++house) {
+    const Vec3 low_m = draw.inside(Vec3(-70, -70, 0), Vec3(60, 60, 0.01));
+    add_box_faces(mesh, low_m, low_m + draw.inside(Vec3(3, 3, 3), Vec3(14, 14, 15)), "metal");
+    if (draw.below(3) != 0) continue;
+    add_sheet(mesh, low_m + Vec3(-1, 2, 2), Vec3(0, 2, 0), Vec3(0, 0, 2), draw.below(2) == 0 ? "glass" : "wall");
+  }
+  return scene_of(mesh);
+}
+
+PlaceBox somewhere(Draw& draw) {
+  const double turn_rad = draw.between(-pi, pi);
+  return {draw.inside(Vec3(-60, -60, 0.4), Vec3(60, 60, 12)),
+          {std::cos(turn_rad), std::sin(turn_rad), 0},
+          {draw.between(0.5, 3.0), draw.between(0.2, 0.6), draw.between(0.1, 0.3)}};
+}
+
+/// A point in a box, one in three in one of its faces.
+Vec3 inside_m(const PlaceBox& box, Draw& draw) {
+  Vec3 at = 0.99999 * draw.inside(Vec3(-1), Vec3(1));
+  if (draw.below(3) == 0) at[static_cast<int>(draw.below(3))] = draw.below(2) == 0 ? 0.99999 : -0.99999;
+  return box.middle_m + at.x * box.half_m.x * box.ahead + at.y * box.half_m.y * box.aside() +
+         Vec3(0, 0, at.z * box.half_m.z);
+}
+
+/// A device that drives straight on in an empty street.
+struct Drive {
+  Drive() : traced(street()), outlines(traced.scene) { half.keep_places(2.0, false); }
+
+  static Scene street() {
+    Draw draw(1);
+    return houses(draw, 1);
+  }
+  void go_on(double step_m) {
+    at_m += step_m;
+    half.update(traced.scene, outlines, traced.end(Vec3(at_m, 79, 1.5)), {});
+  }
+
+  TracedScene<> traced;
+  FacetOutlines outlines;
+  KeptHalf half;
+  double at_m = -70.0;
+};
+
+}  // namespace
+
+TEST_CASE("what any point of a place reaches is seen from the place, as a mirror and along its edges") {
+  Draw draw(3);
+  std::size_t mirrors = 0, edges = 0, not_seen = 0, lost = 0;
+  for (int round = 0; round < 12; ++round) {
+    TracedScene<> traced(houses(draw, 30));
+    const Scene& scene = traced.scene;
+    const FacetOutlines outlines(scene);
+    for (int turn = 0; turn < 4; ++turn) {
+      const Place place(scene, outlines, somewhere(draw), {});
+      const SeenLayer& known = place.scenery();
+      not_seen += outlines.size() - known.mirrors.size();
+      for (int point = 0; point < 2'000; ++point) {
+        const Vec3 from_m = inside_m(place.box(), draw);
+        const auto triangle = static_cast<std::uint32_t>(draw.below(scene.triangles().size()));
+        const FacetId facet = scene.facet_of_triangle(triangle);
+        const auto corners_m = scene.corners_m(triangle);
+        const double u = draw.between(0, 1), v = draw.between(0, 1 - u);
+        const Vec3 to_m = corners_m[0] + u * (corners_m[1] - corners_m[0]) + v * (corners_m[2] - corners_m[0]);
+        const LegEnd own{{&facet, 1}, {&scene.facet(facet).plane, nullptr}};
+        std::vector<Crossing> crossings;
+        if (!traced.tracer.follow_leg(from_m, to_m, {}, own, {}, 1000, crossings, traced.counters)) continue;
+        ++mirrors;
+        lost += std::ranges::binary_search(known.mirrors, facet) ? 0U : 1U;
+      }
+      for (int point = 0; point < 1'000; ++point) {
+        const Vec3 from_m = inside_m(place.box(), draw);
+        const WedgeId edge(static_cast<std::uint32_t>(draw.below(scene.wedges().size())));
+        const WorldWedge& wedge = scene.wedge(edge);
+        const Vec3 to_m = glm::mix(wedge.edge.start_m, wedge.edge.end_m, draw.between(0.01, 0.99));
+        if (!diffracts(wedge, EdgeRules{}) || !may_face(wedge.edge, from_m - wedge.edge.start_m)) continue;
+        const LegEnd own{wedge.facets, {&scene.facet(wedge.facets[0]).plane, &scene.facet(wedge.facets[1]).plane}};
+        std::vector<Crossing> crossings;
+        if (!traced.tracer.follow_leg(from_m, to_m, {}, own, {}, 1000, crossings, traced.counters)) continue;
+        ++edges;
+        lost += std::ranges::binary_search(known.edges, edge) ? 0U : 1U;
+      }
+    }
+  }
+  MESSAGE(mirrors << " points of mirrors and " << edges << " of edges reached, " << not_seen << " facets not seen");
+  CHECK(lost == 0);
+  CHECK(mirrors > 5'000);
+  CHECK(edges > 2'000);
+  CHECK(not_seen > 1'000);  // or nothing was tested
+}
+
+TEST_CASE("of a place that lies ahead no frame works out much, and it is known before it is needed") {
+  for (const double step_m : {0.14, 0.5, 1.0, 1.4}) {
+    CAPTURE(step_m);
+    Drive drive;
+    std::size_t places = 0, known_ahead = 0;
+    const Place* before = nullptr;
+    int most = 0;
+    for (int frame = 0; frame < static_cast<int>(60.0 / step_m); ++frame) {
+      const int left = drive.half.steps_to_next();
+      const bool was_known = drive.half.next_place() != nullptr;
+      drive.go_on(step_m);
+      const Place* now = drive.half.place().get();
+      if (now != before) {
+        ++places;
+        known_ahead += was_known ? 1U : 0U;
+        before = now;
+      } else if (frame > 1 && drive.half.steps_to_next() < left) {
+        most = std::max(most, left - drive.half.steps_to_next());
+      }
+    }
+    CHECK(places > 5);
+    CHECK(known_ahead == places);
+    CHECK(most > 0);
+    CHECK(most <= 3);  // of 7, and of 6 in which candidates are found
+  }
+}
+
+TEST_CASE("the edges of facets are those of each of them, in order, of few facets and of many") {
+  Draw draw(4);
+  const Scene scene = houses(draw, 300);
+  const std::size_t all = scene.facets().size();
+  std::size_t few = 0, many = 0;
+  for (int round = 0; round < 200; ++round) {
+    // Facets side by side, which share edges: a dozen of them, or many.
+    const std::size_t most = round % 2 == 0 ? 12 : all, count = 1 + draw.below(most),
+                      first = draw.below(all - count + 1);
+    std::vector<FacetId> facets;
+    for (std::size_t at = 0; at < count; ++at) facets.emplace_back(static_cast<std::uint32_t>(first + at));
+    std::set<WedgeId> expected;
+    for (const FacetId facet : facets) {
+      for (const WedgeId edge : scene.wedges_of_facet(facet)) expected.insert(edge);
+    }
+    std::vector<WedgeId> edges(3, WedgeId(0));  // what was there is forgotten
+    collect_edges(scene, facets, edges);
+    CHECK(std::ranges::equal(edges, expected));
+    (256 * facets.size() < scene.wedges().size() ? few : many) += edges.empty() ? 0U : 1U;
+  }
+  CHECK(few > 50);
+  CHECK(many > 50);
+}
+
+}  // namespace test_place
