@@ -96,9 +96,10 @@ class KeptHalf {
               const HalfSettings& settings);
 
   /// Works on the next place, so much in each frame that it is known, with time for what others prepare, when the
-  /// device comes into it.
+  /// device comes into it. Of a device that is in a place, and has time, few frames work on it, with as much as a look
+  /// from scratch takes, and not that in which it `enters` one: most frames do nothing of the kind.
   void prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m, const Vec3& step_m,
-                    const HalfSettings& settings);
+                    bool enters, const HalfSettings& settings);
 
   /// After how many frames a device that moves on like this is in a place no more: `most` + 1 where it is longer.
   static int frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most);

@@ -74,11 +74,12 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
   const auto is_in = [&](const auto& place) { return place && place->box().holds(end.position_m); };
   if (!is_in(place_)) place_.reset();
   // A device that hardly moves is in the place long before it is known: it comes into it when that is wanted.
-  if (!place_ && is_in(next_) && (!over_mirrors_ || frames_to_next_ <= 1)) {
+  const bool enters = !place_ && is_in(next_) && (!over_mirrors_ || frames_to_next_ <= 1);
+  if (enters) {
     while (!next_->is_known()) next_->go_on(scene, outlines, of_place);
     place_ = std::move(next_);
   }
-  prepare_next(scene, outlines, end.position_m, step_m, of_place);
+  prepare_next(scene, outlines, end.position_m, step_m, enters, of_place);
   is_closer_ = false;
   has_scenery_ = true;
   if (!place_) return half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, false));
@@ -87,8 +88,8 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
 }
 
 DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
-                                        const Vec3& step_m, const HalfSettings& settings) {
-  constexpr int most_frames = 8;
+                                        const Vec3& step_m, bool enters, const HalfSettings& settings) {
+  constexpr int most_frames = 8, steps_of_look = 3;
   const int steps_of_others = over_mirrors_ ? 14 : 6;  // as many as their pools have
   if (place_) {
     frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
@@ -102,8 +103,9 @@ DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines&
     const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
     next_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m), over_mirrors_);
   }
-  const int all = next_->steps_left() + steps_of_others, frames = frames_to_next_ + 1,
-            now = (all + frames / 2) / frames;
+  const int all = next_->steps_left() + steps_of_others, frames = frames_to_next_ + 1;
+  const int share = (all + frames / 2) / frames;
+  const int now = !place_ || share > 1 ? share : enters ? 0 : steps_of_look;
   for (int step = 0; step < now && !next_->is_known(); ++step) next_->go_on(scene, outlines, settings);
 }
 
