@@ -104,8 +104,8 @@ DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines&
     next_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m), over_mirrors_);
   }
   const int all = next_->steps_left() + steps_of_others, frames = frames_to_next_ + 1;
-  const int share = (all + frames / 2) / frames;
-  const int now = !place_ || share > 1 ? share : enters ? 0 : steps_of_look;
+  const int evenly = (all + frames / 2) / frames, soon = (all + frames - 1) / frames;
+  const int now = !place_ ? evenly : evenly > 1 ? soon : enters ? 0 : steps_of_look;
   for (int step = 0; step < now && !next_->is_known(); ++step) next_->go_on(scene, outlines, settings);
 }
 
