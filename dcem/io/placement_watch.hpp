@@ -73,7 +73,7 @@ class PlacementWatch {
   bool moves_along(BodyId one, BodyId other) const;
   double share_of_receivers_in(const Shell& shell, const std::set<Shell>& own) const;
   std::string name_of(const Shell& shell) const;
-  std::vector<Sighting> sightings() const;
+  std::vector<const Sighting*> sightings() const;
 
   std::string file_;
   const Simulator& simulator_;

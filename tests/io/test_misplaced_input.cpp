@@ -405,6 +405,8 @@ TEST_CASE("frames in words") {
   CHECK(runs({3, 4, 5}).words() == "frames 3 to 5");
   CHECK(runs({1, 3, 4}).words() == "frames 1 and 3 to 4");
   CHECK(runs({0, 2, 4, 6, 8, 10}).words() == "frames 0, 2, 4 and others, 6 in all");
+  CHECK(runs({5, 3}).words() == "frames 3 and 5");
+  CHECK(runs({5, 6, 5, 2, 3}).words() == "frames 2 to 3 and 5 to 6");
   io::FrameRuns both = runs({1, 2, 7});
   both.add(runs({0, 3, 9}));
   CHECK(both.words() == "frames 0 to 3, 7 and 9");

@@ -74,7 +74,7 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
   const auto is_in = [&](const auto& place) { return place && place->box().holds(end.position_m); };
   if (!is_in(place_)) place_.reset();
   // A device that hardly moves is in the place long before it is known: it comes into it when that is wanted.
-  const bool enters = !place_ && is_in(next_) && (!over_mirrors_ || frames_to_next_ <= 1);
+  const bool enters = !place_ && is_in(next_) && frames_to_next_ <= 1;
   if (enters) {
     while (!next_->is_known()) next_->go_on(scene, outlines, of_place);
     place_ = std::move(next_);
@@ -96,7 +96,7 @@ DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines&
   } else if (--frames_to_next_ <= 0 || !next_) {
     next_.reset();  // missed, or none
     // Meanwhile the device looks itself, through its mirrors, too, if places do.
-    frames_to_next_ = most_frames;
+    frames_to_next_ = over_mirrors_ ? most_frames : most_frames / 2;
   }
   if (frames_to_next_ > most_frames) return;
   if (!next_) {

@@ -83,7 +83,7 @@ class ViewMap {
     for (detail::SheetLayers& sheets : sheets_) sheets.count(crossed, pile_m);
   }
 
-  /// Notes a convex polygon, corners in order around it, that nothing passes. Of several points on all faces at once.
+  /// Notes a convex polygon, corners in order around it, that nothing passes. Of several points one thread does.
   void cover(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on = {});
   /// Notes a convex polygon of a sheet with a plane of its own. Sheets that a leg might count as one are one.
   void cover_sheet(std::span<const Vec3> corners_m, const Plane& plane, const Plane& sheet, const FaceSpan& on = {});

@@ -11,16 +11,18 @@ namespace dcem::io {
 /// Frames without the room of each: runs of neighbours, first and last, that ascend.
 class FrameRuns {
  public:
-  /// A frame that is the last one or comes after it.
   void add(std::size_t frame) {
-    if (!runs_.empty() && frame <= runs_.back().second + 1) {
+    if (runs_.empty() || frame > runs_.back().second + 1) {
+      runs_.emplace_back(frame, frame);
+    } else if (frame >= runs_.back().second) {
       runs_.back().second = frame;
     } else {
-      runs_.emplace_back(frame, frame);
+      FrameRuns earlier;
+      earlier.add(frame);
+      add(earlier);
     }
   }
 
-  /// Frames anywhere.
   void add(const FrameRuns& others) {
     runs_.insert(runs_.end(), others.runs_.begin(), others.runs_.end());
     std::ranges::sort(runs_);

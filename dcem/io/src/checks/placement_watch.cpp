@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <string_view>
+#include <unordered_map>
 
 #include "dcem/accel/wide_index.hpp"
 #include "dcem/core/thread_pool.hpp"
@@ -63,6 +66,14 @@ struct PlacementWatch::Sighting {
   std::string subject, detail;
   double extent_m = 0.0;  ///< the detail is that of the frame with the largest one
   FrameRuns frames;
+
+  /// The same of the same subject, in other frames.
+  void add(const Sighting& more) {
+    frames.add(more.frames);
+    if (more.extent_m <= extent_m) return;
+    extent_m = more.extent_m;
+    detail = more.detail;
+  }
 };
 
 /// What has been seen of one device, grid or object, by the thread that looks at it. A vehicle that has left is
@@ -382,40 +393,43 @@ std::string PlacementWatch::name_of(const Shell& shell) const {
   return "a closed part of the scenery" + of + why;
 }
 
-/// Each subject's problem once, in the order in which they were seen first.
-std::vector<PlacementWatch::Sighting> PlacementWatch::sightings() const {
-  std::vector<Sighting> all;
-  std::map<std::pair<Problem, std::string>, std::size_t> numbers;
-  const auto take = [&](const Sighting& sighting) {
-    const auto [number, is_new] = numbers.try_emplace({sighting.problem, sighting.subject}, all.size());
-    if (is_new) return all.push_back(sighting);
-    Sighting& known = all[number->second];
-    known.frames.add(sighting.frames);
-    if (sighting.extent_m <= known.extent_m) return;
-    known.extent_m = sighting.extent_m;
-    known.detail = sighting.detail;
-  };
+/// All that was seen, in the order in which it was seen first.
+std::vector<const PlacementWatch::Sighting*> PlacementWatch::sightings() const {
+  std::vector<const Sighting*> all;
   for (const std::vector<Record>& of_kind : records_) {
-    for (const Record& record : of_kind) std::ranges::for_each(record.sightings(), take);
+    for (const Record& record : of_kind) {
+      for (const Sighting& sighting : record.sightings()) all.push_back(&sighting);
+    }
   }
-  std::ranges::stable_sort(all, {}, [](const Sighting& sighting) { return sighting.frames.first(); });
+  std::ranges::stable_sort(all, {}, [](const Sighting* sighting) { return sighting->frames.first(); });
   return all;
 }
 
 std::vector<std::string> PlacementWatch::warnings() const {
+  constexpr std::size_t not_named = std::numeric_limits<std::size_t>::max();
+  std::vector<Sighting> named;
+  std::map<Problem, std::unordered_map<std::string_view, std::size_t>> subjects;  // … and which of `named` each is
+  for (const Sighting* sighting : sightings()) {
+    auto& alike = subjects[sighting->problem];
+    const auto [subject, is_new] = alike.try_emplace(sighting->subject, not_named);
+    if (is_new && alike.size() <= most_named) {
+      subject->second = named.size();
+      named.push_back(*sighting);
+    } else if (subject->second != not_named) {
+      named[subject->second].add(*sighting);
+    }
+  }
   std::vector<std::string> lines;
-  std::map<Problem, std::size_t> named;
-  for (const Sighting& sighting : sightings()) {
-    if (++named[sighting.problem] > most_named) continue;
+  for (const Sighting& sighting : named) {
     lines.push_back(file_ + ": " + sighting.subject + " " + sighting.detail + " (" + sighting.frames.words() + ")");
   }
   const std::map<Problem, const char*> words{
       {Problem::far_outside, "far outside the scenery"},   {Problem::under_ground, "under the ground"},
       {Problem::shut_in, "shut in without a transmitter"}, {Problem::shut_in_alone, "shut in without a receiver"},
       {Problem::drives_through, "inside of something"},    {Problem::goes_through, "led through walls"}};
-  for (const auto& entry : named) {
-    if (entry.second <= most_named) continue;
-    lines.push_back(file_ + ": " + std::to_string(entry.second - most_named) + " more are " + words.at(entry.first));
+  for (const auto& [problem, alike] : subjects) {
+    if (alike.size() <= most_named) continue;
+    lines.push_back(file_ + ": " + std::to_string(alike.size() - most_named) + " more are " + words.at(problem));
   }
   return lines;
 }
