@@ -79,14 +79,15 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
   const bool over_mirrors = search.max_reflections >= 1 && search.max_interactions >= 2;
   const HalfLists of_all{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors,
                          fine || (triples && (receivers > 0 || change_)), receivers, pool_.get()};
-  const bool has_choice = !choice_.takes_all() && halves.data() == halves_.data();
+  const bool are_followed = halves.data() == halves_.data();
+  const bool has_choice = !choice_.takes_all() && are_followed;
   const auto update = [&](std::size_t index, unsigned) {
     HalfLists lists = of_all;
     if (has_choice) lists.receivers = std::min(receivers, links_of_[index]);
     if (!ends.link[index]) return halves[index].forget();
     if (has_choice && links_of_[index] == 0) return halves[index].forget_bodies();
     halves[index].update(scene_, *outlines_, *ends.link[index], half_settings(search), lists,
-                         change_ && &halves[index] == &halves_[index] ? change_->moved() : std::span<const char>{});
+                         change_ && are_followed ? change_->moved() : std::span<const char>{});
   };
   pool_->for_each(ends.link.size(), update);  // of a few, all threads share the lists
   ends.halves = HalfRefs(halves);
