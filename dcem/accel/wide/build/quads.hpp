@@ -44,8 +44,9 @@ struct EdgePair {
     const double sum = glm::dot(normal, normal), least = 1e-3 * sum;
     const double at_first = -glm::dot(normal, first_normal), at_second = glm::dot(normal, second_normal);
     const double at_end = glm::dot(normal, glm::cross(along_m - first_m, second_m - along_m));
-    // Two triangles that lie on each other have normals that cancel.
-    return least > 0.0 && at_first >= least && at_second >= least && at_end >= least && sum - at_end >= least;
+    // Two triangles on one side of the edge lie on each other: their normals cancel, but for rounding.
+    const bool on_both_sides = glm::dot(first_normal, second_normal) < 0.0;
+    return on_both_sides && at_first >= least && at_second >= least && at_end >= least && sum - at_end >= least;
   }
 };
 
