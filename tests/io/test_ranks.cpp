@@ -20,8 +20,11 @@ namespace {
 const std::string town = DCEM_DATA_DIR "/town_drive.json";
 
 /// As root, and with more processes than cores: in containers there is no other way.
+/// Open MPI unloads its plugins before a process ends: no name is left by which a leak sanitizer could be told to leave
+/// out what they keep. Other tests look for leaks of the same code.
 const std::string mpirun =
-    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe --quiet -n ";
+    "ASAN_OPTIONS=\"$ASAN_OPTIONS:detect_leaks=0\" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+    "mpirun --oversubscribe --quiet -n ";
 
 Outcome on_ranks(const TemporaryFolder& folder, int ranks, const std::string& arguments) {
   return shell_line(folder, mpirun + std::to_string(ranks) + ' ' + quoted(DCEM_PROGRAM) + ' ' + arguments);
