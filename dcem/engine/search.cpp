@@ -20,6 +20,7 @@
 #include "dcem/paths/lifetime/facet_rims_bodies.hpp"
 #include "dcem/paths/memory/triple_pool_bodies.hpp"
 #include "dcem/paths/solve/face_leg_bodies.hpp"
+#include "dcem/paths/visible/shades_bodies.hpp"
 #include "dcem/sim/detail/gather_links_bodies.hpp"
 #include "dcem/sim/detail/material_table_of_bodies.hpp"
 #include "dcem/sim/discovery_bodies.hpp"

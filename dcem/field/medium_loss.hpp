@@ -33,9 +33,15 @@ class MediumLoss {
     return path.foliage.empty() ? after_air : Complex(db_to_amplitude_ratio(-foliage_loss_db(path))) * after_air;
   }
 
+  /// Whether a path is weakened in foliage of a material.
+  bool takes_of(MaterialId foliage) const { return foliage_db_per_m_[foliage.value] > 0.0; }
+
+  /// Whether a path keeps all of its power in air and foliage.
+  bool takes_nothing_of(const Path& path) const { return air_.is_lossless() && path.foliage.empty(); }
+
   /// The power factor of a wave without a fixed polarization: the mean of both ends' in air, and the foliage's.
   double unpolarized_power(const Path& path, const Direction& departure, const Direction& arrival) const {
-    if (air_.is_lossless() && path.foliage.empty()) return 1.0;
+    if (takes_nothing_of(path)) return 1.0;
     const double sent = air_.unpolarized_power(path.length_m, 0.5 * pi - departure.zenith_rad);
     const double received = air_.unpolarized_power(path.length_m, 0.5 * pi - arrival.zenith_rad);
     return std::sqrt(sent * received) * db_to_power_ratio(-foliage_loss_db(path));

@@ -141,7 +141,7 @@ class BasicSimulator {
   void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
   void find_transmitter_halves(TransmitterEnds& ends, std::size_t receivers, std::span<KeptHalf> halves,
                                bool fine) const;
-  void find_facets_in_view(TransmitterEnds& ends) const;
+  void look_at_surfaces(TransmitterEnds& ends) const;
   /// Whether views of the scene are made, from either end.
   bool looks() const { return plan_.joined > 0 || settings_.propagation.diffuse.enabled; }
   /// Room for what receivers see, one per thread; empty where no views are made.
@@ -167,12 +167,11 @@ class BasicSimulator {
   /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
   Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
                         PathCache* cache, const Proposals& proposals) const;
-  /// The facets that a receiver may see, where diffuse power is asked for.
-  std::vector<FacetId> facets_seen_from(const Device& receiver, const LinkEnd& end, const TransmitterEnds& transmitters,
-                                        ReceiverRoom* room) const;
-  /// What rough surfaces bring from a transmitter to a receiver that sees these facets; nothing where it is not asked
-  /// for.
-  DiffusePower diffuse_power(const Device& receiver, const DeviceEnd& end, std::span<const FacetId> seen,
+  /// What a receiver sees of surfaces, where diffuse power is asked for.
+  std::shared_ptr<const SurfaceView> surfaces_seen_from(const Device& receiver, const LinkEnd& end,
+                                                        const TransmitterEnds& transmitters, ReceiverRoom* room) const;
+  /// What rough surfaces bring from a transmitter to a receiver with this view; nothing where it is not asked for.
+  DiffusePower diffuse_power(const Device& receiver, const DeviceEnd& end, const SurfaceView* view,
                              const TransmitterEnds& transmitters, std::size_t transmitter, WorkCounters& work) const;
   LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const DeviceEnd& from,
                        const DeviceEnd& to, const Evaluator& evaluator) const;

@@ -55,7 +55,7 @@ FrameResult frame_of(std::size_t index) {
   frame.tree.rebuilt_in_place = 5;
   frame.cache.died = 6;
   LinkResult link{1, index, true, {path_with_everything(1.5), path_with_everything(2.5)}, {}, {}};
-  link.diffuse.tiles = {{{0.5, 1e-8, 3.0, {1, 2}, {3, 4}}, {7, 8}, 12, 13, {{}, 2.0, {}}}};
+  link.diffuse.tiles = {{{0.5, 1e-8, 3.0, {1, 2}, {3, 4}}, {7, 8}, 12, 13, {{}, 2.0, {}}, 0.75}};
   link.diffuse.residual_ratio = 0.01;
   link.diffuse.traversal.primitives_tested = 4;
   link.diffuse.converged = false;
@@ -142,6 +142,7 @@ TEST_CASE("frames come back as they were, to the last bit") {
   CHECK(path.channel.rows() == 2);
   CHECK(path.channel(1, 2) == Complex(5, 6));
   CHECK(frame.links[0].diffuse.tiles.at(0).place == 13);
+  CHECK(frame.links[0].diffuse.tiles.at(0).area_m2 == 0.75);
   CHECK(frame.links[0].statistics.rms_doppler_spread_hz.has_value());
   CHECK_FALSE(frame.links[0].statistics.power_dbm.has_value());
 }

@@ -1,18 +1,17 @@
 #pragma once
-/// Integrals over triangles by tiles that are halved where it pays, the worst first.
+/// Integrals over the visible parts of triangles, by tiles that are halved where it pays, the worst first.
 ///
-/// A tile's value is the integrand at its centroid times its area. A tile that is halved across its longest edge shows
-/// by the difference between its value and the sum of its halves how wrong they may still be. As the centroid rule
-/// errs by the square of a tile's size, and half a tile has √½ of the size, that difference is about the halves' own
-/// error. Two things could deceive it. A cut along a direction in which the integrand does not change shows nothing of
-/// the other one: so what differences have shown of a tile falls by no more than a factor of 4 from a tile to its half.
-/// And an integrand may be zero, or alike, wherever one looked: so there is a doubt, which begins with a bound of the
-/// integrand and falls by no more than a factor of 8 at a time. The estimate is the larger of the two. A tile that is
-/// too large to show a peak of the integrand may be wrong by all of that bound.
+/// What is visible is known to its edges before anything is integrated: a triangle is asked for its visible parts, or,
+/// where it has too many, halved and asked again. On a part the integrand is smooth, and seven points give it to the
+/// fifth degree. The centroid and three of the seven give it to the second: the difference is what the tile may be
+/// wrong by. It says more than it has to, as the seven are better than the four. As it may be small by chance, a
+/// tile's half counts with no less than a sixteenth of what the halves differed from the whole. A tile that is too
+/// large to show a peak of the integrand may be wrong by all of its bound. Where the integrand is not smooth it may be
+/// zero, or alike, wherever one looked: so there is a doubt, which begins with an eighth of the bound and falls by
+/// no more than a factor of 8 from a tile to its half.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -21,73 +20,65 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/geometry/triangle.hpp"
+#include "dcem/field/diffuse/tile.hpp"
 
 namespace dcem {
 
 struct TileSettings {
   double tolerance = 0.02;                                          ///< of the sum, relative, above 0
   double longest_edge_m = std::numeric_limits<double>::infinity();  ///< larger tiles are halved unseen, above 0
-  std::size_t budget = 20'000;                                      ///< tiles that may be evaluated and are not 0
+  std::size_t budget = 20'000;                                      ///< tiles that may be evaluated
 };
 
-/// One triangle of the domain, or a part of it.
-struct Tile {
-  TriangleCorners corners_m{};
-  std::uint32_t source = 0;  ///< of the caller: which triangle
-  std::uint64_t place = 1;   ///< which part of it: 1 is the whole, 2p and 2p + 1 are the halves of p, modulo 2^64
-  double bound = 0.0;        ///< no less than the value can be
-  double value = 0.0;
-  double error = 0.0;  ///< estimate
-  double shown = 0.0;  ///< what differences have shown of it
-  double doubt = 0.0;  ///< what of it nobody has looked for
-  bool is_evaluated = false;
-  bool is_halved = false;  ///< its halves stand for it
-
-  Vec3 centroid_m() const { return (corners_m[0] + corners_m[1] + corners_m[2]) / 3.0; }
-  /// The farthest corner's distance from the centroid.
-  double radius_m() const {
-    const Vec3 centre_m = centroid_m();
-    return std::max({glm::distance(centre_m, corners_m[0]), glm::distance(centre_m, corners_m[1]),
-                     glm::distance(centre_m, corners_m[2])});
-  }
-  double area_m2() const {
-    return 0.5 * glm::length(glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]));
-  }
-};
-
-/// `Integrand` has `double bound(const Tile&)`, an upper bound of the tile's integral; `double resolution_m(const
-/// Tile&)`, the longest edge of a tile that shows what the integrand does there; and `double evaluate(const Tile&,
-/// std::size_t index)`, its integrand at the centroid times its area, where `index` is the tile's place in `tiles()`.
-/// None is negative. It may have `double tight_bound(const Tile&)`, a lower bound from above that costs more: it is
-/// asked for right after the tile has been evaluated, so that it may use what was found there. The same domain in the
-/// same order gives the same bits.
+/// `Integrand` has `double limit_per_m2(const Tile&)`, an upper bound of the integrand on the tile; `double
+/// resolution_m(const Tile&)`, the longest edge of a tile that shows what the integrand does there; `bool
+/// visit_parts(const Tile&, visit)`, which calls `visit(corners, part)` for the visible parts of a piece, convex
+/// polygons without common points and a number each, or returns false where it is to be halved first; and `double
+/// density(const Tile&, const Vec3& point_m)`, its value at a visible point. None is negative. It may have `bool
+/// is_smooth(const Tile&)`; without, it is smooth on all visible parts. The same domain in the same order gives the
+/// same bits.
 template <typename Integrand>
 class AdaptiveTiles {
  public:
   AdaptiveTiles(const TileSettings& settings, Integrand& integrand) : settings_(settings), integrand_(integrand) {}
 
   /// Adds a triangle to the domain.
-  void add(const TriangleCorners& corners_m, std::uint32_t source) { append({corners_m, source}); }
+  void add(const TriangleCorners& corners_m, std::uint32_t source) {
+    Tile tile{corners_m, source};
+    append(tile);
+  }
 
   /// Evaluates and halves tiles until the errors add up to no more than the tolerance allows, or the budget is spent.
   void refine() {
-    const std::size_t most_tiles = tiles_.size() + 4 * settings_.budget;  // those that are halved unseen cost, too
+    const std::size_t most_tiles = tiles_.size() + 8 * settings_.budget;  // what is not evaluated costs, too
     recount();
     while (!queue_.empty() && evaluated_ < settings_.budget && tiles_.size() < most_tiles &&
            error_ > settings_.tolerance * total_) {
       const std::size_t worst = queue_.top().second;
       queue_.pop();
+      error_ -= tiles_[worst].error;
       improve(worst);
       if (error_ < 1e-3 * error_at_recount_) recount();
     }
   }
 
   std::span<const Tile> tiles() const { return tiles_; }
-  /// How many were evaluated, without those of which the tight bound was 0.
   std::size_t evaluated() const { return evaluated_; }
 
-  /// The sum over all tiles that no halves stand for, in their order.
+  /// Calls `visit(tile, point_m, area_m2, density)` for the points that the sum is made of.
+  template <typename Visit>
+  void for_each_point(Visit&& visit) const {
+    for (const Tile& tile : tiles_) {
+      if (tile.state != Tile::State::evaluated) continue;
+      const auto points_m = TileRule::points_m(tile.corners_m);
+      const double area_m2 = tile.area_m2();
+      for (std::size_t point = 0; point < TileRule::points; ++point) {
+        visit(tile, points_m[point], TileRule::weight(point) * area_m2, values_[tile.values][point]);
+      }
+    }
+  }
+
+  /// The sum over all tiles that no others stand for, in their order.
   double total() const {
     return sum([](const Tile& tile) { return tile.value; });
   }
@@ -100,7 +91,7 @@ class AdaptiveTiles {
   template <typename Quantity>
   double sum(Quantity&& quantity) const {
     double sum = 0.0;
-    for (const Tile& tile : tiles_) sum += tile.is_halved ? 0.0 : quantity(tile);
+    for (const Tile& tile : tiles_) sum += tile.state == Tile::State::replaced ? 0.0 : quantity(tile);
     return sum;
   }
 
@@ -110,100 +101,110 @@ class AdaptiveTiles {
     total_ = total();
   }
 
-  std::size_t append(Tile tile) {
-    tile.bound = integrand_.bound(tile);
-    tile.error = tile.doubt = tile.bound;
-    tiles_.push_back(tile);
-    enter(tiles_.size() - 1);
-    return tiles_.size() - 1;
+  void append(Tile& tile) {
+    tile.limit_per_m2 = integrand_.limit_per_m2(tile);
+    tile.error = tile.bound();
+    enter(tile);
   }
 
-  void enter(std::size_t index) {
+  void enter(const Tile& tile) {
+    tiles_.push_back(tile);
+    wait(tiles_.size() - 1);
+  }
+  void wait(std::size_t index) {
     error_ += tiles_[index].error;
     if (tiles_[index].error > 0.0) queue_.emplace(tiles_[index].error, index);
   }
 
   void improve(std::size_t index) {
-    error_ -= tiles_[index].error;
-    if (longest_edge_m(tiles_[index]) > settings_.longest_edge_m) return halve_unseen(index);
-    if (tiles_[index].is_evaluated) return halve(index);
-    evaluate(index);
-    tiles_[index].doubt = std::max(tiles_[index].value, tiles_[index].bound / slowest_decay);
-    estimate(tiles_[index]);
-    enter(index);
+    const Tile tile = tiles_[index];
+    const double edge_m = tile.longest_edge_m();
+    if (edge_m > settings_.longest_edge_m) return halve_unseen(index);
+    if (tile.state == Tile::State::unseen) return look(index);
+    if (tile.state == Tile::State::evaluated) return halve(index);
+    if (edge_m > integrand_.resolution_m(tile)) return halve_unseen(index);
+    evaluate(tiles_[index]);
+    const double doubt = std::max(tiles_[index].value, tiles_[index].bound() / slowest_decay);
+    estimate(tiles_[index], 0.0, doubt);
+    wait(index);
   }
 
-  void estimate(Tile& tile) const {
-    const bool coarse = longest_edge_m(tile) > integrand_.resolution_m(tile);
-    tile.error = std::min(tile.bound, coarse ? tile.bound : std::max(tile.shown, tile.doubt));
+  /// Puts its visible parts in the place of a piece.
+  void look(std::size_t index) {
+    const Tile piece = tiles_[index];
+    const bool are_found = integrand_.visit_parts(piece, [&](std::span<const Vec3> corners_m, std::uint32_t part) {
+      for (std::size_t corner = 1; corner + 1 < corners_m.size(); ++corner) {
+        Tile tile = piece;
+        tile.corners_m = {corners_m[0], corners_m[corner], corners_m[corner + 1]};
+        tile.part = part;
+        tile.state = Tile::State::visible;
+        tile.is_piece = tile.corners_m == piece.corners_m;
+        append(tile);
+      }
+    });
+    if (!are_found) return halve_unseen(index);
+    tiles_[index].state = Tile::State::replaced;
   }
 
-  void evaluate(std::size_t index) {
-    tiles_[index].is_evaluated = true;
-    if (tiles_[index].bound == 0.0) return;
-    Tile& tile = tiles_[index];
-    tile.value = integrand_.evaluate(tile, index);
+  void evaluate(Tile& tile) {
+    const auto points_m = TileRule::points_m(tile.corners_m);
+    std::array<double, TileRule::points> values;
+    for (std::size_t point = 0; point < TileRule::points; ++point) {
+      values[point] = integrand_.density(tile, points_m[point]);
+    }
+    const double near_corners = values[1] + values[2] + values[3], near_edges = values[4] + values[5] + values[6];
+    const double area_m2 = tile.area_m2();
+    tile.value = area_m2 * (TileRule::of_centroid * values[0] + TileRule::of_near_corner * near_corners +
+                            TileRule::of_near_edge * near_edges);
+    const double lower = area_m2 * (TileRule::lower_centroid * values[0] + TileRule::lower_near_corner * near_corners);
+    tile.error = std::abs(tile.value - lower);
+    tile.state = Tile::State::evaluated;
+    tile.values = static_cast<std::uint32_t>(values_.size());
+    values_.push_back(values);
     total_ += tile.value;
-    if constexpr (has_tight_bound) tile.bound = std::min(tile.bound, integrand_.tight_bound(tile));
-    if (tile.bound > 0.0) ++evaluated_;
+    ++evaluated_;
   }
 
   void halve_unseen(std::size_t index) {
-    tiles_[index].is_halved = true;
-    for (const Tile& half : halves(tiles_[index])) append(half);
+    std::array<Tile, 2> halves = tiles_[index].halves();
+    tiles_[index].state = Tile::State::replaced;
+    for (Tile& half : halves) append(half);
   }
 
   void halve(std::size_t index) {
     const Tile whole = tiles_[index];
-    tiles_[index].is_halved = true;
     total_ -= whole.value;
-    const std::size_t first = tiles_.size();
-    double bounds = 0.0, values = 0.0;
-    for (Tile half : halves(whole)) {
-      half.bound = integrand_.bound(half);
-      tiles_.push_back(half);
-      evaluate(tiles_.size() - 1);
-      bounds += tiles_.back().bound;
-      values += tiles_.back().value;
+    tiles_[index].state = Tile::State::replaced;
+    std::array<Tile, 2> halves = whole.halves();
+    for (Tile& half : halves) {
+      half.limit_per_m2 = integrand_.limit_per_m2(half);
+      evaluate(half);
     }
-    const double difference = std::abs(whole.value - values);
-    for (std::size_t half = first; half < tiles_.size(); ++half) {
-      const double share = bounds > 0.0 ? tiles_[half].bound / bounds : 0.5;
-      tiles_[half].shown = std::max(0.5 * difference, 0.25 * whole.shown);
-      tiles_[half].doubt = 2.0 * share * whole.doubt / slowest_decay;
-      estimate(tiles_[half]);
+    const double least = least_share_shown * std::abs(whole.value - halves[0].value - halves[1].value);
+    const double bounds = halves[0].bound() + halves[1].bound();
+    for (Tile& half : halves) {
+      const double share = bounds > 0.0 ? half.bound() / bounds : 0.5;
+      estimate(half, least, 2.0 * share * whole.doubt / slowest_decay);
       enter(half);
     }
   }
 
-  static double longest_edge_m(const Tile& tile) {
-    const auto& [a, b, c] = tile.corners_m;
-    return std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+  /// The error of a tile that has been evaluated, no less than `least`; `doubt`: what of it nobody has looked for,
+  /// unless it is smooth.
+  void estimate(Tile& tile, double least, double doubt) const {
+    bool is_smooth = true;
+    if constexpr (requires { integrand_.is_smooth(tile); }) is_smooth = integrand_.is_smooth(tile);
+    tile.doubt = is_smooth ? 0.0 : doubt;
+    tile.error = std::min(tile.bound(), std::max({tile.error, least, tile.doubt}));
   }
 
-  static std::array<Tile, 2> halves(const Tile& tile) {
-    const auto& corners = tile.corners_m;
-    std::size_t longest = 0;  // the edge from corner `longest` to the next one
-    double longest_m = 0.0;
-    for (std::size_t edge = 0; edge < 3; ++edge) {
-      const double length_m = glm::distance(corners[edge], corners[(edge + 1) % 3]);
-      // Of edges that are as long as each other the first, however they are turned.
-      if (length_m > longest_m * (1.0 + 1e-9)) longest = edge, longest_m = length_m;
-    }
-    const Vec3 &from = corners[longest], &to = corners[(longest + 1) % 3], &across = corners[(longest + 2) % 3];
-    const Vec3 middle = 0.5 * (from + to);
-    return {Tile{{from, middle, across}, tile.source, 2 * tile.place},
-            Tile{{middle, to, across}, tile.source, 2 * tile.place + 1}};
-  }
-
+  static constexpr double least_share_shown = 1.0 / 16.0;
   static constexpr double slowest_decay = 8.0;
-  static constexpr bool has_tight_bound = requires(Integrand & integrand, const Tile& tile) {
-    { integrand.tight_bound(tile) } -> std::convertible_to<double>;
-  };
 
   TileSettings settings_;
   Integrand& integrand_;
   std::vector<Tile> tiles_;
+  std::vector<std::array<double, TileRule::points>> values_;
   std::priority_queue<std::pair<double, std::size_t>> queue_;  ///< by error, then index
   std::size_t evaluated_ = 0;
   double total_ = 0.0, error_ = 0.0, error_at_recount_ = 0.0;

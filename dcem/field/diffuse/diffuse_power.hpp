@@ -1,8 +1,9 @@
 #pragma once
-/// Diffuse power of a link: the scattering surfaces in tiles, refined until their sum has converged.
+/// Diffuse power of a link: the visible parts of scattering surfaces in tiles, refined until their sum has converged.
 ///
 /// One bounce only: what is scattered and then reflected, diffracted or scattered again is left out. Tiles are refined
-/// by what they bring to the link, visibility included; nothing is remembered from link to link or frame to frame.
+/// by what they bring to the link; nothing is remembered from frame to frame, and what a transmitter sees of a surface
+/// is worked out once for all receivers of a frame.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -16,9 +17,12 @@
 #include "dcem/field/diffuse/adaptive_tiles.hpp"
 #include "dcem/field/diffuse/diffuse_contribution.hpp"
 #include "dcem/field/diffuse/diffuse_settings.hpp"
+#include "dcem/field/diffuse/scatter_ways.hpp"
 #include "dcem/field/diffuse/scattered_power.hpp"
-#include "dcem/field/diffuse/tile_sight.hpp"
-#include "dcem/paths/solve/scatter_solver.hpp"
+#include "dcem/paths/halves/in_both.hpp"
+#include "dcem/paths/visible/may_scatter.hpp"
+#include "dcem/paths/visible/surface_view.hpp"
+#include "dcem/paths/visible/visible_parts.hpp"
 
 namespace dcem {
 
@@ -27,6 +31,16 @@ struct DiffuseKey {
   std::uint64_t seed = 1;
   std::string_view transmitter, receiver;
 };
+
+/// One end of a link whose diffuse power is summed.
+template <typename View>
+struct DiffuseEnd {
+  const LinkEnd& link;
+  const RadioEnd& radio;
+  View& view;
+};
+using DiffuseTransmitter = DiffuseEnd<LitSurfaces>;
+using DiffuseReceiver = DiffuseEnd<const SurfaceView>;
 
 /// Computes links one after the other; one per thread. Everything named must outlive it.
 template <typename Index, SurfaceModel Surface, PathLossModel Loss>
@@ -38,79 +52,113 @@ class DiffuseIntegral {
         scene_(tracer.scene()),
         scattered_(scattered),
         settings_(settings),
-        max_transmissions_(static_cast<std::size_t>(max_transmissions)),
-        solver_(tracer, max_transmissions) {}
+        finder_(tracer, max_transmissions) {}
 
-  /// `facets`: those that both ends may see, ascending; nothing else is looked at.
-  DiffusePower evaluate(const LinkEnd& transmitter, const RadioEnd& from, const LinkEnd& receiver, const RadioEnd& to,
-                        std::span<const FacetId> facets, const DiffuseKey& key) {
-    Integrand integrand{*this, transmitter, from, receiver, to, TileSight<Index>(tracer_, transmitter, receiver)};
+  /// Nothing is looked at but the facets that both ends may see.
+  DiffusePower evaluate(const DiffuseTransmitter& transmitter, const DiffuseReceiver& receiver, const DiffuseKey& key) {
+    Integrand integrand{*this, transmitter, receiver, ScatterWays(scene_, transmitter.link, receiver.link)};
     AdaptiveTiles<Integrand> tiles(
         {relative_tolerance(), settings_.tile_max_m.value_or(std::numeric_limits<double>::infinity()),
          settings_.tile_budget},
         integrand);
-    const SolverCounters before = solver_.counters();
-    for (const FacetId facet : facets) {
-      if (solver_.may_scatter(transmitter, receiver, facet)) add_facet(tiles, facet);
-    }
+    const std::span<const FacetId> lit(transmitter.view.view.facets), seen(receiver.view.facets);
+    for_each_in_both(lit, seen, [&](std::size_t place) {
+      if (may_scatter(scene_, transmitter.link, receiver.link, lit[place])) add_facet(tiles, lit[place]);
+    });
     tiles.refine();
-    DiffusePower result = collect(tiles, integrand, key);
-    result.legs = solver_.counters().legs - before.legs;
-    result.traversal = integrand.traversal;
-    result.traversal.nodes_visited += solver_.counters().traversal.nodes_visited - before.traversal.nodes_visited;
-    result.traversal.primitives_tested +=
-        solver_.counters().traversal.primitives_tested - before.traversal.primitives_tested;
-    return result;
+    return collect(tiles, integrand, key);
   }
 
  private:
   /// The domain of one link, for AdaptiveTiles.
   struct Integrand {
     DiffuseIntegral& integral;
-    const LinkEnd& transmitter;
-    const RadioEnd& from;
-    const LinkEnd& receiver;
-    const RadioEnd& to;
-    TileSight<Index> sight;
-    std::vector<std::pair<std::size_t, DiffuseContribution>> seen{};  ///< by tile; only those that bring power
-    std::vector<FacetId> sheets{};
+    const DiffuseTransmitter& transmitter;
+    const DiffuseReceiver& receiver;
+    ScatterWays ways;
+    PartList parts{};
+    LitParts lit{};
     TraversalCounters traversal{};
-    bool is_free = false;  ///< nothing stands between the ends and the middle of the last tile
 
-    double bound(const Tile& tile) const {
+    double limit_per_m2(const Tile& tile) const {
+      const RadioEnd &from = transmitter.radio, &to = receiver.radio;
       const double from_m = least_distance_m(tile, from.position_m), to_m = least_distance_m(tile, to.position_m);
       return integral.scattered_.limit_per_m2(integral.facet_of(tile), tile.centroid_m(), tile.radius_m(), from_m, to_m,
                                               from, to) *
-             tile.area_m2();
+             passed_limit(tile);
     }
 
-    /// With what certainly stands in the way of the whole tile; what does not stand in the way of its middle does not.
-    double tight_bound(const Tile& tile) {
-      if (is_free) return tile.bound;
-      if (!sight.crossed_by_all(tile, sheets, traversal) || sheets.size() > integral.max_transmissions_) return 0.0;
-      double passed = 1.0;
-      for (const FacetId sheet : sheets) passed *= integral.scattered_.transmission_limit(integral.scene_.facet(sheet));
-      return passed * tile.bound;
-    }
-
-    /// Power density changes over a distance, a lobe within its width.
+    /// Power density changes over a distance; lobes, beams and fringes within their width. Seven points show what
+    /// changes over half of a tile (docs/design/diffuse.md).
     double resolution_m(const Tile& tile) const {
-      const double distance_m =
-          std::min(least_distance_m(tile, from.position_m), least_distance_m(tile, to.position_m));
-      return distance_m * integral.scattered_.pattern_width_rad(integral.facet_of(tile).material);
+      const auto& scattered = integral.scattered_;
+      const auto distance_m = [&](const RadioEnd& end) {
+        return least_distance_m(tile, end.position_m) * scattered.beam_width_rad(end.antenna);
+      };
+      const MaterialId material = integral.facet_of(tile).material;
+      double width_rad = std::min(scattered.pattern_width_rad(material), scattered.reflection_width_rad(material));
+      for (const FacetId sheet : ways.sheets(tile.part)) {
+        width_rad = std::min(width_rad, scattered.transmission_width_rad(integral.scene_.facet(sheet)));
+      }
+      return 2.0 * std::min(distance_m(transmitter.radio), distance_m(receiver.radio)) * width_rad;
     }
 
-    double evaluate(const Tile& tile, std::size_t index) {
-      DiffuseContribution one;
+    /// Foliage weakens a leg by its length in it, which changes from point to point.
+    bool is_smooth(const Tile& tile) const {
+      return std::ranges::none_of(integral.scene_.foliage(), [&](const FoliageShell& shell) {
+        if (!integral.scattered_.is_weakened_by(shell.material)) return false;
+        return meets_leg(shell.box, tile, transmitter.radio.position_m) ||
+               meets_leg(shell.box, tile, receiver.radio.position_m);
+      });
+    }
+
+    template <typename Visit>
+    bool visit_parts(const Tile& piece, Visit&& visit) {
+      integral.finder_.turn_to(integral.scene_.facet_of_triangle(piece.source), piece.corners_m);
+      const LitParts& seen = parts_lit(piece);
+      if (seen.are_too_many) return false;
+      parts = seen.parts;
+      const bool are_few = integral.finder_.leave_visible(receiver.view.shades, ScatterLeg::to_receiver,
+                                                          transmitter.link.ignored_body, parts, [](BodyId) {});
+      if (!are_few) return false;
+      for (std::size_t part = 0; part < parts.size(); ++part) {
+        visit(parts.corners_m(part), ways.number_of(parts, part));
+      }
+      return true;
+    }
+
+    double density(const Tile& tile, const Vec3& point_m) {
       const FacetId facet = integral.scene_.facet_of_triangle(tile.source);
-      const bool solved = integral.solver_.solve(transmitter, receiver, facet, tile.centroid_m(), one.path);
-      is_free = solved && one.path.interactions.size() == 1;
-      if (!solved) return 0.0;
-      one.sample = integral.scattered_.per_m2(one.path, from, to);
-      one.sample.power_ratio *= tile.area_m2();
-      const double power_ratio = one.sample.power_ratio;
-      if (power_ratio > 0.0) seen.emplace_back(index, std::move(one));
-      return power_ratio;
+      return integral.scattered_.power_per_m2(ways.over(tile.part, facet, point_m), transmitter.radio, receiver.radio);
+    }
+
+    /// What the transmitter sees of a piece, and no other facet stands for. Kept, unless it is in the shadow of what
+    /// the receiver rides on.
+    const LitParts& parts_lit(const Tile& piece) {
+      const auto find = [&](const std::optional<BodyId>& ridden, LitParts& found) {
+        integral.find_lit(transmitter, ridden, piece.corners_m, found, traversal);
+      };
+      const LitParts& kept = transmitter.view.parts.of(piece.source, piece.place, lit,
+                                                       [&](LitParts& found) { find(std::nullopt, found); });
+      const std::optional<BodyId>& ridden = receiver.link.ignored_body;
+      if (!ridden || std::ranges::find(kept.bodies, *ridden) == kept.bodies.end()) return kept;
+      find(ridden, lit);
+      return lit;
+    }
+
+    double passed_limit(const Tile& tile) const {
+      double passed = 1.0;
+      for (const FacetId sheet : ways.sheets(tile.part)) {
+        passed *= integral.scattered_.transmission_limit(integral.scene_.facet(sheet));
+      }
+      return passed;
+    }
+
+    static bool meets_leg(const Aabb<double>& box, const Tile& tile, const Vec3& end_m) {
+      Aabb<double> legs;
+      legs.extend(end_m);
+      for (const Vec3& corner_m : tile.corners_m) legs.extend(corner_m);
+      return legs.overlaps(box);
     }
 
     /// No more than the distance of a point from any point of the tile; a micrometre at least.
@@ -123,7 +171,7 @@ class DiffuseIntegral {
     }
   };
 
-  /// Half of what is promised: errors are estimates, and half as much again is what they were seen to lack.
+  /// Half of what is promised: errors are estimates.
   double relative_tolerance() const { return 0.5 * (db_to_power_ratio(settings_.tolerance_db) - 1.0); }
 
   const WorldFacet& facet_of(const Tile& tile) const { return scene_.facet(scene_.facet_of_triangle(tile.source)); }
@@ -136,45 +184,68 @@ class DiffuseIntegral {
     }
   }
 
-  /// √P with the phase of the way, −kL, on top of one that belongs to the tile.
-  Complex random_amplitude(const DiffuseContribution& one, const Tile& tile, const DiffuseKey& key) const {
-    const BodyId body = facet_of(tile).body;
-    const std::uint64_t number = tile.source - scene_.triangle_range(body).first;
+  void find_lit(const DiffuseTransmitter& transmitter, const std::optional<BodyId>& ridden,
+                const TriangleCorners& corners_m, LitParts& found, TraversalCounters& traversal) {
+    found.bodies.clear();
+    const auto note = [&](BodyId body) {
+      if (body != BodyId{} && std::ranges::find(found.bodies, body) == found.bodies.end()) found.bodies.push_back(body);
+    };
+    found.parts.clear();
+    found.parts.add(corners_m, {});
+    found.are_too_many =
+        !finder_.leave_to_others({transmitter.link.ignored_body, ridden}, found.parts, traversal, note) ||
+        !finder_.leave_visible(transmitter.view.view.shades, ScatterLeg::from_transmitter, ridden, found.parts, note);
+    if (found.are_too_many) found.parts.clear();
+  }
+
+  /// √P with the phase of the way, −kL, on top of one that belongs to the place on its body.
+  Complex random_amplitude(const DiffuseContribution& one, double length_m, const DiffuseKey& key) const {
+    const BodyId body = scene_.facet(scene_.facet_of_triangle(one.triangle)).body;
+    const std::uint64_t number = one.triangle - scene_.triangle_range(body).first;
     const std::uint64_t seed = hash_values(key.seed, hash_text(key.transmitter), hash_text(key.receiver),
-                                           hash_text(scene_.body_name(body)), number, tile.place);
+                                           hash_text(scene_.body_name(body)), number, one.place);
     const Complex random = unit_phasor(2.0 * pi * RandomStream(seed).uniform());
-    return std::sqrt(one.sample.power_ratio) * random *
-           propagation_phasor(one.path.length_m, scattered_.frequency_hz());
+    return std::sqrt(one.sample.power_ratio) * random * propagation_phasor(length_m, scattered_.frequency_hz());
   }
 
   DiffusePower collect(const AdaptiveTiles<Integrand>& tiles, Integrand& integrand, const DiffuseKey& key) const {
     DiffusePower result;
+    const RadioEnd &from = integrand.transmitter.radio, &to = integrand.receiver.radio;
     // A dual-polarized end has no single sum that a phase could enter.
-    const bool has_phases = settings_.phases == DiffusePhases::seeded && !integrand.from.antenna.is_dual() &&
-                            !integrand.to.antenna.is_dual();
-    for (auto& [index, one] : integrand.seen) {
-      const Tile& tile = tiles.tiles()[index];
-      if (tile.is_halved) continue;
-      if (has_phases) one.amplitude = random_amplitude(one, tile, key);
+    const bool has_phases =
+        settings_.phases == DiffusePhases::seeded && !from.antenna.is_dual() && !to.antenna.is_dual();
+    tiles.for_each_point([&](const Tile& tile, const Vec3& point_m, double area_m2, double density) {
+      if (!(density > 0.0)) return;
+      const FacetId facet = scene_.facet_of_triangle(tile.source);
+      const Path& path = integrand.ways.over(tile.part, facet, point_m);
+      DiffuseContribution one;
+      one.sample = scattered_.sample(path, from, to, area_m2 * density);
       one.triangle = tile.source;
-      one.place = tile.place;
-      if (!settings_.list_paths) one.path = {};
+      one.area_m2 = area_m2;
+      one.place = has_phases || settings_.list_paths ? place_within(tile, point_m) : tile.place;
+      if (has_phases) one.amplitude = random_amplitude(one, path.length_m, key);
+      if (settings_.list_paths) one.path = integrand.ways.listed(path);
       result.tiles.push_back(std::move(one));
-    }
-    result.power_ratio = tiles.total();
+    });
+    for (const DiffuseContribution& one : result.tiles) result.power_ratio += one.sample.power_ratio;
     result.residual_ratio = 2.0 * tiles.error();
     result.tiles_evaluated = tiles.evaluated();
+    result.traversal = integrand.traversal;
     // The running sums of the refinement differ from these by rounding.
     result.converged = result.residual_ratio <= 2.0 * relative_tolerance() * result.power_ratio * (1.0 + 1e-9);
     return result;
+  }
+
+  /// So small a piece of the triangle that each point of the tile has its own.
+  std::uint64_t place_within(const Tile& tile, const Vec3& point_m) const {
+    return place_around(scene_.corners_m(tile.source), point_m, 1e-8 * tile.longest_edge_m());
   }
 
   const SceneTracer<Index>& tracer_;
   const Scene& scene_;
   const ScatteredPower<Surface, Loss>& scattered_;
   DiffuseSettings settings_;
-  std::size_t max_transmissions_;
-  ScatterSolver<Index> solver_;
+  PartFinder<Index> finder_;
 };
 
 }  // namespace dcem

@@ -18,8 +18,8 @@ struct DiffuseSettings {
   std::optional<double> tile_max_m{};  ///< no tile has a longer edge, m; absent: as the sum needs
   double tolerance_db = 0.1;           ///< to which the sum has converged, above 0
   DiffusePhases phases = DiffusePhases::incoherent;
-  bool list_paths = false;           ///< tiles keep their paths, to be listed
-  std::size_t tile_budget = 20'000;  ///< tiles looked at for one link; where they do not suffice the result says so
+  bool list_paths = false;           ///< points keep their paths, to be listed
+  std::size_t tile_budget = 20'000;  ///< tiles evaluated for one link; where they do not suffice the result says so
 
   friend bool operator==(const DiffuseSettings&, const DiffuseSettings&) = default;
 };

@@ -7,9 +7,12 @@
 /// polarizations pass. A dual-polarized receiver gets no more than one port's gain, as the power is that in both.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "dcem/em/surface/effective_roughness.hpp"
+#include "dcem/field/diffuse/scattering_limits.hpp"
 #include "dcem/field/field_carrier.hpp"
 #include "dcem/field/field_evaluator.hpp"
 #include "dcem/field/medium_loss.hpp"
@@ -20,25 +23,37 @@ namespace dcem {
 template <SurfaceModel Surface, PathLossModel Loss>
 class ScatteredPower {
  public:
-  /// Everything named must outlive it.
+  /// Everything named must outlive it. `limits`: of the scene's materials; none: they are worked out.
   ScatteredPower(const Scene& scene, const Surface& surface, const Loss& loss, const MediumLoss& medium,
-                 double frequency_hz)
-      : scene_(scene), surface_(surface), loss_(loss), medium_(medium), frequency_hz_(frequency_hz) {}
+                 double frequency_hz, std::shared_ptr<const ScatteringLimits> limits = nullptr)
+      : scene_(scene),
+        surface_(surface),
+        loss_(loss),
+        medium_(medium),
+        frequency_hz_(frequency_hz),
+        limits_(limits
+                    ? std::move(limits)
+                    : std::make_shared<const ScatteringLimits>(scattering_limits(surface, scene.materials().size()))) {}
 
-  /// The sample of a path with one scattering; its power_ratio is per m² of the surface. Zero where the surface model
-  /// does not scatter.
-  PowerSample per_m2(const Path& path, const RadioEnd& transmitter, const RadioEnd& receiver) const {
-    const std::size_t place = scattering_place(path);
-    const Vec3& point_m = path.interactions[place].point_m;
-    const Geometry geometry = geometry_of(transmitter.position_m, point_m, receiver.position_m);
-    PowerSample sample;
-    sample.delay_s = path.length_m / speed_of_light_mps;
-    sample.departure = detail::direction_of(geometry.incident);
-    sample.arrival = detail::direction_of(-geometry.scattered);
-    sample.doppler_hz = doppler_hz(path.interactions[place], geometry, transmitter, receiver);
-    if constexpr (ScatteringModel<Surface>)
-      sample.power_ratio = power_per_m2(path, place, geometry, transmitter, receiver, sample);
-    return sample;
+  /// The power_ratio per m² of the surface of a path with one scattering. Zero where the surface model does not
+  /// scatter.
+  double power_per_m2(const Path& path, const RadioEnd& transmitter, const RadioEnd& receiver) const {
+    if constexpr (ScatteringModel<Surface>) {
+      const std::size_t place = scattering_place(path);
+      const Geometry geometry =
+          geometry_of(transmitter.position_m, path.interactions[place].point_m, receiver.position_m);
+      return power_per_m2(path, place, geometry, transmitter, receiver);
+    }
+    return 0.0;
+  }
+
+  /// The sample of such a path that has this power.
+  PowerSample sample(const Path& path, const RadioEnd& transmitter, const RadioEnd& receiver,
+                     double power_ratio) const {
+    const Interaction& scattering = path.interactions[scattering_place(path)];
+    const Geometry geometry = geometry_of(transmitter.position_m, scattering.point_m, receiver.position_m);
+    return {power_ratio, path.length_m / speed_of_light_mps, doppler_hz(scattering, geometry, transmitter, receiver),
+            detail::direction_of(geometry.incident), detail::direction_of(-geometry.scattered)};
   }
 
   /// No less than the power_ratio per m² of any point of a facet within `radius_m` of `centre_m`, that is no nearer to
@@ -63,20 +78,8 @@ class ScatteredPower {
     return 0.0;
   }
 
-  /// No less than the power that a sheet lets pass, at any angle: the largest of many angles, and a little more.
-  double transmission_limit(const WorldFacet& sheet) const {
-    std::vector<double>& limits = transmission_limits_;
-    if (limits.size() <= sheet.material.value) limits.resize(sheet.material.value + 1, -1.0);
-    double& limit = limits[sheet.material.value];
-    if (limit >= 0.0) return limit;
-    constexpr int angles = 256;
-    for (int index = 0; index <= angles; ++index) {
-      const PolarizedCoefficients through =
-          surface_.response(sheet.material, static_cast<double>(index) / angles).transmission;
-      limit = std::max({limit, std::norm(through.te), std::norm(through.tm)});
-    }
-    return limit *= 1.05;
-  }
+  /// No less than the power that a sheet lets pass, at any angle.
+  double transmission_limit(const WorldFacet& sheet) const { return limits_->transmission[sheet.material.value]; }
 
   /// The angle within which the pattern of a surface changes; at most 1.
   double pattern_width_rad(MaterialId material) const {
@@ -84,6 +87,19 @@ class ScatteredPower {
     return 1.0;
   }
 
+  /// The angle within which what a surface reflects changes; at most 1.
+  double reflection_width_rad(MaterialId material) const { return limits_->reflection_width_rad[material.value]; }
+  /// The same of what a sheet lets pass.
+  double transmission_width_rad(const WorldFacet& sheet) const {
+    return limits_->transmission_width_rad[sheet.material.value];
+  }
+
+  /// Half of the angle that an antenna's beam is wide, if all of its power were in it: √(4π/G)/2; at most 1.
+  static double beam_width_rad(const Antenna& antenna) {
+    return std::min(1.0, 0.5 * std::sqrt(4.0 * pi / std::max(1.0, peak_power_gain(antenna.pattern))));
+  }
+
+  bool is_weakened_by(MaterialId foliage) const { return medium_.takes_of(foliage); }
   double frequency_hz() const { return frequency_hz_; }
 
  private:
@@ -105,7 +121,7 @@ class ScatteredPower {
   }
 
   double power_per_m2(const Path& path, std::size_t place, const Geometry& geometry, const RadioEnd& transmitter,
-                      const RadioEnd& receiver, const PowerSample& sample) const {
+                      const RadioEnd& receiver) const {
     const WorldFacet& facet = scene_.facet(path.interactions[place].facet);
     const Scattering& scattering = surface_.scattering(facet.material);
     const Vec3& normal = facet.plane.normal;
@@ -119,7 +135,14 @@ class ScatteredPower {
     return share * share * cos_incidence * density_per_sr * reflected_power(path, place, geometry, transmitter) *
            passed_power(path, place, geometry) *
            norm_of(receiver.antenna.port_jones(-geometry.scattered, 0, receiver.rotation)) *
-           medium_.unpolarized_power(path, sample.departure, sample.arrival);
+           medium_power(path, geometry);
+  }
+
+  /// What air and foliage let pass.
+  double medium_power(const Path& path, const Geometry& geometry) const {
+    if (medium_.takes_nothing_of(path)) return 1.0;
+    return medium_.unpolarized_power(path, detail::direction_of(geometry.incident),
+                                     detail::direction_of(-geometry.scattered));
   }
 
   /// |Γ|²·|E_i|² of a unit source with the transmitting antenna, the mean over its ports.
@@ -184,7 +207,7 @@ class ScatteredPower {
   const Loss& loss_;
   const MediumLoss& medium_;
   double frequency_hz_;
-  mutable std::vector<double> transmission_limits_;  ///< by material, asked for once; not for several threads at once
+  std::shared_ptr<const ScatteringLimits> limits_;
 };
 
 }  // namespace dcem

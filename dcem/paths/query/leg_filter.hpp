@@ -26,12 +26,14 @@ struct LegEnd {
 /// Bodies that do not exist for a link: those that its devices ride on.
 using IgnoredBodies = std::array<std::optional<BodyId>, 2>;
 
+/// Planes of which the cosine of the angle between them is greater lie along each other.
+inline constexpr double lies_along_cosine = 0.995;
+
 /// Whether a facet lies along a plane at one of its points: within the weld tolerance, and tilted by less than about 6
 /// degrees: small patches of a dirty wall are tilted by their rounding.
 inline bool lies_along(const Scene& scene, const WorldFacet& facet, const Plane& plane, const Vec3& point_m) {
-  constexpr double along_cosine = 0.995;
   return std::abs(signed_distance_m(plane, point_m)) <= scene.settings().weld_tolerance_m &&
-         std::abs(glm::dot(plane.normal, facet.plane.normal)) > along_cosine;
+         std::abs(glm::dot(plane.normal, facet.plane.normal)) > lies_along_cosine;
 }
 
 /// How far triangles stray from the plane of their facet, at most: beyond, the facet would have been split.

@@ -47,6 +47,10 @@ class SceneTracer {
                   const IgnoredBodies& ignored, std::size_t crossing_limit, std::vector<Crossing>& crossings,
                   TraversalCounters& counters) const;
 
+  /// Puts crossings of a leg in order. Of parallel sheets within the weld tolerance of each other, one after the other,
+  /// the one whose material's name comes first stands for all.
+  void merge_in_order(std::vector<Crossing>& crossings, const Vec3& leg_m) const;
+
   /// Calls `test(triangle) -> bool` for triangles that a straight leg meets and does not ignore, in no promised order,
   /// until one returns true. Returns whether one did.
   template <typename Test>
@@ -105,8 +109,6 @@ class SceneTracer {
     return std::clamp(t, 0.0, 1.0);
   }
 
-  void sort_and_merge(std::vector<Crossing>& crossings, const Vec3& leg_m) const;
-
   /// Whether two crossings of a leg are of parallel sheets within the weld tolerance of each other, across the sheets.
   bool one_sheet(const Crossing& one, const Crossing& next, const Vec3& leg_m) const {
     const double apart_m = (next.t - one.t) * std::abs(glm::dot(leg_m, scene_.facet(one.facet).plane.normal));
@@ -156,12 +158,12 @@ bool SceneTracer<Index>::follow_leg(const Vec3& from_m, const Vec3& to_m, const 
     return false;
   };
   if (index_.visit_hits(leg, filter.hit_filter(), blocks, &counters)) return false;
-  if (crossings.size() > 1) sort_and_merge(crossings, to_m - from_m);
+  if (crossings.size() > 1) merge_in_order(crossings, to_m - from_m);
   return crossings.size() <= crossing_limit;
 }
 
 template <typename Index>
-void SceneTracer<Index>::sort_and_merge(std::vector<Crossing>& crossings, const Vec3& leg_m) const {
+void SceneTracer<Index>::merge_in_order(std::vector<Crossing>& crossings, const Vec3& leg_m) const {
   std::sort(crossings.begin(), crossings.end(),
             [&](const Crossing& a, const Crossing& b) { return a.t != b.t ? a.t < b.t : precedes(a.facet, b.facet); });
   // Sheets are chained to the latest one of their stack, so a leg and its reverse merge the same.

@@ -62,7 +62,6 @@ inline RadioEnd radio_end(const Device& device, const DeviceState& state) {
 }
 
 inline void add_diffuse_work(const DiffusePower& diffuse, WorkCounters& work) {
-  work.legs += diffuse.legs;
   work.nodes_visited += diffuse.traversal.nodes_visited;
   work.primitives_tested += diffuse.traversal.primitives_tested;
   work.diffuse_tiles += diffuse.tiles_evaluated;

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "dcem/field/diffuse/facets_in_view.hpp"
+#include "dcem/paths/visible/surface_view.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/device_numbers.hpp"
 #include "dcem/sim/detail/link_work.hpp"
@@ -32,7 +32,7 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
   const PathSearchSettings search = search_settings(ends.embedded);
   if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
   if (plan_.joined > 0 && search.max_interactions > 0) find_transmitter_halves(ends, receivers, halves, fine);
-  if (settings_.propagation.diffuse.enabled) find_facets_in_view(ends);
+  if (settings_.propagation.diffuse.enabled) look_at_surfaces(ends);
   return ends;
 }
 
@@ -48,15 +48,17 @@ std::span<const std::optional<LinkEnd>> BasicSimulator<Surface, Index>::ends_bes
   return others;
 }
 
-/// As `facets_seen_from` does for receivers, so that a link has the same bits in a run and on a map.
+/// As `surfaces_seen_from` does for receivers, so that a link has the same bits in a run and on a map.
 template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::find_facets_in_view(TransmitterEnds& ends) const {
-  ends.in_view.resize(ends.link.size());
+void BasicSimulator<Surface, Index>::look_at_surfaces(TransmitterEnds& ends) const {
+  ends.limits = std::make_shared<const ScatteringLimits>(scattering_limits(surface_, scene_.materials().size()));
+  ends.surfaces.resize(ends.link.size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
   pool_->for_each(ends.link.size(), [&](std::size_t index, unsigned worker) {
     if (!ends.link[index]) return;
-    ends.in_view[index] = facets_in_view(rooms[worker].sight, scene_, *outlines_, *ends.link[index],
-                                         settings_.propagation.max_transmissions);
+    ends.surfaces[index] = std::make_shared<LitSurfaces>();
+    ends.surfaces[index]->view = dcem::look_at_surfaces(rooms[worker].sight, scene_, *outlines_, *ends.link[index],
+                                                        settings_.propagation.max_transmissions);
   });
 }
 

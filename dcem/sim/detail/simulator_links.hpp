@@ -7,7 +7,6 @@
 
 #include "dcem/channel/link_statistics.hpp"
 #include "dcem/field/diffuse/diffuse_power.hpp"
-#include "dcem/field/diffuse/facets_in_view.hpp"
 #include "dcem/field/element_paths.hpp"
 #include "dcem/paths/discover/chain_count.hpp"
 #include "dcem/sim/basic_simulator.hpp"
@@ -91,7 +90,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   if (!goes_apart) found = search.find_together(cache, counters);
   const Evaluator field = evaluator();
   const RadioEnd to = detail::radio_end(receiver, state);
-  const std::vector<FacetId> seen = facets_seen_from(receiver, end, transmitters, proposals.room);
+  const std::shared_ptr<const SurfaceView> view = surfaces_seen_from(receiver, end, transmitters, proposals.room);
   std::vector<std::size_t> present;
   for (std::size_t transmitter = 0; transmitter < search.transmitter_ends.size(); ++transmitter) {
     if (search.transmitter_ends[transmitter]) present.push_back(transmitter);
@@ -102,7 +101,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     const std::size_t transmitter = present[place];
     WorkCounters& work = spent[place];
     LinkPaths paths = goes_apart ? search.find_apart(transmitter, work) : std::move(found[transmitter]);
-    DiffusePower diffuse = diffuse_power(receiver, {end, to}, seen, transmitters, transmitter, work);
+    DiffusePower diffuse = diffuse_power(receiver, {end, to}, view.get(), transmitters, transmitter, work);
     LinkResult& link = solved.links[place];
     link = make_link(std::move(paths), std::move(diffuse), transmitters.number(transmitter),
                      {*search.transmitter_ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field);
@@ -122,29 +121,29 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-std::vector<FacetId> BasicSimulator<Surface, Index>::facets_seen_from(const Device& receiver, const LinkEnd& end,
-                                                                      const TransmitterEnds& transmitters,
-                                                                      ReceiverRoom* room) const {
-  if (!settings_.propagation.diffuse.enabled) return {};
-  if (const std::vector<FacetId>* const known = transmitters.view_of(receiver.id, end)) return *known;
-  return facets_in_view(room->sight, scene_, *outlines_, end, settings_.propagation.max_transmissions);
+std::shared_ptr<const SurfaceView> BasicSimulator<Surface, Index>::surfaces_seen_from(
+    const Device& receiver, const LinkEnd& end, const TransmitterEnds& transmitters, ReceiverRoom* room) const {
+  if (!settings_.propagation.diffuse.enabled) return nullptr;
+  if (std::shared_ptr<const SurfaceView> known = transmitters.view_of(receiver.id, end)) return known;
+  return std::make_shared<const SurfaceView>(
+      dcem::look_at_surfaces(room->sight, scene_, *outlines_, end, settings_.propagation.max_transmissions));
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
 DiffusePower BasicSimulator<Surface, Index>::diffuse_power(const Device& receiver, const DeviceEnd& end,
-                                                           std::span<const FacetId> seen,
-                                                           const TransmitterEnds& transmitters, std::size_t transmitter,
-                                                           WorkCounters& work) const {
+                                                           const SurfaceView* view, const TransmitterEnds& transmitters,
+                                                           std::size_t transmitter, WorkCounters& work) const {
   const PropagationSettings& propagation = settings_.propagation;
-  if (!propagation.diffuse.enabled) return {};
+  if (view == nullptr) return {};
   const Tracer tracer(scene_, index_);
   const ScatteredPower<Surface, AnyPathLoss> scattered(scene_, surface_, propagation.path_loss, medium_,
-                                                       settings_.frequency_hz);
+                                                       settings_.frequency_hz, transmitters.limits);
   DiffuseIntegral<Index, Surface, AnyPathLoss> integral(tracer, scattered, propagation.diffuse,
                                                         propagation.max_transmissions);
   const DiffuseKey key{propagation.seed, transmitters.device(transmitter).id, receiver.id};
-  DiffusePower power = integral.evaluate(*transmitters.link[transmitter], transmitters.radio[transmitter], end.link,
-                                         end.radio, in_both(seen, transmitters.in_view[transmitter]), key);
+  DiffusePower power = integral.evaluate(
+      {*transmitters.link[transmitter], transmitters.radio[transmitter], *transmitters.surfaces[transmitter]},
+      {end.link, end.radio, *view}, key);
   detail::add_diffuse_work(power, work);
   return power;
 }

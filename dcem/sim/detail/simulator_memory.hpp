@@ -37,7 +37,7 @@ struct BasicSimulator<Surface, Index>::Following {
   // What it sees, and what it reaches where sequences of three elements are joined.
   const PathHalf* half = nullptr;
   const BeamLists* lists = nullptr;
-  std::vector<FacetId> in_view{};  ///< where diffuse power is asked for
+  std::shared_ptr<const SurfaceView> surfaces{};  ///< where diffuse power is asked for
 };
 
 /// One link of a receiver in one frame: what is its own, so that another thread may solve the next one.
@@ -147,7 +147,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     } else {
       look_anew(following, *room);
     }
-    following.in_view = facets_seen_from(receiver, end, transmitters, room);
+    following.surfaces = surfaces_seen_from(receiver, end, transmitters, room);
     SearchCounters counters;
     counters.solver.traversal += traversal;
     detail::add_search_work(counters, solved.work);
@@ -205,7 +205,7 @@ LinkResult BasicSimulator<Surface, Index>::follow_link(FollowedLink& link, const
                                             : paths_of_moving(link, half);
   const DeviceEnd to{link.of.end, link.of.radio};
   DiffusePower diffuse =
-      diffuse_power(link.of.receiver, to, link.of.in_view, transmitters, link.transmitter, link.work);
+      diffuse_power(link.of.receiver, to, link.of.surfaces.get(), transmitters, link.transmitter, link.work);
   LinkResult result = finish_link(std::move(paths), std::move(diffuse), transmitters.number(link.transmitter),
                                   {link.from(), transmitters.radio[link.transmitter]}, to, link.of.field);
   result.complete = true;

@@ -9,8 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/field/diffuse/scattering_limits.hpp"
 #include "dcem/field/radio_end.hpp"
 #include "dcem/paths/halves/link_halves.hpp"
+#include "dcem/paths/visible/surface_view.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/detail/device_numbers.hpp"
 #include "dcem/sim/detail/receiver_memory.hpp"
@@ -23,16 +25,18 @@ struct TransmitterEnds {
   std::span<const Device> devices;  ///< all of them
   std::vector<std::optional<LinkEnd>> link;
   std::vector<RadioEnd> radio;
-  std::vector<ReachedEdges> reached;             ///< the edges within reach; empty lists where no diffraction is wanted
-  std::vector<EdgeReach> own_reach;              ///< holds them where nothing is remembered
-  HalfRefs halves;                               ///< none where the plan has none
-  std::vector<KeptHalf> own_halves;              ///< holds them where nothing is kept
-  std::vector<char> embedded;                    ///< edges that no path can use; empty where nobody has looked
-  std::vector<std::vector<FacetId>> in_view;     ///< the facets that each may see, where diffuse power is asked for
-  WorkCounters work;                             ///< what finding them took
-  std::vector<std::uint32_t> numbers;            ///< of those that were chosen; empty: as they stand in the scene
-  const TransmitterEnds* all = nullptr;          ///< those that they were chosen from
-  std::shared_ptr<const DeviceNumbers> by_id{};  ///< none where some were chosen
+  std::vector<ReachedEdges> reached;  ///< the edges within reach; empty lists where no diffraction is wanted
+  std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
+  HalfRefs halves;                    ///< none where the plan has none
+  std::vector<KeptHalf> own_halves;   ///< holds them where nothing is kept
+  std::vector<char> embedded;         ///< edges that no path can use; empty where nobody has looked
+  /// What each sees of surfaces, where diffuse power is asked for; none of those that are away.
+  std::vector<std::shared_ptr<LitSurfaces>> surfaces;
+  std::shared_ptr<const ScatteringLimits> limits;  ///< of the scene's materials, where diffuse power is asked for
+  WorkCounters work;                               ///< what finding them took
+  std::vector<std::uint32_t> numbers;              ///< of those that were chosen; empty: as they stand in the scene
+  const TransmitterEnds* all = nullptr;            ///< those that they were chosen from
+  std::shared_ptr<const DeviceNumbers> by_id{};    ///< none where some were chosen
 
   /// The number among all devices.
   std::size_t number(std::size_t index) const { return numbers.empty() ? index : numbers[index]; }
@@ -43,8 +47,8 @@ struct TransmitterEnds {
   /// What a receiver sees that is a transmitter, too, with lists where they are asked for; none where that has not been
   /// worked out.
   const KeptHalf* half_of(const std::string& receiver, const LinkEnd& end, bool with_lists) const;
-  /// The facets that such a receiver may see; none where that has not been worked out.
-  const std::vector<FacetId>* view_of(const std::string& receiver, const LinkEnd& end) const;
+  /// What such a receiver sees of surfaces; none where that has not been worked out.
+  std::shared_ptr<const SurfaceView> view_of(const std::string& receiver, const LinkEnd& end) const;
 
  private:
   /// The number of a transmitter of this name and place.
@@ -65,8 +69,9 @@ inline TransmitterEnds TransmitterEnds::only(std::vector<std::uint32_t> chosen) 
     some.radio.push_back(radio[index]);
     some.reached.push_back(reached[index]);
     if (!halves.empty()) some.halves.add(halves[index]);
-    if (!in_view.empty()) some.in_view.push_back(in_view[index]);
+    if (!surfaces.empty()) some.surfaces.push_back(surfaces[index]);
   }
+  some.limits = limits;
   some.embedded = embedded;
   some.numbers = std::move(chosen);
   some.all = this;
@@ -89,10 +94,12 @@ inline const KeptHalf* TransmitterEnds::half_of(const std::string& receiver, con
   return half.is_of_frame() && (!with_lists || half.lists() != nullptr) ? &half : nullptr;
 }
 
-inline const std::vector<FacetId>* TransmitterEnds::view_of(const std::string& receiver, const LinkEnd& end) const {
+inline std::shared_ptr<const SurfaceView> TransmitterEnds::view_of(const std::string& receiver,
+                                                                   const LinkEnd& end) const {
   if (all != nullptr) return all->view_of(receiver, end);
-  const std::optional<std::uint32_t> number = in_view.empty() ? std::nullopt : same_as(receiver, end);
-  return number ? &in_view[*number] : nullptr;
+  const std::optional<std::uint32_t> number = surfaces.empty() ? std::nullopt : same_as(receiver, end);
+  if (!number) return nullptr;
+  return {surfaces[*number], &surfaces[*number]->view};
 }
 
 }  // namespace dcem::detail

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dcem/paths/discover/exact_search.hpp"
+#include "dcem/paths/discover/path_cache.hpp"
 #include "dcem/paths/discover/ray_launcher.hpp"
 #include "dcem/paths/path_id.hpp"
 #include "dcem/paths/query/foliage_length.hpp"

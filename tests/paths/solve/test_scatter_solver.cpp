@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/paths/solve/scatter_solver.hpp"
 #include "tests/paths/small_scenes.hpp"
+#include "tests/support/scatter_solver.hpp"
 
 namespace test_scatter_solver {
 

@@ -70,12 +70,12 @@ void fields(auto& archive, IsOf<TraversalCounters> auto& value) {
   archive(nodes_visited, primitives_tested);
 }
 void fields(auto& archive, IsOf<DiffuseContribution> auto& value) {
-  auto& [sample, amplitude, triangle, place, path] = value;
-  archive(sample, amplitude, triangle, place, path);
+  auto& [sample, amplitude, triangle, place, path, area_m2] = value;
+  archive(sample, amplitude, triangle, place, path, area_m2);
 }
 void fields(auto& archive, IsOf<DiffusePower> auto& value) {
-  auto& [tiles, power_ratio, residual_ratio, tiles_evaluated, legs, traversal, converged] = value;
-  archive(tiles, power_ratio, residual_ratio, tiles_evaluated, legs, traversal, converged);
+  auto& [tiles, power_ratio, residual_ratio, tiles_evaluated, traversal, converged] = value;
+  archive(tiles, power_ratio, residual_ratio, tiles_evaluated, traversal, converged);
 }
 void fields(auto& archive, IsOf<LinkStatistics> auto& value) {
   auto& [line_of_sight, path_count, power_dbm, incoherent_dbm, los_dbm, reflected_dbm, transmitted_dbm, diffracted_dbm,

@@ -68,7 +68,7 @@ constexpr std::string_view options_word = "options ";
 
 /// The first lines of a journal.
 std::array<std::string, 4> head_lines(const RunIdentity& identity) {
-  return {"dcem-journal/2", "version " + identity.version, "inputs " + hexadecimal(identity.inputs),
+  return {"dcem-journal/3", "version " + identity.version, "inputs " + hexadecimal(identity.inputs),
           std::string(options_word) + identity.options};
 }
 

@@ -59,11 +59,15 @@ const BlockRule& diffuse_block() {
         standard(standards.phases),
         "Of tiles: powers, or phases from the seed.",
         R"("incoherent")"},
-       {"list_paths", {boolean()}, standard(standards.list_paths), "Whether each tile is listed as a path S.", "false"},
+       {"list_paths",
+        {boolean()},
+        standard(standards.list_paths),
+        "Whether each point of a tile is listed as a path S.",
+        "false"},
        {"tile_budget",
         {whole_number(1, 1e8)},
         standard(standards.tile_budget),
-        "Tiles looked at for one link; where they do not suffice the result says so.",
+        "Tiles, of seven points each, evaluated for one link; where they do not suffice the result says so.",
         "20000"}}};
   return rule;
 }
