@@ -79,8 +79,10 @@ class WideBvh {
   /// over Σ cost · surface: Bittner, Hapala, Havran, "Fast insertion-based optimization of bounding volume
   /// hierarchies", Computer Graphics Forum 2013): those that make the node above them larger than `growth_limit`
   /// times what it was when they came there, and of all one in `turn_length`, in turn (0: none). Growth alone misses
-  /// what has become a bad place little by little, or by what others do. Returns how many were moved.
-  std::size_t reinsert_moved(double growth_limit, std::uint32_t turn_length = default_turn_length);
+  /// what has become a bad place little by little, or by what others do. Of very many, groups are taken out at once and
+  /// the threads of `pool` look for their places; the tree is the same for any of them. Returns how many were moved.
+  std::size_t reinsert_moved(double growth_limit, std::uint32_t turn_length = default_turn_length,
+                             ThreadPool* pool = nullptr);
   static constexpr std::uint32_t default_turn_length = 50;
 
   /// Builds what is below an inner node anew, in place, from the boxes as they are now: the node's part of its level
@@ -194,6 +196,7 @@ class WideBvh {
   void mark_dirty(std::span<const std::uint32_t> moved);
   void note_moved_object(std::uint32_t object);
   bool reinsert(std::uint32_t object);
+  std::size_t reinsert_together(std::span<const std::uint32_t> objects, ThreadPool* pool);
   void detach(NodeLane place);
   /// A node where something might be inserted, and what the nodes down to it would grow by.
   struct Branch {
@@ -208,8 +211,18 @@ class WideBvh {
     std::uint32_t lane = simd_lanes;  ///< of a free lane; or of the entry to join, with `joins`
     bool joins = false;
   };
-  Spot cheapest_spot(const Aabb<float>& box);
-  void offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best);
+  /// An object that has been taken out, where it may go, and what was there when that was found out.
+  struct LooseObject {
+    std::uint32_t object;
+    Aabb<float> box;
+    Spot spot{};
+    WideChild there{};
+  };
+  void find_spots(std::span<LooseObject> objects, ThreadPool* pool) const;
+  /// `branches`: scratch memory.
+  Spot cheapest_spot(const Aabb<float>& box, std::vector<Branch>& branches) const;
+  void offer_spots(const Branch& branch, const Aabb<float>& box, std::vector<Branch>& branches, Spot& best) const;
+  void insert(std::uint32_t object, const Aabb<float>& box, const Spot& spot);
   void attach_at(WideChild child, const Aabb<float>& box, const Spot& spot);
   void release_below(std::uint32_t node);
   std::size_t build_planned(std::uint32_t node, const detail::WidePlan& plan, std::uint32_t slot);

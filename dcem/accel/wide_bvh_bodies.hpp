@@ -82,7 +82,7 @@ DCEM_INLINE void WideBvh::build_all(const TriangleView& mesh, Boxes boxes) {
   degradation_.renew(arrays_);
 }
 
-DCEM_INLINE std::size_t WideBvh::reinsert_moved(double growth_limit, std::uint32_t turn_length) {
+DCEM_INLINE std::size_t WideBvh::reinsert_moved(double growth_limit, std::uint32_t turn_length, ThreadPool* pool) {
   const auto has_grown = [&](std::uint32_t object) {
     const std::uint32_t node = arrays_.place_of(arrays_.object_root[object]).node();
     const NodeLane above = arrays_.lane_of_node[node];
@@ -91,14 +91,67 @@ DCEM_INLINE std::size_t WideBvh::reinsert_moved(double growth_limit, std::uint32
   };
   const std::size_t moved = moved_objects_.size();
   const std::size_t in_turn = turn_length == 0 ? 0 : (moved + turn_length - 1) / turn_length;
+  // One by one each sees where the others have gone. Of very many it does not matter whether some do not.
+  constexpr std::size_t very_many = 512, of_a_group = 256;
+  std::vector<std::uint32_t> group;
   std::size_t count = 0;
-  for (std::size_t index = 0; index < in_turn; ++index) {
-    count += reinsert(moved_objects_[next_turn_++ % moved]) ? 1U : 0U;
-  }
+  const auto end_group = [&] {
+    count += reinsert_together(group, pool);
+    group.clear();
+  };
+  const auto take = [&](std::uint32_t object) {
+    if (moved < very_many) {
+      count += reinsert(object) ? 1U : 0U;
+      return;
+    }
+    group.push_back(object);
+    if (group.size() == of_a_group) end_group();
+  };
+  for (std::size_t index = 0; index < in_turn; ++index) take(moved_objects_[next_turn_++ % moved]);
+  if (!group.empty()) end_group();
   for (const std::uint32_t object : moved_objects_) {
-    if (has_grown(object)) count += reinsert(object) ? 1U : 0U;
+    if (has_grown(object)) take(object);
+  }
+  if (!group.empty()) end_group();
+  return count;
+}
+
+/// All are taken out first. Each looks for its spot in what is left, and those that find the same one look again, after
+/// the first of them has come there. So the tree does not depend on how many threads look.
+DCEM_INLINE std::size_t WideBvh::reinsert_together(std::span<const std::uint32_t> objects, ThreadPool* pool) {
+  std::vector<LooseObject> loose;
+  for (const std::uint32_t object : objects) {
+    const NodeLane place = arrays_.place_of(arrays_.object_root[object]);
+    const Aabb<float> box = arrays_.box_at(place);
+    if (box.empty()) continue;
+    detach(place);
+    loose.push_back({object, box});
+  }
+  const std::size_t count = loose.size();
+  while (!loose.empty()) {
+    find_spots(loose, pool);
+    std::erase_if(loose, [&](const LooseObject& one) {
+      if (arrays_.child_at(NodeLane::at(one.spot.node, one.spot.lane)) != one.there) return false;
+      insert(one.object, one.box, one.spot);
+      return true;
+    });
   }
   return count;
+}
+
+DCEM_INLINE void WideBvh::find_spots(std::span<LooseObject> objects, ThreadPool* pool) const {
+  constexpr std::size_t at_once = 8;
+  const auto look = [&](std::size_t block, unsigned) {
+    std::vector<Branch> branches;
+    const std::size_t first = block * at_once;
+    for (LooseObject& one : objects.subspan(first, std::min(at_once, objects.size() - first))) {
+      one.spot = cheapest_spot(one.box, branches);
+      one.there = arrays_.child_at(NodeLane::at(one.spot.node, one.spot.lane));
+    }
+  };
+  const std::size_t blocks = (objects.size() + at_once - 1) / at_once;
+  ThreadPool alone(1);
+  (pool != nullptr ? *pool : alone).for_each(blocks, look);
 }
 
 DCEM_INLINE bool WideBvh::reinsert(std::uint32_t object) {
@@ -107,9 +160,14 @@ DCEM_INLINE bool WideBvh::reinsert(std::uint32_t object) {
   const Aabb<float> box = arrays_.box_at(place);
   if (box.empty()) return false;
   detach(place);
-  attach_at(root, box, cheapest_spot(box));
-  area_when_inserted_m2_[object] = arrays_.nodes[arrays_.place_of(root).node()].box().half_area();
+  insert(object, box, cheapest_spot(box, branches_));
   return true;
+}
+
+DCEM_INLINE void WideBvh::insert(std::uint32_t object, const Aabb<float>& box, const Spot& spot) {
+  const WideChild root = arrays_.object_root[object];
+  attach_at(root, box, spot);
+  area_when_inserted_m2_[object] = arrays_.nodes[arrays_.place_of(root).node()].box().half_area();
 }
 
 /// Empties a lane. A node that is left with one entry gives its place to that entry.
@@ -137,7 +195,8 @@ DCEM_INLINE void WideBvh::detach(NodeLane place) {
 /// Offers the lanes of one node: a free one, or an entry that is not divided further, to be joined under a new node, as
 /// far down as new nodes are made. Free lanes may lie between others. There is always a spot above that: a node without
 /// one has eight inner nodes below it, and so have they, which no tree can afford for long.
-DCEM_INLINE void WideBvh::offer_spots(const Branch& branch, const Aabb<float>& box, Spot& best) {
+DCEM_INLINE void WideBvh::offer_spots(const Branch& branch, const Aabb<float>& box, std::vector<Branch>& branches,
+                                      Spot& best) const {
   const auto& [cost_m2, node, depth] = branch;
   const WideNode& held = arrays_.nodes[node];
   const detail::BoxLanes boxes(held);
@@ -156,21 +215,21 @@ DCEM_INLINE void WideBvh::offer_spots(const Branch& branch, const Aabb<float>& b
     }
     const double grown_m2 = cost_m2 + both_m2 - arrays_.costs.node * static_cast<double>(own[lane]);
     if (!(grown_m2 < best.cost_m2)) continue;
-    branches_.push_back({grown_m2, child.index(), depth + 1});
-    std::push_heap(branches_.begin(), branches_.end());
+    branches.push_back({grown_m2, child.index(), depth + 1});
+    std::push_heap(branches.begin(), branches.end());
   }
 }
 
-DCEM_INLINE WideBvh::Spot WideBvh::cheapest_spot(const Aabb<float>& box) {
+DCEM_INLINE WideBvh::Spot WideBvh::cheapest_spot(const Aabb<float>& box, std::vector<Branch>& branches) const {
   Spot best;
-  branches_.clear();
-  branches_.push_back({0.0, 0, 1});
-  while (!branches_.empty()) {
-    std::pop_heap(branches_.begin(), branches_.end());
-    const Branch branch = branches_.back();
-    branches_.pop_back();
+  branches.clear();
+  branches.push_back({0.0, 0, 1});
+  while (!branches.empty()) {
+    std::pop_heap(branches.begin(), branches.end());
+    const Branch branch = branches.back();
+    branches.pop_back();
     if (!(branch.cost_m2 < best.cost_m2)) break;
-    offer_spots(branch, box, best);
+    offer_spots(branch, box, branches, best);
   }
   DCEM_ASSERT(best.lane < simd_lanes);
   return best;

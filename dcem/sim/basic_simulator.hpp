@@ -161,6 +161,7 @@ class BasicSimulator {
   struct Proposals {
     ReceiverRoom* room = nullptr;
     std::span<const SequenceList> joined{};
+    std::vector<LinkResult>* spent = nullptr;  ///< links that nobody needs any more: new ones are made in their room
   };
   struct ReceiverSearch;
 
@@ -173,8 +174,9 @@ class BasicSimulator {
   /// What rough surfaces bring from a transmitter to a receiver with this view; nothing where it is not asked for.
   DiffusePower diffuse_power(const Device& receiver, const DeviceEnd& end, const SurfaceView* view,
                              const TransmitterEnds& transmitters, std::size_t transmitter, WorkCounters& work) const;
+  /// `room`: paths that nobody needs any more.
   LinkResult make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter, const DeviceEnd& from,
-                       const DeviceEnd& to, const Evaluator& evaluator) const;
+                       const DeviceEnd& to, const Evaluator& evaluator, std::vector<PathContribution>&& room) const;
   /// A link from all its paths, in any order, some of them more than once.
   LinkResult finish_link(std::vector<PathContribution>&& paths, DiffusePower&& diffuse, std::size_t transmitter,
                          const DeviceEnd& from, const DeviceEnd& to, const Evaluator& evaluator) const;
@@ -237,8 +239,9 @@ class BasicSimulator {
   std::optional<FacetRims> rims_;                              ///< where lifetimes are asked for
   std::vector<char> transmitter_rests_, transmitter_is_same_;  ///< as in the frame before: its place; all of it
   Frame frame_;
-  std::vector<LinkResult> room_;      ///< of a frame that has been given back
-  std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
+  std::vector<LinkResult> room_;                ///< of a frame that has been given back …
+  std::vector<std::vector<LinkResult>> spent_;  ///< … and of one before, by receiver
+  std::unique_ptr<ThreadPool> pool_;            ///< of all work on frames and maps
 };
 
 }  // namespace dcem

@@ -64,9 +64,12 @@ TEST_CASE("frames from room that was given back are those of fresh memory, for a
   }
 }
 
-TEST_CASE("links are gathered by transmitter, then receiver; those of a smaller frame leave nothing of a larger one") {
+TEST_CASE(
+    "links are gathered by transmitter, then receiver; those of a smaller frame leave nothing of a larger one, "
+    "and what was in their place goes to the receivers") {
   ThreadPool pool(3);
   std::vector<LinkResult> room;
+  std::size_t reused = 0;
   for (const std::size_t receivers : {150U, 90U, 3U, 0U, 120U}) {
     std::vector<std::vector<LinkResult>> by_receiver(receivers);
     std::size_t count = 0;
@@ -79,8 +82,15 @@ TEST_CASE("links are gathered by transmitter, then receiver; those of a smaller 
         ++count;
       }
     }
-    std::vector<LinkResult> all = detail::gather_links(std::move(by_receiver), std::move(room), pool);
+    const std::size_t held = room.size();
+    std::vector<LinkResult> all = detail::gather_links(by_receiver, std::move(room), pool);
     REQUIRE(all.size() == count);
+    std::size_t left = 0;
+    for (const std::vector<LinkResult>& links : by_receiver) {
+      left += links.size();
+      for (const LinkResult& link : links) reused += link.paths.empty() ? 0 : 1;
+    }
+    CHECK(left == (held == 0 ? 0 : count));
     for (std::size_t link = 0; link < count; ++link) {
       REQUIRE(all[link].paths.size() == all[link].receiver % 4);
       if (link == 0) continue;
@@ -88,8 +98,9 @@ TEST_CASE("links are gathered by transmitter, then receiver; those of a smaller 
       REQUIRE(ends_of(link - 1) < ends_of(link));
     }
     room = detail::room_of(std::move(all), pool);
-    for (const LinkResult& link : room) REQUIRE(link.paths.empty());
+    for (const LinkResult& link : room) REQUIRE(link.paths.capacity() <= detail::paths_kept_as_room);
   }
+  CHECK(reused > 1000);  // or no room has gone round
 }
 
 TEST_CASE("each receiver is taken once, those with most links first") {

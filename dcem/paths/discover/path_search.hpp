@@ -70,11 +70,11 @@ class PathSearch {
         transmitters_(transmitters),
         counters_(counters),
         solver_(tracer, settings.max_transmissions, settings.edges),
-        links_(transmitters.size()),
-        tried_(transmitters.size()) {}
+        links_(transmitters.size()) {}
 
   /// Solves what was remembered of each link.
   void revalidate(const PathCache& cache) {
+    tried_.resize(transmitters_.size());
     for (std::size_t index = 0; index < transmitters_.size(); ++index) {
       if (!transmitters_[index] || !cache.sequences(index)) continue;
       for (const Sequence& sequence : *cache.sequences(index)) {
@@ -189,7 +189,7 @@ class PathSearch {
   bool is_joined(const Sequence& sequence) const { return halves_cover(settings_.joined, sequence); }
 
   bool is_remembered(std::size_t transmitter, const Sequence& sequence) const {
-    return tried_[transmitter].size() > 0 && tried_[transmitter].contains(sequence);
+    return !tried_.empty() && tried_[transmitter].contains(sequence);
   }
 
   bool keep(std::size_t transmitter, std::optional<Path>&& path) {
@@ -204,7 +204,7 @@ class PathSearch {
   SearchCounters& counters_;
   PathSolver<Index> solver_;
   std::vector<LinkPaths> links_;
-  std::vector<SequenceTable> tried_;  ///< per transmitter: the sequences that were remembered
+  std::vector<SequenceTable> tried_;  ///< per transmitter: the sequences that were remembered; none where nothing was
 };
 
 }  // namespace detail

@@ -13,7 +13,8 @@ namespace dcem::detail {
 
 class FrameChange {
  public:
-  explicit FrameChange(const Scene& scene) : margin_m_(margin_m(scene)) {
+  /// `has_boxes`: whether `boxes` is asked for.
+  FrameChange(const Scene& scene, bool has_boxes) : has_boxes_(has_boxes), margin_m_(margin_m(scene)) {
     for (const Body& body : scene.bodies()) {
       Aabb<double>& box = local_boxes_.emplace_back();
       for (const Vec3& vertex_m : body.mesh.vertices_m) box.extend(vertex_m);
@@ -33,7 +34,7 @@ class FrameChange {
       any_moved_ = any_moved_ || moved_[body] != 0;
       if (!is_there || before == after) continue;
       any_ = true;
-      if (local_boxes_[body].empty()) continue;
+      if (!has_boxes_ || local_boxes_[body].empty()) continue;
       for (const BodyState* state : {&before, &after}) {
         if (state->present) boxes_.add(local_boxes_[body], state->placement.pose, margin_m_);
       }
@@ -56,6 +57,7 @@ class FrameChange {
     return std::max(0.05, 2.0 * (6.0 * scene.settings().weld_tolerance_m + facet_reach_m(scene)));
   }
 
+  bool has_boxes_;
   double margin_m_;
   std::vector<Aabb<double>> local_boxes_;  ///< by body, in its own axes
   std::vector<char> moved_;

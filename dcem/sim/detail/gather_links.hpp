@@ -17,12 +17,16 @@ inline constexpr std::size_t many_links = 4096;
 std::vector<std::size_t> busiest_first(std::size_t receivers,
                                        const std::vector<std::vector<std::uint32_t>>& transmitters_of);
 
-/// All links by transmitter, then receiver. They are put in the place of those in `room`, where there are any: fresh
-/// memory costs more than all else here.
-std::vector<LinkResult> gather_links(std::vector<std::vector<LinkResult>>&& by_receiver, std::vector<LinkResult>&& room,
+/// All links by transmitter, then receiver. They change places with those in `room`, where there are any: fresh memory
+/// costs more than all else here. What has been there is left to the receivers, as room for what they find next.
+std::vector<LinkResult> gather_links(std::vector<std::vector<LinkResult>>& by_receiver, std::vector<LinkResult>&& room,
                                      ThreadPool& pool);
 
-/// What is left of links that nobody needs any more: their room. Their paths are given up by all threads.
+/// So many paths of a link that nobody needs any more are kept as room for others. Those of a frame with more, which
+/// may be gigabytes, are given up.
+inline constexpr std::size_t paths_kept_as_room = 2;
+
+/// What is left of links that nobody needs any more: their room, and that of a few paths.
 std::vector<LinkResult> room_of(std::vector<LinkResult>&& links, ThreadPool& pool);
 
 }  // namespace dcem::detail

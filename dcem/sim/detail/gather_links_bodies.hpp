@@ -63,26 +63,32 @@ inline void make_room(std::vector<LinkResult>& links, std::size_t count, ThreadP
   });
 }
 
-DCEM_INLINE std::vector<LinkResult> gather_links(std::vector<std::vector<LinkResult>>&& by_receiver,
+DCEM_INLINE std::vector<LinkResult> gather_links(std::vector<std::vector<LinkResult>>& by_receiver,
                                                  std::vector<LinkResult>&& room, ThreadPool& pool) {
   const std::vector<std::size_t> first = first_links(by_receiver);
   ThreadPool alone(1);
   ThreadPool& threads = first.back() < many_links ? alone : pool;
   const std::vector<std::size_t> places = places_of(by_receiver, first, threads);
   std::vector<LinkResult> all = std::move(room);
+  const bool has_room = !all.empty();
   make_room(all, first.back(), threads);
   all.resize(first.back());
   threads.for_each(by_receiver.size(), [&](std::size_t receiver, unsigned) {
-    std::vector<LinkResult> links = std::move(by_receiver[receiver]);
-    for (std::size_t link = 0; link < links.size(); ++link)
-      all[places[first[receiver] + link]] = std::move(links[link]);
+    std::vector<LinkResult>& links = by_receiver[receiver];
+    for (std::size_t link = 0; link < links.size(); ++link) {
+      std::swap(all[places[first[receiver] + link]], links[link]);
+    }
+    if (!has_room) links = {};
   });
   return all;
 }
 
 DCEM_INLINE std::vector<LinkResult> room_of(std::vector<LinkResult>&& links, ThreadPool& pool) {
   if (links.size() < many_links) return {};
-  pool.for_each_quick(links.size(), [&](std::size_t link) { links[link] = {}; });
+  pool.for_each_quick(links.size(), [&](std::size_t link) {
+    const LinkResult& spent = links[link];
+    if (spent.paths.capacity() > paths_kept_as_room || !spent.diffuse.tiles.empty()) links[link] = {};
+  });
   return std::move(links);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// What solving links took, and a device as fields see it: shared by the parts of `Simulator`.
 #include <algorithm>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -22,19 +23,24 @@ struct Solved {
   CacheCounters cache;
 };
 
-/// All links by transmitter, then receiver. `of_transmitters`: what these took beside. `room`: as in `gather_links`.
-inline Solved sum_of(std::vector<Solved>&& by_receiver, const WorkCounters& of_transmitters, ThreadPool& pool,
-                     std::vector<LinkResult>&& room = {}) {
+/// All links by transmitter, then receiver. `of_transmitters`: what these took beside. `room`: as in `gather_links`;
+/// what that leaves to the receivers is in `links` afterwards.
+inline Solved sum_of(std::span<Solved> by_receiver, const WorkCounters& of_transmitters, ThreadPool& pool,
+                     std::vector<LinkResult>&& room, std::vector<std::vector<LinkResult>>& links) {
   Solved sum;
   sum.work = of_transmitters;
-  std::vector<std::vector<LinkResult>> links;
+  links.clear();
   for (Solved& one : by_receiver) {
     links.push_back(std::move(one.links));
     sum.work += one.work;
     sum.cache += one.cache;
   }
-  sum.links = gather_links(std::move(links), std::move(room), pool);
+  sum.links = gather_links(links, std::move(room), pool);
   return sum;
+}
+inline Solved sum_of(std::span<Solved> by_receiver, const WorkCounters& of_transmitters, ThreadPool& pool) {
+  std::vector<std::vector<LinkResult>> links;
+  return sum_of(by_receiver, of_transmitters, pool, {}, links);
 }
 
 inline void add_search_work(const SearchCounters& counters, WorkCounters& work) {

@@ -2,6 +2,7 @@
 /// What is remembered of a receiver and its links from frame to frame, where the cache is exact.
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -34,14 +35,21 @@ inline constexpr double remembered_receiver_bytes = 5e6, remembered_link_bytes =
 struct LinkMemory {
   std::optional<LinkResult> result;         ///< none: the link was not there
   StandingLink<PathContribution> standing;  ///< while both ends stand
-  PooledLink pooled;                        ///< while the transmitter stands
+  std::unique_ptr<PooledLink> pooled;       ///< while the transmitter stands and the receiver goes through places
 
   void forget() {
     result.reset();
     standing.forget();
-    pooled.forget();
+    pooled.reset();
   }
 };
+
+/// How many paths they had.
+inline std::size_t path_count(std::span<const LinkMemory> links) {
+  std::size_t count = 0;
+  for (const LinkMemory& link : links) count += link.result ? link.result->paths.size() : 0;
+  return count;
+}
 
 struct ReceiverMemory {
   std::optional<DeviceState> state;  ///< none: it was not there
@@ -70,7 +78,7 @@ struct ReceiverMemory {
 
   /// The candidates of the places that it was in.
   void forget_pools() {
-    for (LinkMemory& link : links) link.pooled.forget();
+    for (LinkMemory& link : links) link.pooled.reset();
   }
 
   /// The frame before, of which the next one is not the successor.
@@ -94,15 +102,15 @@ inline std::size_t ReceiverMemory::select(std::span<const std::uint32_t> transmi
     links.resize(count);
     return 0;
   }
-  std::size_t gone = 0;
+  if (links.size() == transmitters.size() && std::ranges::equal(numbers, transmitters)) return 0;
   std::vector<LinkMemory> kept(transmitters.size());
   auto before = numbers.begin();
   for (std::size_t now = 0; now < kept.size(); ++now) {
     before = std::lower_bound(before, numbers.end(), transmitters[now]);
     if (before == numbers.end() || *before != transmitters[now] || links.empty()) continue;
-    kept[now] = std::exchange(links[static_cast<std::size_t>(before - numbers.begin())], {});
+    kept[now] = std::move(links[static_cast<std::size_t>(before - numbers.begin())]);
   }
-  for (const LinkMemory& link : links) gone += link.result ? link.result->paths.size() : 0;
+  const std::size_t gone = path_count(links);  // of those that are kept nothing has stayed behind
   links = std::move(kept);
   numbers.assign(transmitters.begin(), transmitters.end());
   return gone;
@@ -120,6 +128,10 @@ inline bool same_bits(const std::optional<DeviceState>& before, const DeviceStat
 
 /// Counts the paths that a link has now and had not, and those that it had.
 inline void count_births(const std::optional<LinkResult>& before, const LinkResult& now, CacheCounters& counters) {
+  const auto same = [](const PathContribution& one, const PathContribution& other) {
+    return same_sequence(one.path, other.path);
+  };
+  if (before && std::ranges::equal(before->paths, now.paths, same)) return;
   const auto keys_of = [](const std::vector<PathContribution>& paths) {
     std::vector<std::uint64_t> keys;
     for (const PathContribution& path : paths) keys.push_back(SequenceHash()(sequence_of(path.path)));

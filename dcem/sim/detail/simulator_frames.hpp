@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "dcem/paths/query/obstruction.hpp"
@@ -75,6 +76,7 @@ void BasicSimulator<Surface, Index>::choose_links() {
     chosen_[index] = choice_.transmitters_of(index, state.position_m);
   });
   if (settings_.links.receivers) keep_part(*settings_.links.receivers, settings_.links.range_m, receivers_m, chosen_);
+  if (halves_.empty()) return;
   links_of_.assign(places_m.size(), 0);
   for (const std::vector<std::uint32_t>& of_one : chosen_) {
     for (const std::uint32_t transmitter : of_one) ++links_of_[transmitter];
@@ -187,10 +189,19 @@ TreeUpdateReport BasicSimulator<Surface, Index>::pass(const Frame& frame, const 
 template <SurfaceModel Surface, SpatialIndex Index>
 TreeUpdateReport BasicSimulator<Surface, Index>::update_index(const ChangeSet& changes) {
   halves_are_current_ = false;
+  std::vector<std::size_t> places;  // among those that have moved
+  std::size_t count = moved_.size();
   for (const BodyId body : changes.moved) {
+    places.push_back(count);
     const auto [first, last] = scene_.triangle_range(body);
-    for (std::uint32_t triangle = first; triangle < last; ++triangle) moved_.push_back(triangle);
+    count += last - first;
   }
+  moved_.resize(count);
+  pool_->for_each_quick(places.size(), [&](std::size_t number) {
+    const auto [first, last] = scene_.triangle_range(changes.moved[number]);
+    std::iota(moved_.begin() + static_cast<std::ptrdiff_t>(places[number]),
+              moved_.begin() + static_cast<std::ptrdiff_t>(places[number] + (last - first)), first);
+  });
   if (outlines_) {
     outlines_->update(scene_, changes.moved);
     if (lanes_) lanes_->update(scene_, *outlines_, changes.moved);

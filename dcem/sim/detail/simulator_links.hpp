@@ -14,6 +14,26 @@
 
 namespace dcem {
 
+namespace detail {
+
+/// Each of some paths once, as they are reported.
+inline std::vector<PathContribution*> in_order(std::vector<PathContribution>& paths) {
+  std::vector<PathContribution*> order;
+  order.reserve(paths.size());
+  for (PathContribution& path : paths) order.push_back(&path);
+  std::sort(order.begin(), order.end(), [](const PathContribution* one, const PathContribution* other) {
+    return reported_before(one->path, other->path);
+  });
+  // The same sequence gives the same bits, so repeated paths stand side by side.
+  const auto same = [](const PathContribution* one, const PathContribution* other) {
+    return same_sequence(one->path, other->path);
+  };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
+  return order;
+}
+
+}  // namespace detail
+
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const Device> receivers,
                                                               WorkCounters* work) const {
@@ -44,7 +64,7 @@ std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const De
     by_receiver[index] = solve_receiver(receivers[index], index, ends.only(std::move(of_one)), nullptr,
                                         {rooms.empty() ? nullptr : &rooms[worker]});
   });
-  Solved solved = detail::sum_of(std::move(by_receiver), ends.work, *pool_);
+  Solved solved = detail::sum_of(by_receiver, ends.work, *pool_);
   if (work != nullptr) *work += solved.work;
   return std::move(solved.links);
 }
@@ -67,7 +87,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     by_receiver[index] = solve_receiver(receivers[index], index, transmitters.only(chosen_[index]), cache, proposals);
     by_receiver[index].cache.died += gone;
   });
-  return detail::sum_of(std::move(by_receiver), transmitters.work, *pool_);
+  return detail::sum_of(by_receiver, transmitters.work, *pool_);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -95,6 +115,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   for (std::size_t transmitter = 0; transmitter < search.transmitter_ends.size(); ++transmitter) {
     if (search.transmitter_ends[transmitter]) present.push_back(transmitter);
   }
+  if (proposals.spent != nullptr) solved.links = std::exchange(*proposals.spent, {});
   solved.links.resize(present.size());
   std::vector<WorkCounters> spent(present.size());
   const auto solve_link = [&](std::size_t place, unsigned) {
@@ -104,7 +125,8 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     DiffusePower diffuse = diffuse_power(receiver, {end, to}, view.get(), transmitters, transmitter, work);
     LinkResult& link = solved.links[place];
     link = make_link(std::move(paths), std::move(diffuse), transmitters.number(transmitter),
-                     {*search.transmitter_ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field);
+                     {*search.transmitter_ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field,
+                     std::move(link.paths));
     link.receiver = index;
     link.complete = !samples || search.search.max_interactions == 0;
     work.paths += link.paths.size();
@@ -151,8 +173,10 @@ DiffusePower BasicSimulator<Surface, Index>::diffuse_power(const Device& receive
 template <SurfaceModel Surface, SpatialIndex Index>
 LinkResult BasicSimulator<Surface, Index>::make_link(LinkPaths&& found, DiffusePower&& diffuse, std::size_t transmitter,
                                                      const DeviceEnd& from, const DeviceEnd& to,
-                                                     const Evaluator& evaluator) const {
-  std::vector<PathContribution> paths;
+                                                     const Evaluator& evaluator,
+                                                     std::vector<PathContribution>&& room) const {
+  std::vector<PathContribution> paths = std::move(room);
+  paths.clear();
   for (Path& path : found.paths) paths.push_back(evaluator.evaluate(std::move(path), from.radio, to.radio));
   return finish_link(std::move(paths), std::move(diffuse), transmitter, from, to, evaluator);
 }
@@ -161,30 +185,26 @@ template <SurfaceModel Surface, SpatialIndex Index>
 LinkResult BasicSimulator<Surface, Index>::finish_link(std::vector<PathContribution>&& paths, DiffusePower&& diffuse,
                                                        std::size_t transmitter, const DeviceEnd& from,
                                                        const DeviceEnd& to, const Evaluator& evaluator) const {
-  std::vector<PathContribution*> order;
-  for (PathContribution& path : paths) order.push_back(&path);
-  std::sort(order.begin(), order.end(), [](const PathContribution* one, const PathContribution* other) {
-    return reported_before(one->path, other->path);
-  });
-  // The same sequence gives the same bits, so repeated paths stand side by side.
-  const auto same = [](const PathContribution* one, const PathContribution* other) {
-    return same_sequence(one->path, other->path);
-  };
-  order.erase(std::unique(order.begin(), order.end(), same), order.end());
   const PropagationSettings& propagation = settings_.propagation;
+  const double longest_m = propagation.max_path_length_m.value_or(std::numeric_limits<double>::infinity());
+  bool line_of_sight = false;
+  const auto is_told = [&](const PathContribution& path) {
+    const bool is_direct = path.path.interactions.empty();
+    if (is_direct) line_of_sight = path.path.foliage.empty();  // in foliage the segment is not free, though it is open
+    if (is_direct && !propagation.line_of_sight) return false;
+    if (path.path.length_m > longest_m) return false;
+    return !propagation.min_path_gain_db || power_ratio_to_db(path.power_ratio) >= *propagation.min_path_gain_db;
+  };
   LinkResult link;
   link.transmitter = transmitter;
   link.diffuse = std::move(diffuse);
-  bool line_of_sight = false;
-  const double longest_m = propagation.max_path_length_m.value_or(std::numeric_limits<double>::infinity());
-  for (PathContribution* const path : order) {
-    const bool is_direct = path->path.interactions.empty();
-    if (is_direct) line_of_sight = path->path.foliage.empty();  // in foliage the segment is not free, though it is open
-    if (is_direct && !propagation.line_of_sight) continue;
-    if (path->path.length_m > longest_m) continue;
-    const bool too_weak =
-        propagation.min_path_gain_db && !(power_ratio_to_db(path->power_ratio) >= *propagation.min_path_gain_db);
-    if (!too_weak) link.paths.push_back(std::move(*path));
+  if (paths.size() <= 1) {  // the direct path alone, of most links of a fleet
+    if (!paths.empty() && !is_told(paths.front())) paths.clear();
+    link.paths = std::move(paths);
+  } else {
+    for (PathContribution* const path : detail::in_order(paths)) {
+      if (is_told(*path)) link.paths.push_back(std::move(*path));
+    }
   }
   trace_elements(link.paths, from, to, evaluator);
   link.statistics = link_statistics(link.paths, from.radio.power_dbm, line_of_sight, link.diffuse);

@@ -52,6 +52,10 @@ struct BasicSimulator<Surface, Index>::FollowedLink {
         ways(of.tracer, of.search.max_transmissions) {}
 
   const LinkEnd& from() const { return *of.transmitters.link[transmitter]; }
+  PooledLink& pooled() {
+    if (memory.pooled == nullptr) memory.pooled = std::make_unique<PooledLink>();
+    return *memory.pooled;
+  }
   /// What a sequence brings between the transmitter and the receiver.
   std::optional<PathContribution> solve(const Sequence& sequence) {
     std::optional<Path> path = solver.solve(from(), of.end, sequence);
@@ -75,6 +79,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     const TransmitterEnds& transmitters) {
   const std::span<const Device> receivers = scene_.receivers();
   std::vector<Solved> by_receiver(receivers.size());
+  spent_.resize(receivers.size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
   const std::vector<std::size_t> order = detail::busiest_first(receivers.size(), chosen_);
   pool_->for_each(receivers.size(), [&](std::size_t place, unsigned worker) {
@@ -84,7 +89,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
                              ? follow_receiver(receivers[index], index, transmitters, room)
                              : follow_receiver(receivers[index], index, transmitters.only(chosen_[index]), room);
   });
-  return detail::sum_of(std::move(by_receiver), transmitters.work, *pool_, std::move(room_));
+  return detail::sum_of(by_receiver, transmitters.work, *pool_, std::move(room_), spent_);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -94,14 +99,16 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const DeviceState state = state_of(receiver);
   Solved solved;
   if (!state.present) {
-    for (const detail::LinkMemory& link : memory.links)
-      solved.cache.died += link.result ? link.result->paths.size() : 0;
+    solved.cache.died += detail::path_count(memory.links);
     memory.forget();
     return solved;
   }
   TraversalCounters traversal;
   const LinkEnd end = link_end(state, traversal);
-  if (memory.end && memory.end->ignored_body != end.ignored_body) memory.links.clear();
+  if (memory.end && memory.end->ignored_body != end.ignored_body) {
+    solved.cache.died += detail::path_count(memory.links);
+    memory.links.clear();
+  }
   const bool is_kept = is_remembered_[index] != 0;
   if (!is_kept) memory.forget_views();
   const bool stands = detail::same_bits(memory.end, end), is_same = detail::same_bits(memory.state, state);
@@ -119,27 +126,37 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
     all_stay = all_stay && stays(transmitter);
   }
-  if (plan_.joined == 0 && !all_stay) return solve_again(receiver, index, transmitters, room);
+  if (plan_.joined == 0 && !all_stay) {
+    Solved again = solve_again(receiver, index, transmitters, room);
+    again.cache += solved.cache;
+    return again;
+  }
   std::vector<LinkToFollow> to_follow;
+  solved.links = std::exchange(spent_[index], {});
+  std::size_t count = 0;
+  const auto next_link = [&]() -> LinkResult& {
+    if (count == solved.links.size()) solved.links.emplace_back();
+    return solved.links[count++];
+  };
   for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
     detail::LinkMemory& link = memory.links[transmitter];
     if (!ends[transmitter]) {
-      solved.cache.died += link.result ? link.result->paths.size() : 0;
+      solved.cache.died += detail::path_count({&link, 1});
       link.forget();
       continue;
     }
     const std::size_t number = transmitters.number(transmitter);
     const bool rests = is_kept && stands && link.result && transmitter_rests_[number] != 0;
-    if (transmitter_rests_[number] == 0) link.pooled.forget();
+    if (transmitter_rests_[number] == 0) link.pooled.reset();
     if (stays(transmitter)) {
       solved.cache.taken_over += link.result->paths.size();
-      solved.links.push_back(*link.result);
+      next_link() = *link.result;
     } else {
-      to_follow.push_back(
-          {transmitter, solved.links.size(), rests, rests && is_same && transmitter_is_same_[number] != 0});
-      solved.links.emplace_back().receiver = index;
+      to_follow.push_back({transmitter, count, rests, rests && is_same && transmitter_is_same_[number] != 0});
+      next_link().receiver = index;
     }
   }
+  solved.links.resize(count);
   if (!to_follow.empty()) {
     Following following(*this, transmitters, receiver, end, radio);
     if (is_kept) {
@@ -227,19 +244,25 @@ void BasicSimulator<Surface, Index>::check_some(const Device& receiver, std::siz
   }
 }
 
-/// All links of a receiver from scratch, where sequences are not joined from halves.
+/// All links of a receiver from scratch, where sequences are not joined from halves. What is remembered of each is
+/// written over: where links are very many, memory costs more than they.
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_again(
     const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room) {
-  Solved solved = solve_receiver(receiver, index, transmitters, nullptr, {room});
-  detail::ReceiverMemory& memory = receivers_[index];
-  const std::vector<detail::LinkMemory> before = std::exchange(memory.links, {});
-  memory.links.resize(transmitters.link.size());
-  for (const LinkResult& link : solved.links) {
-    detail::LinkMemory& now = memory.link(link.transmitter);
-    detail::count_births(before[static_cast<std::size_t>(&now - memory.links.data())].result, link, solved.cache);
-    now.result = link;
+  Solved solved = solve_receiver(receiver, index, transmitters, nullptr, {room, {}, &spent_[index]});
+  std::vector<detail::LinkMemory>& links = receivers_[index].links;
+  auto found = solved.links.cbegin();
+  for (std::size_t transmitter = 0; transmitter < links.size(); ++transmitter) {
+    detail::LinkMemory& memory = links[transmitter];
+    if (found == solved.links.cend() || found->transmitter != transmitters.number(transmitter)) {
+      solved.cache.died += detail::path_count({&memory, 1});
+      memory.forget();
+      continue;
+    }
+    detail::count_births(memory.result, *found, solved.cache);
+    memory.result = *found++;
   }
+  DCEM_ASSERT(found == solved.links.cend());
   return solved;
 }
 

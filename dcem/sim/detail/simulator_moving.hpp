@@ -132,15 +132,15 @@ void BasicSimulator<Surface, Index>::prepare_pool(FollowedLink& link, const Kept
   auto next = half.next_place();
   if (!next) return;
   const BeamLists& reached = *link.of.transmitters.halves[link.transmitter].lists();
-  link.memory.pooled.prepare({scene_, *outlines_, *lanes_, reached, joined_orders(link.of.search)}, std::move(next),
-                             half.frames_to_next());
+  link.pooled().prepare({scene_, *outlines_, *lanes_, reached, joined_orders(link.of.search)}, std::move(next),
+                        half.frames_to_next());
 }
 
 /// All paths of a link whose transmitter stands, from the candidates of the receiver's place.
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(FollowedLink& link,
                                                                              const KeptHalf& half) const {
-  PooledLink& pooled = link.memory.pooled;
+  PooledLink& pooled = link.pooled();
   const Following& following = link.of;
   const KeptHalf& mast = following.transmitters.halves[link.transmitter];
   if (!pooled.is_of(*half.place())) {

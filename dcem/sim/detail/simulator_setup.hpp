@@ -41,7 +41,7 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   index_.build(scene_.triangle_view(), scene_.triangle_boxes(), scene_.first_triangles());
   if (looks()) outlines_.emplace(scene_);
   if (cache_ == CacheMode::exact) {
-    change_.emplace(scene_);
+    change_.emplace(scene_, plan_.joined > 0);
     receivers_.resize(scene_.receivers().size());
   }
   if (plan_.joined == 0) return;

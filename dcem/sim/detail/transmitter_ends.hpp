@@ -64,6 +64,9 @@ struct DeviceEnd {
 inline TransmitterEnds TransmitterEnds::only(std::vector<std::uint32_t> chosen) const {
   TransmitterEnds some;
   some.devices = devices;
+  some.link.reserve(chosen.size());
+  some.radio.reserve(chosen.size());
+  some.reached.reserve(chosen.size());
   for (const std::uint32_t index : chosen) {
     some.link.push_back(link[index]);
     some.radio.push_back(radio[index]);

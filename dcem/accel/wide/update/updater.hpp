@@ -89,7 +89,7 @@ class WideUpdater {
  private:
   TrackedMeasures watch() const;
 
-  void mend(WideBvh& tree, const TriangleView& mesh, WideBvh::Boxes boxes, TreeUpdateReport& report);
+  void mend(WideBvh& tree, const TriangleView& mesh, WideBvh::Boxes boxes, TreeUpdateReport& report, ThreadPool* pool);
 
   void renew_where_due(WideBvh& tree, TreeUpdateReport& report) {
     if (parts_.empty()) begin_renewal_where_due(tree);

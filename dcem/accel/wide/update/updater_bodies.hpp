@@ -17,7 +17,7 @@ DCEM_INLINE TreeUpdateReport WideUpdater::update(WideBvh& tree, std::span<const 
     const WideRefitReport refit = tree.refit(moved, mesh, boxes, pool);
     report.nodes_refit = refit.leaves_written + refit.nodes_visited;
     visited_since_renewal_ += static_cast<double>(report.nodes_refit);
-    if (settings_.policy == TreePolicy::adaptive && !moved.empty()) mend(tree, mesh, boxes, report);
+    if (settings_.policy == TreePolicy::adaptive && !moved.empty()) mend(tree, mesh, boxes, report, pool);
   }
   const std::uint64_t touched = report.nodes_refit + report.nodes_rebuilt, in_use = nodes_in_use(tree);
   report.nodes_kept = in_use > touched ? in_use - touched : 0;
@@ -38,8 +38,8 @@ DCEM_INLINE TrackedMeasures WideUpdater::watch() const {
 }
 
 DCEM_INLINE void WideUpdater::mend(WideBvh& tree, const TriangleView& mesh, WideBvh::Boxes boxes,
-                                   TreeUpdateReport& report) {
-  report.reinserted = tree.reinsert_moved(settings_.reinsertion_growth, settings_.reinsertion_turn);
+                                   TreeUpdateReport& report, ThreadPool* pool) {
+  report.reinserted = tree.reinsert_moved(settings_.reinsertion_growth, settings_.reinsertion_turn, pool);
   report.subtrees_rebuilt = report.nodes_rebuilt = report.reinserted;
   const bool looks_closer = ++frames_moved_ % settings_.check_interval == 0;
   if (looks_closer && settings_.rotations_per_node > 0) {

@@ -19,7 +19,7 @@ LinePieces LinkLines::pieces(const FrameResult& frame, ThreadPool& pool) const {
   auto lines = std::make_shared<std::vector<std::string>>();
   const auto make = [&](std::span<const LinkResult> links) {
     std::string text;
-    for (const LinkResult& link : links) append(text, frame, link);
+    for_each_link(links, [&](const LinkResult& link) { append(text, frame, link); });
     return text;
   };
   in_pieces<std::string>(pool, frame.links, make, [&](std::vector<std::string>&& texts) {

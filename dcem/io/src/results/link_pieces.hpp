@@ -36,12 +36,26 @@ inline std::vector<std::span<const LinkResult>> link_pieces(std::span<const Link
   return pieces;
 }
 
+/// Calls `visit(link)` for each. Of most links of a fleet there is one path, far from that of the next: it is fetched
+/// while those before are told.
+template <typename Visit>
+void for_each_link(std::span<const LinkResult> links, Visit&& visit) {
+  constexpr std::size_t ahead = 6, cache_line = 64;
+  for (std::size_t at = 0; at < links.size(); ++at) {
+    if (at + ahead < links.size() && !links[at + ahead].paths.empty()) {
+      const char* const path = reinterpret_cast<const char*>(links[at + ahead].paths.data());
+      for (std::size_t byte = 0; byte < sizeof(PathContribution); byte += cache_line) __builtin_prefetch(path + byte);
+    }
+    visit(links[at]);
+  }
+}
+
 /// Calls `make(links)` of each piece on the threads of a pool and `take(made)`, with a list of what they made in the
 /// order of the pieces, on the calling one. No more pieces are there at a time than keep the threads busy: a frame may
 /// bring gigabytes. Of exceptions that of the first piece is thrown.
 template <typename Made, typename Make, typename Take>
 void in_pieces(ThreadPool& pool, std::span<const LinkResult> links, Make&& make, Take&& take) {
-  const std::size_t at_a_time = 16 * std::size_t{pool.size()};
+  const std::size_t at_a_time = 64 * std::size_t{pool.size()};
   const std::vector<std::span<const LinkResult>> pieces = link_pieces(links);
   for (std::size_t first = 0; first < pieces.size(); first += at_a_time) {
     std::vector<Made> made(std::min(at_a_time, pieces.size() - first));

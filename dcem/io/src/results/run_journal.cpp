@@ -143,11 +143,11 @@ void RunJournal::add(const FrameResult& frame) {
   std::string first = first_piece(figures_of(frame), {}, frame.links.size(), 0);
   const auto make = [](std::span<const LinkResult> links) {
     std::string pieces;
-    for (const LinkResult& link : links) {
+    for_each_link(links, [&](const LinkResult& link) {
       ByteWriter writer;
       writer(link);
       pieces += piece(link_piece, writer.bytes());
-    }
+    });
     return pieces;
   };
   in_pieces<std::string>(pool(), frame.links, make, [&](std::vector<std::string>&& pieces) {
