@@ -67,9 +67,9 @@ TEST_CASE("the rotation is Rz(yaw)·Ry(pitch)·Rx(roll), by a product of matrice
 TEST_CASE("yaw turns forward to the left, positive pitch puts the nose down, positive roll the left side up") {
   const Vec3 forward(1, 0, 0), left(0, 1, 0);
   const double small = 1e-3;
-  CHECK((rotation_matrix({Vec3(0), small, 0, 0}) * forward).y == doctest::Approx(std::sin(small)));
-  CHECK((rotation_matrix({Vec3(0), 0, small, 0}) * forward).z == doctest::Approx(-std::sin(small)));
-  CHECK((rotation_matrix({Vec3(0), 0, 0, small}) * left).z == doctest::Approx(std::sin(small)));
+  CHECK((rotation_matrix({Vec3(0), small, 0, 0}) * forward).y == doctest::Approx(std::sin(small)).scale(0.0));
+  CHECK((rotation_matrix({Vec3(0), 0, small, 0}) * forward).z == doctest::Approx(-std::sin(small)).scale(0.0));
+  CHECK((rotation_matrix({Vec3(0), 0, 0, small}) * left).z == doctest::Approx(std::sin(small)).scale(0.0));
   // Pitch acts in the turned frame: a car that faces north and dips its nose looks north and down.
   const Vec3 nose = rotation_matrix({Vec3(0), pi / 2, pi / 4, 0}) * forward;
   CHECK(glm::distance(nose, Vec3(0, std::sqrt(0.5), -std::sqrt(0.5))) < 1e-15);

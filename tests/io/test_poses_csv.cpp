@@ -66,8 +66,8 @@ TEST_CASE("rows of an id become its waypoints") {
   CHECK(motion.waypoints[0].time_s == 0.0);
   CHECK(motion.waypoints[0].pose.position_m == Vec3(1, 2, 3));
   CHECK(motion.waypoints[0].pose.yaw_rad == doctest::Approx(std::acos(0.0)));
-  CHECK(motion.waypoints[0].pose.pitch_rad == doctest::Approx(std::acos(-1.0) / 18));
-  CHECK(motion.waypoints[0].pose.roll_rad == doctest::Approx(-std::acos(-1.0) / 9));
+  CHECK(motion.waypoints[0].pose.pitch_rad == doctest::Approx(std::acos(-1.0) / 18).scale(0.0));
+  CHECK(motion.waypoints[0].pose.roll_rad == doctest::Approx(-std::acos(-1.0) / 9).scale(0.0));
   CHECK(motion.waypoints[1].time_s == 2.5);
   CHECK(motion.waypoints[1].pose.position_m == Vec3(4, 5, 6));
 }

@@ -968,9 +968,9 @@ TEST_CASE("diffuse power: statistics of a link are sums over its paths and its t
                      std::log(std::hypot(c, mean([&](const PowerSample& one) { return std::sin(angle(one)); }))));
   };
   CHECK(*s.azimuth_spread_arrival_rad ==
-        doctest::Approx(spread_rad([](const PowerSample& one) { return one.arrival.azimuth_rad; })).epsilon(1e-9));
+        relative(spread_rad([](const PowerSample& one) { return one.arrival.azimuth_rad; }), 1e-9));
   CHECK(*s.azimuth_spread_departure_rad ==
-        doctest::Approx(spread_rad([](const PowerSample& one) { return one.departure.azimuth_rad; })).epsilon(1e-9));
+        relative(spread_rad([](const PowerSample& one) { return one.departure.azimuth_rad; }), 1e-9));
 }
 
 TEST_CASE("diffuse power: angles of a tile point from the devices to it") {
@@ -1242,8 +1242,7 @@ TEST_CASE("diffuse power: no point of a tile brings more than the limit that ste
                           : wall.scattering.pattern == ScatteringPattern::directive
                               ? wall.scattering.lobe
                               : std::max(narrow.lobe, narrow.back_lobe);
-    CHECK(scattered.pattern_width_rad(MaterialId(0)) ==
-          doctest::Approx(std::min(1.0, std::sqrt(2.0 / narrowest))).epsilon(1e-15));
+    CHECK(scattered.pattern_width_rad(MaterialId(0)) == relative(std::min(1.0, std::sqrt(2.0 / narrowest)), 1e-15));
     close += highest > 0.3 * limit;
   }
   CHECK(close > 100);  // a limit that is always far off would be of no use

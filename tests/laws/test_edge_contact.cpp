@@ -190,18 +190,22 @@ TEST_CASE("a point of an edge that touches a third facet does not diffract, a mi
 }
 
 TEST_CASE("a device mounted on a face sees none of that face's edges, and a finite field at the others") {
-  const Patches box = box_faces(Vec3(-2, -4, 0), Vec3(2, 4, 5), "opaque");
+  // The wall across the way has a corner at x = 4 that the device sees, and the receiver over the roof.
+  const Patches walls =
+      box_faces(Vec3(-2, -4, 0), Vec3(2, 4, 5), "opaque") + box_faces(Vec3(4, 2, 0), Vec3(6, 4, 8), "opaque");
+  const Vec3 receiver_m(-7, 1, 12);
   for (const Discovery discovery : both_discoveries) {
     for (const double gap_m : {0.0, 3e-5, -3e-5}) {
       CAPTURE(gap_m);
-      const auto paths = paths_between(scene_through_files(box), Vec3(2 + gap_m, 1, 3), Vec3(-7, 1, 9),
-                                       edge_settings(1, 0, discovery));
+      const auto paths =
+          paths_between(scene_through_files(walls), Vec3(2 + gap_m, 1, 3), receiver_m, edge_settings(1, 0, discovery));
       for (const PathContribution& path : paths) CHECK(std::isfinite(norm_squared(path.transfer)));
       CHECK(count_at(edge_points_m(paths), 0, 2.0) == 0);
+      CHECK(count_at(edge_points_m(paths), 0, 4.0) > 0);
     }
     // A millimetre off the wall it sees them.
     const auto paths =
-        paths_between(scene_through_files(box), Vec3(2.001, 1, 3), Vec3(-7, 1, 9), edge_settings(1, 0, discovery));
+        paths_between(scene_through_files(walls), Vec3(2.001, 1, 3), receiver_m, edge_settings(1, 0, discovery));
     CHECK(count_at(edge_points_m(paths), 0, 2.0) > 0);
   }
 }

@@ -432,12 +432,14 @@ TEST_CASE("cascade: spreading of parallel edges is that of the unfolded cylinder
   const auto edge = [](double leg_m, double alignment) { return CascadeEdge<Complex>{{}, {}, leg_m, 1.0, alignment}; };
   const std::array<CascadeEdge<Complex>, 3> edges{edge(7.0, 1.0), edge(2.0, -1.0), edge(9.0, -1.0)};
   CHECK(cascade_spreading<Complex>(4.0, edges) ==
-        doctest::Approx(1.0 / std::sqrt(4.0 * 7.0 * 2.0 * 9.0 * 22.0)).epsilon(1e-14));
+        doctest::Approx(1.0 / std::sqrt(4.0 * 7.0 * 2.0 * 9.0 * 22.0)).epsilon(1e-14).scale(0.0));
   // Two edges at right angles to each other: the second one's plane holds the curvature across the first, so both
   // principal radii are what they are, ρ_e = s2: 1/s1·√(s1/(s2·(s1 + s2)))·√(s2/(s3·(s2 + s3))).
   const std::array<CascadeEdge<Complex>, 2> crossed{edge(7.0, 1.0), edge(2.0, 0.0)};
   CHECK(cascade_spreading<Complex>(4.0, crossed) ==
-        doctest::Approx(1.0 / 4.0 * std::sqrt(4.0 / (7.0 * 11.0)) * std::sqrt(7.0 / (2.0 * 9.0))).epsilon(1e-14));
+        doctest::Approx(1.0 / 4.0 * std::sqrt(4.0 / (7.0 * 11.0)) * std::sqrt(7.0 / (2.0 * 9.0)))
+            .epsilon(1e-14)
+            .scale(0.0));
 }
 
 namespace {

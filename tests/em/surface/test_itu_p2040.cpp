@@ -73,11 +73,11 @@ TEST_CASE("outside the table: an error that names material, frequency and interv
   CHECK_FALSE(refusal([] { itu_properties("brick", 40.001e9, 3, false); }).empty());
   CHECK_FALSE(refusal([] { itu_properties("brick", 0.999e9, 3, false); }).empty());
 
-  // The formula goes on: brick at 60 GHz, σ = 0.0238 · 60^0.16 = 0.0238 · 1.9253307 = 0.045822871.
+  // The formula goes on: brick at 60 GHz, σ = 0.0238 · 60^0.16 = 0.0238 · 1.9253257 = 0.045822751.
   const auto brick = itu_properties("brick", 60e9, 3, true);
   CHECK(brick.extrapolated);
   CHECK(brick.relative_permittivity == 3.91);
-  CHECK(brick.conductivity_s_per_m == doctest::Approx(0.045822871).epsilon(1e-6));
+  CHECK(brick.conductivity_s_per_m == doctest::Approx(0.045822751).epsilon(1e-8).scale(0.0));
   // Nearest by ratio: 100 → 140 is a factor 1.40, 140 → 220 one of 1.57; at 150 GHz 1.50 against 1.47.
   CHECK(itu_properties("glass", 140e9, 3, true).relative_permittivity == 6.31);
   CHECK(itu_properties("glass", 150e9, 3, true).relative_permittivity == 5.79);
