@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/sim/detail/device_numbers.hpp"
@@ -85,13 +86,22 @@ DCEM_INLINE LinkChoice::Cell LinkChoice::cell_of(const Vec3& position_m) const {
 
 DCEM_INLINE void LinkChoice::place(std::span<const std::optional<Vec3>> transmitters_m) {
   transmitters_m_.assign(transmitters_m.begin(), transmitters_m.end());
-  cells_.clear();
   if (!range_m_ || has_pairs_) return;
+  // Most are in the cell in which they were: only the others are sorted.
+  std::vector<char> stays(transmitters_m_.size(), 0);
+  std::erase_if(cells_, [&](const std::pair<Cell, std::uint32_t>& entry) {
+    const auto& [cell, index] = entry;
+    if (index >= stays.size() || !transmitters_m_[index] || cell_of(*transmitters_m_[index]) != cell) return true;
+    stays[index] = 1;
+    return false;
+  });
+  const auto kept = static_cast<std::ptrdiff_t>(cells_.size());
   for (std::size_t index = 0; index < transmitters_m_.size(); ++index) {
-    if (!transmitters_m_[index]) continue;
+    if (stays[index] != 0 || !transmitters_m_[index]) continue;
     cells_.emplace_back(cell_of(*transmitters_m_[index]), static_cast<std::uint32_t>(index));
   }
-  std::sort(cells_.begin(), cells_.end());
+  std::sort(cells_.begin() + kept, cells_.end());
+  std::inplace_merge(cells_.begin(), cells_.begin() + kept, cells_.end());
 }
 
 DCEM_INLINE bool LinkChoice::is_linked(std::uint32_t transmitter, std::size_t receiver, const Vec3& position_m) const {

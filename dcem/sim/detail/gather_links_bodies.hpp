@@ -1,6 +1,7 @@
 #pragma once
 /// Bodies of gather_links.hpp.
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -16,9 +17,9 @@ DCEM_INLINE std::vector<std::size_t> busiest_first(std::size_t receivers,
   std::vector<std::size_t> order(receivers);
   std::iota(order.begin(), order.end(), std::size_t{0});
   if (transmitters_of.size() != receivers || receivers > very_many) return order;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
-    return transmitters_of[one].size() > transmitters_of[other].size();
-  });
+  std::vector<std::size_t> links;
+  for (const std::vector<std::uint32_t>& of_one : transmitters_of) links.push_back(of_one.size());
+  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t receiver) { return links[receiver]; });
   return order;
 }
 

@@ -67,10 +67,11 @@ void BasicSimulator<Surface, Index>::choose_links() {
     if (state.present) places_m[index] = state.position_m;
   });
   choice_.place(places_m);
-  chosen_.assign(receivers.size(), {});
+  chosen_.resize(receivers.size());
   std::vector<std::optional<Vec3>> receivers_m(receivers.size());
   pool_->for_each_quick(receivers.size(), [&](std::size_t index) {
     const DeviceState state = state_of(receivers[index]);
+    chosen_[index].clear();
     if (!state.present) return;
     receivers_m[index] = state.position_m;
     chosen_[index] = choice_.transmitters_of(index, state.position_m);
