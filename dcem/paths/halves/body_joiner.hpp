@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "dcem/paths/halves/beam_lists.hpp"
 #include "dcem/paths/halves/layer_joiner.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 
@@ -22,14 +23,16 @@ class BodyJoiner {
         orders_(orders),
         origin_m_(outlines.middle_m()) {}
 
-  /// Calls `visit(sequence)` for each. `moved_alone`: at least one element is of a body that has moved.
+  /// Calls `visit(sequence)` for each. `moved_alone`: at least one element is of a body that has moved. With what the
+  /// transmitter reaches of the scenery, where that is known, only the parts of edges that it sees are looked at.
   template <typename Visit>
-  void for_each_pair(const PathHalf& receiver, const PathHalf& transmitter, bool moved_alone, Visit& visit) {
+  void for_each_pair(const PathHalf& receiver, const PathHalf& transmitter, bool moved_alone, Visit& visit,
+                     const BeamLists* reached = nullptr) {
     for (std::size_t own = 1; own < receiver.layers().size(); ++own) {
       const bool own_moved = own == moved;
       if (own_moved || !moved_alone) {
-        with_scenery(transmitter, receiver, own, true, visit);
-        with_scenery(receiver, transmitter, own, false, visit);
+        with_scenery(transmitter, receiver, own, true, visit, reached);
+        with_scenery(receiver, transmitter, own, false, visit, nullptr);
       }
       for (std::size_t other = 1; other < transmitter.layers().size(); ++other) {
         if (own_moved || other == moved || !moved_alone)
@@ -42,8 +45,10 @@ class BodyJoiner {
   static constexpr std::size_t moved = 1;  ///< the layer of bodies that have moved
 
   /// An element of the scenery next to `beside`, one of a body next to `other`. `turned`: `beside` is the transmitter.
+  /// `reached`: by `beside`, where that is known.
   template <typename Visit>
-  void with_scenery(const PathHalf& beside, const PathHalf& other, std::size_t layer, bool turned, Visit& visit) {
+  void with_scenery(const PathHalf& beside, const PathHalf& other, std::size_t layer, bool turned, Visit& visit,
+                    const BeamLists* reached) {
     const HalfLayer &scenery = beside.layers()[0], &bodies = other.layers()[layer];
     const BodyElements& elements = other.bodies_of(layer);
     const bool edges = orders_.reflections >= 1 && orders_.diffractions >= 1;
@@ -62,10 +67,20 @@ class BodyJoiner {
     }
     if (!edges) return;
     for (std::size_t at = 0; at < bodies.mirrors.size(); ++at) {
-      scenery.for_each_edge_in(bodies.cones[at], bodies.images_m[at], [&](std::uint32_t edge) {
-        gates_.mirror_to_edge(other, bodies.mirrors[at], bodies.images_m[at], beside, scenery.edges[edge], !turned,
-                              visit);
-      });
+      const auto ask = [&](WedgeId edge) {
+        gates_.mirror_to_edge(other, bodies.mirrors[at], bodies.images_m[at], beside, edge, !turned, visit);
+      };
+      if (reached == nullptr) {
+        scenery.for_each_edge_in(bodies.cones[at], bodies.images_m[at],
+                                 [&](std::uint32_t edge) { ask(scenery.edges[edge]); });
+        continue;
+      }
+      reached->tables()[BeamLists::of_scenery].for_each_part_in(bodies.cones[at], bodies.images_m[at] - origin_m_, 0.0F,
+                                                                [&](const EdgePart& part) {
+                                                                  const WedgeId edge(part.edge);
+                                                                  if (gates_.scene().wedge(edge).body == BodyId(0))
+                                                                    ask(edge);
+                                                                });
     }
   }
 

@@ -50,29 +50,31 @@ class HalfJoiner {
         layers_.for_each_pair(receiver, near, transmitter, transmitter.layers()[0], visit);
       }
     }
-    if (!all_listed) bodies_.for_each_pair(receiver, transmitter, false, visit);
+    if (!all_listed) bodies_.for_each_pair(receiver, transmitter, false, visit, reached);
   }
 
   /// The same for sequences over bodies, in at least one of their elements, where the transmitter has not listed them;
   /// without those over two edges.
   template <typename Visit>
-  void for_each_body_sequence(const PathHalf& receiver, const PathHalf& transmitter, Visit&& visit) {
+  void for_each_body_sequence(const PathHalf& receiver, const PathHalf& transmitter, Visit&& visit,
+                              const BeamLists* reached = nullptr) {
     for (const HalfLayer& own : receiver.layers().subspan(1)) {
       for (const HalfLayer& other : transmitter.layers().subspan(1)) {
         singles(receiver, own, transmitter, other, visit);
       }
     }
-    if (orders_.interactions >= 2) bodies_.for_each_pair(receiver, transmitter, false, visit);
+    if (orders_.interactions >= 2) bodies_.for_each_pair(receiver, transmitter, false, visit, reached);
   }
 
   /// The same for sequences over bodies that have moved, in at least one of their elements.
   template <typename Visit>
-  void for_each_moved_sequence(const PathHalf& receiver, const PathHalf& transmitter, Visit&& visit) {
+  void for_each_moved_sequence(const PathHalf& receiver, const PathHalf& transmitter, Visit&& visit,
+                               const BeamLists* reached = nullptr) {
     constexpr std::size_t moved = 1;
     singles(receiver, receiver.layers()[moved], transmitter, transmitter.layers()[moved], visit);
     if (orders_.interactions < 2) return;
     if (orders_.diffractions >= 2) edge_pairs_.for_each_moved_pair(receiver, transmitter, visit);
-    bodies_.for_each_pair(receiver, transmitter, true, visit);
+    bodies_.for_each_pair(receiver, transmitter, true, visit, reached);
   }
 
  private:

@@ -26,9 +26,11 @@ class FrameChange {
   void note(const Frame& now, const Frame& next) {
     boxes_.clear();
     any_ = any_moved_ = false;
+    bodies_there_ = 0;
     for (std::size_t body = 1; body < local_boxes_.size(); ++body) {  // the scenery stands
       const BodyState &before = now.bodies[body], &after = next.bodies[body];
       const bool is_there = before.present || after.present;
+      bodies_there_ += after.present ? 1 : 0;
       moved_[body] = is_there && (before.present != after.present || before.occupant != after.occupant ||
                                   before.placement.pose != after.placement.pose);
       any_moved_ = any_moved_ || moved_[body] != 0;
@@ -47,6 +49,8 @@ class FrameChange {
   bool any_moved() const { return any_moved_; }
   /// … and which.
   std::span<const char> moved() const { return moved_; }
+  /// How many there are now, the scenery not among them.
+  std::size_t bodies_there() const { return bodies_there_; }
   /// Where bodies in another state were and are.
   const SweptBoxes& boxes() const { return boxes_; }
 
@@ -63,6 +67,7 @@ class FrameChange {
   std::vector<char> moved_;
   SweptBoxes boxes_;
   bool any_ = false, any_moved_ = false;
+  std::size_t bodies_there_ = 0;
 };
 
 }  // namespace dcem::detail

@@ -20,8 +20,12 @@
 namespace dcem::detail {
 
 /// By how much a device may move from frame to frame so that it pays to know what it may see from anywhere in a place,
-/// by measurement in Munich: where that is joined with what standing transmitters list, once for the place …
-inline constexpr double longest_pooled_step_m = 2.0;
+/// by measurement in Munich and Bad Hersfeld: where that is joined with what standing transmitters list, once for the
+/// place. Sequences over bodies are found anew in each frame, over all that may be seen from the place: among many
+/// bodies it pays only for who stays in it for long …
+inline double longest_pooled_step_m(std::size_t bodies) {
+  return std::min(2.0, 60.0 / static_cast<double>(std::max<std::size_t>(1, bodies)));
+}
 /// … the same where sequences of three elements are joined …
 inline constexpr double longest_step_of_triples_m = 0.75;
 /// … and where it is joined anew in each frame.

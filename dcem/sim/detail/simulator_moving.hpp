@@ -26,7 +26,8 @@ void BasicSimulator<Surface, Index>::look_from_receiver(Following& following, de
     following.half = &following.as_transmitter->half();
     return;
   }
-  memory.half.keep_places(pools ? detail::longest_pooled_step_m : detail::longest_step_in_place_m, false);
+  memory.half.keep_places(
+      pools ? detail::longest_pooled_step_m(change_->bodies_there()) : detail::longest_step_in_place_m, false);
   memory.half.update(scene_, *outlines_, following.end, half_settings(search), {}, change_->moved());
   following.half = &memory.half.half();
 }
@@ -160,7 +161,7 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Fol
   pooled.for_each_open(judge, solve);
   pooled.for_each_open_triple(judge, *mast.lists(), solve);
   const JoinOrders orders = joined_orders(following.search);
-  HalfJoiner(scene_, *outlines_, orders).for_each_body_sequence(*following.half, mast.half(), solve);
+  HalfJoiner(scene_, *outlines_, orders).for_each_body_sequence(*following.half, mast.half(), solve, mast.lists());
   if (joins_triples(following.search) && !outlines_->bodies().empty()) {
     TripleJoiner(scene_, *outlines_, *lanes_, orders).for_each_body_sequence(*following.lists, *mast.lists(), solve);
   }

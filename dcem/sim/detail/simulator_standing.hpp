@@ -57,7 +57,7 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_standing(
     };
     const JoinOrders orders = joined_orders(following.search);
     const KeptHalf& mast = following.transmitters.halves[link.transmitter];
-    HalfJoiner(scene_, *outlines_, orders).for_each_moved_sequence(*following.half, mast.half(), add);
+    HalfJoiner(scene_, *outlines_, orders).for_each_moved_sequence(*following.half, mast.half(), add, mast.lists());
     if (joins_triples(following.search)) {
       TripleJoiner(scene_, *outlines_, *lanes_, orders).for_each_moved_sequence(*following.lists, *mast.lists(), add);
     }

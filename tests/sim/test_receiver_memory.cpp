@@ -1,0 +1,84 @@
+/// What is remembered of a receiver's links, as the choice of links changes.
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "dcem/sim/detail/frame_change.hpp"
+#include "dcem/sim/detail/receiver_memory.hpp"
+#include "tests/support/memory_trial.hpp"
+
+namespace test_receiver_memory {
+
+using namespace dcem;
+using namespace dcem::test;
+using Numbers = std::vector<std::uint32_t>;
+
+namespace {
+
+/// Gives each link as many paths as its transmitter's number says.
+void solve(detail::ReceiverMemory& memory) {
+  for (std::size_t place = 0; place < memory.links.size(); ++place) {
+    LinkResult& link = memory.links[place].result.emplace();
+    link.transmitter = memory.numbers[place];
+    link.paths.resize(memory.numbers[place]);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("links keep what is known of them as others come and go, and what is gone is counted once") {
+  detail::ReceiverMemory memory;
+  CHECK(memory.select(Numbers{1, 4, 7}, 3) == 0);
+  solve(memory);
+  CHECK(memory.select(Numbers{1, 4, 7}, 3) == 0);  // the same
+  CHECK(memory.link(4).result->paths.size() == 4);
+  CHECK(memory.select(Numbers{0, 4, 5, 9}, 4) == 8);  // 1 and 7 are gone
+  CHECK(memory.links.size() == 4);
+  CHECK(memory.link(4).result->paths.size() == 4);
+  for (const std::size_t fresh : {0U, 5U, 9U}) CHECK(!memory.link(fresh).result.has_value());
+  solve(memory);
+  CHECK(detail::path_count(memory.links) == 18);
+  CHECK(memory.select(Numbers{}, 0) == 18);
+  CHECK(memory.links.empty());
+  CHECK(memory.select(Numbers{3}, 1) == 0);
+  CHECK(!memory.link(3).result.has_value());
+}
+
+TEST_CASE("where bodies are many, only who stays in a place for long is followed through places") {
+  CHECK(detail::longest_pooled_step_m(0) == 2.0);
+  CHECK(detail::longest_pooled_step_m(20) >= 1.4);    // a street with some cars, at 50 km/h
+  CHECK(detail::longest_pooled_step_m(190) >= 0.14);  // a town full of them: who walks
+  CHECK(detail::longest_pooled_step_m(190) < 0.7);    // and not who drives
+  for (std::size_t bodies = 0; bodies < 500; ++bodies) {
+    REQUIRE(detail::longest_pooled_step_m(bodies + 1) <= detail::longest_pooled_step_m(bodies));
+  }
+}
+
+TEST_CASE("bodies that are there are counted, whether they move or not, and the scenery is none") {
+  Scene scene;
+  scene.add_material({"metal", PerfectConductor{}});
+  TriangleMesh ground;
+  add_quad(ground, {Vec3(-9, -9, 0), {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, "metal");
+  scene.set_scenery(ground);
+  for (const char* name : {"a", "b", "c"}) {
+    scene.add_object(name, make_box(Vec3(1.0), "metal"), straight_way(3, Vec3(0, 0, 1), Vec3(2, 0, 1)));
+  }
+  detail::FrameChange change(scene, true);
+  Frame now = scene.frame_at(0.0), next = now;
+  change.note(now, next);
+  CHECK(change.bodies_there() == 3);
+  CHECK(!change.any());
+  next.bodies[2].present = false;
+  change.note(now, next);
+  CHECK(change.bodies_there() == 2);
+  CHECK(change.any_moved());
+  CHECK(!change.boxes().empty());
+  detail::FrameChange without(scene, false);
+  without.note(now, next);
+  CHECK(without.any_moved());
+  CHECK(without.boxes().empty());
+}
+
+}  // namespace test_receiver_memory
