@@ -138,6 +138,25 @@ struct Float8 {
 /// Operations on Float8 that have no sign of their own.
 namespace simd {
 
+/// The four numbers of each of eight places side by side: the first of all, the second of all, …
+[[gnu::always_inline]] inline std::array<Float8, 4> turned(const std::array<const float*, simd_lanes>& places) {
+  std::array<Float4, simd_lanes> rows;
+  for (std::size_t lane = 0; lane < simd_lanes; ++lane) std::memcpy(&rows[lane], places[lane], sizeof rows[lane]);
+  std::array<std::array<Float4, 4>, 2> halves;
+  for (std::size_t half = 0; half < 2; ++half) {
+    const Float4 &a = rows[4 * half], &b = rows[4 * half + 1], &c = rows[4 * half + 2], &d = rows[4 * half + 3];
+    const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+                 ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const Float4 cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5),
+                 cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    halves[half] = {
+        __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5), __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7),
+        __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5), __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
+  }
+  return {Float8(halves[0][0], halves[1][0]), Float8(halves[0][1], halves[1][1]), Float8(halves[0][2], halves[1][2]),
+          Float8(halves[0][3], halves[1][3])};
+}
+
 /// The smaller one in each lane; that of `other` where one of them is NaN.
 [[gnu::always_inline]] inline Float8 minimum(const Float8& first, const Float8& other) {
   Float8 one = first;

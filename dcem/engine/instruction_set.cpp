@@ -52,6 +52,10 @@ const CandidateKernels& candidate_kernels() {
   return chosen_kernels().load(std::memory_order_relaxed)->candidates;
 }
 
+const KellerKernels& keller_kernels() {
+  return chosen_kernels().load(std::memory_order_relaxed)->keller;
+}
+
 }  // namespace detail
 
 InstructionSet instruction_set() {

@@ -1,7 +1,9 @@
 #pragma once
-/// The walks through the wide tree, those of cones and those of candidates, compiled several times in one library.
+/// The walks through the wide tree, those of cones, of candidates and of edges' images, compiled several times in one
+/// library.
 #include "dcem/accel/wide/trace/kernels.hpp"
 #include "dcem/paths/halves/cone_kernels.hpp"
+#include "dcem/paths/halves/keller_kernels.hpp"
 #include "dcem/paths/memory/candidate_kernels.hpp"
 
 namespace dcem::detail {
@@ -11,6 +13,7 @@ struct EngineKernels {
   WideKernels wide;
   ConeKernels cone;
   CandidateKernels candidates;
+  KellerKernels keller;
 };
 
 const EngineKernels& engine_kernels_baseline();

@@ -62,6 +62,10 @@ class BeamFinder {
   /// The parts of a layer's edges that may be seen directly: as `look_through` from any number of threads, where the
   /// half is settled.
   void find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const;
+  /// Which facets of the scenery the end may light over edges of which it sees parts, those from `first` to `last` − 1
+  /// of all, edge by edge: the number of a facet, and the place of the part.
+  void look_over_edges(std::span<const EdgePart> parts, std::size_t first, std::size_t last,
+                       std::vector<std::array<std::uint32_t, 2>>& lit) const;
   /// What may be seen through the mirrors `first` … `last` − 1 of the scenery and, where they are asked for, of bodies:
   /// the same in the same order from any number of threads.
   void look_through(std::size_t first, std::size_t last, bool bodies, int most_pieces, BeamFinds& finds) const;

@@ -12,6 +12,7 @@
 #include "dcem/core/build_mode.hpp"
 #include "dcem/core/thread_pool.hpp"
 #include "dcem/paths/halves/beam_finder.hpp"
+#include "dcem/paths/halves/edge_looker.hpp"
 #include "dcem/paths/halves/facet_edges.hpp"
 
 namespace dcem {
@@ -63,6 +64,30 @@ DCEM_INLINE void BeamFinder::find_parts_of(std::span<const WedgeId> edges, int m
       parts.push_back(part);
     });
   }
+}
+
+DCEM_INLINE void BeamFinder::look_over_edges(std::span<const EdgePart> parts, std::size_t first, std::size_t last,
+                                             std::vector<std::array<std::uint32_t, 2>>& lit) const {
+  constexpr std::size_t block = 64;  // and as many more as the last edge has
+  std::vector<std::size_t> starts{first};
+  for (std::size_t at = first; at < last; ++at) {
+    if (at - starts.back() >= block && parts[at].edge != parts[at - 1].edge) starts.push_back(at);
+  }
+  starts.push_back(last);
+  std::vector<std::vector<std::array<std::uint32_t, 2>>> found(starts.size() - 1);
+  const auto look = [&](std::size_t number, unsigned) {
+    EdgeLooker looker(source_.scene, source_.outlines, source_.settings.sheets == 0);
+    for (std::size_t from = starts[number], to = from; from < starts[number + 1]; from = to) {
+      while (to < starts[number + 1] && parts[to].edge == parts[from].edge) ++to;
+      looker.look_over(parts, from, to, found[number]);
+    }
+  };
+  if (source_.pool == nullptr) {
+    for (std::size_t number = 0; number < found.size(); ++number) look(number, 0);
+  } else {
+    source_.pool->for_each(found.size(), look);
+  }
+  for (const auto& one : found) lit.insert(lit.end(), one.begin(), one.end());
 }
 
 /// The part of an edge that an image may light through its mirror; its end lies before its beginning where there is

@@ -29,9 +29,13 @@ class BeamLists {
   /// over so many mirrors more …
   void begin_scenery(const BeamSource& source);
   bool go_on(const BeamSource& source, std::size_t mirrors);
+  /// … then, as well, which facets of the scenery are lit over so many more of the parts of edges that are seen.
+  bool go_on_over_edges(const BeamSource& source, std::size_t parts);
   /// … and the rest. The scenery's must be known. `moved` as in `PathHalf::find_bodies`; `follows`: what was listed of
   /// bodies is that of the frame before, and stays true of those that have not moved.
   void find_bodies(const BeamSource& source, std::span<const char> moved = {}, bool follows = false);
+  /// Whether it is known which facets are lit over edges.
+  bool knows_edges() const { return tables_[of_scenery].knows_parts_before(); }
   /// Whether what moves is listed, too.
   bool has_bodies() const { return has_bodies_; }
 
@@ -68,6 +72,11 @@ class BeamLists {
     for (const BeamTable& table : tables_) std::ranges::for_each(table.parts_of(edge), visit);
   }
   template <typename Visit>
+  void for_each_part_before(FacetId facet, std::span<const HalfSpace> cone, const Vec3& apex, float radius_m,
+                            Visit&& visit) const {
+    for (const BeamTable& table : tables_) table.for_each_part_before(facet, cone, apex, radius_m, visit);
+  }
+  template <typename Visit>
   void for_each_part_in(std::span<const HalfSpace> cone, const Vec3& apex, float radius_m, Visit&& visit) const {
     for (const BeamTable& table : tables_) table.for_each_part_in(cone, apex, radius_m, visit);
   }
@@ -87,6 +96,8 @@ class BeamLists {
   const LaneScene* lanes_ = nullptr;
   bool has_bodies_ = false;
   std::size_t looked_through_ = 0;  ///< so many mirrors, where the scenery's are worked out one after the other
+  std::size_t looked_over_ = 0;     ///< so many parts of edges
+  std::vector<std::array<std::uint32_t, 2>> lit_over_;  ///< as `BeamFinder` has it, until all are known
   Vec3 position_m_{0.0};
   std::array<BeamFinds, 3> found_;  ///< as the tables; of the scenery until it is laid out
   std::vector<BeamMirror> mirrors_;

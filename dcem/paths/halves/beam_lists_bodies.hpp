@@ -40,7 +40,8 @@ DCEM_INLINE void BeamLists::begin_scenery(const BeamSource& source) {
   has_bodies_ = source.outlines.bodies().empty();
   found_ = {};
   tables_ = {};
-  looked_through_ = 0;
+  looked_through_ = looked_over_ = 0;
+  lit_over_ = {};
   BeamFinder(source, mirrors_).find_parts(half_->layers()[0], BeamFinder::many_pieces, found_[0]);
 }
 
@@ -54,6 +55,18 @@ DCEM_INLINE bool BeamLists::go_on(const BeamSource& source, std::size_t mirrors)
     found_[0] = {};
   }
   return is_done;
+}
+
+DCEM_INLINE bool BeamLists::go_on_over_edges(const BeamSource& source, std::size_t parts) {
+  const std::span<const EdgePart> all = tables_[of_scenery].parts();
+  std::size_t last = std::min(looked_over_ + parts, all.size());
+  while (last < all.size() && last > 0 && all[last].edge == all[last - 1].edge) ++last;
+  BeamFinder(source, mirrors_).look_over_edges(all, looked_over_, last, lit_over_);
+  looked_over_ = last;
+  if (last < all.size()) return false;
+  tables_[of_scenery].list_parts_before(source.scene, lit_over_);
+  lit_over_ = {};
+  return true;
 }
 
 /// Notes the mirrors of some layers: that of the scenery comes first, and stays while the others change.

@@ -44,6 +44,10 @@ class BeamTable {
     const RowIndex::Row row = part_rows_.row(edge.value);
     return std::span(parts_).subspan(row.first, row.last - row.first);
   }
+  /// From now on it is known over which parts the end may light the facets of the scenery; `lit`: as `BeamFinder` has
+  /// it.
+  void list_parts_before(const Scene& scene, std::span<const std::array<std::uint32_t, 2>> lit);
+  bool knows_parts_before() const { return listed_facets_ > 0; }
   /// Boxes that hold all parts: of bodies one for each of them.
   std::span<const ConeClusters::Box> boxes_of_parts() const {
     return body_boxes_.empty() ? part_clusters_.boxes() : std::span<const ConeClusters::Box>(body_boxes_);
@@ -54,6 +58,11 @@ class BeamTable {
   void for_each_part_in(std::span<const HalfSpace> cone, const Vec3& apex, float radius_m, Visit&& visit) const {
     part_clusters_.for_each_in(cone, apex, radius_m, [&](std::uint32_t number) { visit(parts_[number]); });
   }
+  /// The same for parts over which the end may light a facet, through which the cone looks: where that is not known,
+  /// for all.
+  template <typename Visit>
+  void for_each_part_before(FacetId facet, std::span<const HalfSpace> cone, const Vec3& apex, float radius_m,
+                            Visit&& visit) const;
 
  private:
   using Lanes = std::array<float, simd_lanes>;
@@ -75,6 +84,10 @@ class BeamTable {
   std::array<std::vector<float>, 3> images_;  ///< of the mirrors in `before_`, and seven numbers more
   std::vector<EdgePart> parts_;
   EdgeClusters part_clusters_;
+  std::uint32_t listed_facets_ = 0;  ///< of so many it is known over which parts they may be lit
+  RowIndex before_part_rows_;        ///< in eights, by facet
+  std::vector<std::uint32_t> before_parts_;
+  std::vector<PartRecord> part_records_;       ///< all parts, and one that is nowhere
   std::vector<ConeClusters::Box> body_boxes_;  ///< none where there are parts of the scenery
   std::vector<LitLanes> lit_;
 };
@@ -92,6 +105,21 @@ void BeamTable::for_each_mirror_before(FacetId facet, std::span<const HalfSpace>
   };
   const PointRow images{{&images_[0][row.first], &images_[1][row.first], &images_[2][row.first]}, row.last - row.first};
   detail::cone_kernels().points(images, cone, told_to(visit_eight));
+}
+
+template <typename Visit>
+void BeamTable::for_each_part_before(FacetId facet, std::span<const HalfSpace> cone, const Vec3& apex, float radius_m,
+                                     Visit&& visit) const {
+  if (facet.value >= listed_facets_) return for_each_part_in(cone, apex, radius_m, visit);
+  const RowIndex::Row row = before_part_rows_.row(facet.value);
+  if (row.first == row.last) return;
+  const std::span<const std::uint32_t> numbers = std::span(before_parts_).subspan(row.first, row.last - row.first);
+  const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+      visit(parts_[numbers[first + static_cast<std::size_t>(std::countr_zero(lanes))]]);
+    }
+  };
+  detail::cone_kernels().listed_parts(part_records_, numbers, cone, edge_target(apex, radius_m), told_to(visit_eight));
 }
 
 template <typename Visit>

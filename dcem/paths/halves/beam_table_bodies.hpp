@@ -21,6 +21,7 @@ DCEM_INLINE void BeamTable::lay_out(const Scene& scene, const LaneScene& lanes, 
                            [&](std::uint32_t mirror) { return static_cast<float>(mirrors[mirror].image_m[axis]); });
   }
   lay_out_parts(scene, finds);
+  listed_facets_ = 0;
   lay_out_lit_parts(scene, finds);
 }
 
@@ -32,6 +33,28 @@ DCEM_INLINE void BeamTable::lay_out_parts(const Scene& scene, const BeamFinds& f
   part_clusters_.build(parts_, lanes_->origin_m(),
                        [&](const EdgePart& part) -> const Wedge& { return scene.wedge(WedgeId(part.edge)).edge; });
   find_body_boxes(scene);
+}
+
+DCEM_INLINE void BeamTable::list_parts_before(const Scene& scene, std::span<const std::array<std::uint32_t, 2>> lit) {
+  const auto nowhere = static_cast<std::uint32_t>(parts_.size());
+  part_records_.assign(parts_.size() + 1, {});
+  part_records_.back().direction_to[3] = -1e30F;
+  part_records_.back().place_distance[1] = 1.0F;  // where an apex on its line would be met, too, were it 0
+  for (std::size_t at = 0; at < parts_.size(); ++at) {
+    const EdgePart& part = parts_[at];
+    const LaneEdge& edge = lanes_->edge(WedgeId(part.edge));
+    part_records_[at] = {{edge.start[0], edge.start[1], edge.start[2], part.from},
+                         {edge.direction[0], edge.direction[1], edge.direction[2], part.to},
+                         {part.place, part.distance, 0.0F, 0.0F}};
+  }
+  before_part_rows_.build(
+      scene.facets().size(), lit.size(), simd_lanes, [&](std::size_t item) { return lit[item][0]; },
+      [&](std::size_t item, std::uint32_t place) {
+        if (item == 0) before_parts_.assign(before_part_rows_.size(), nowhere);
+        before_parts_[place] = lit[item][1];
+      });
+  listed_facets_ = scene.bodies().size() > 1 ? scene.world().first(BodyId(1)).facet
+                                             : static_cast<std::uint32_t>(scene.facets().size());
 }
 
 /// Bodies are small and apart: a box around parts of several of them says little.

@@ -36,6 +36,11 @@ struct EightParts {
   EightFloats place{}, distance{};  ///< of the end, along the edge and from its line
 };
 
+/// One part by itself, in three fours.
+struct alignas(16) PartRecord {
+  std::array<float, 4> start_from{}, direction_to{}, place_distance{};
+};
+
 /// Eight images of an end, and what each of them sees through its mirror: as many half spaces as a mirror of four sides
 /// has.
 struct EightImages {

@@ -21,14 +21,16 @@ struct ConeKernels {
                               const ConeTarget& target, const EightsVisitor& visit);
   void (*images)(const BoxTree& tree, std::span<const EightImages> images, std::span<const HalfSpace> cone,
                  const ConeTarget& target, const EightsVisitor& visit);
+  void (*listed_parts)(std::span<const PartRecord> all, std::span<const std::uint32_t> numbers,
+                       std::span<const HalfSpace> cone, const ConeTarget& target, const EightsVisitor& visit);
   void (*points)(const PointRow& row, std::span<const HalfSpace> cone, const EightsVisitor& visit);
 };
 
 inline namespace DCEM_ISA {
 
 /// For the level of instructions that this is compiled for.
-inline constexpr ConeKernels cone_kernel_table{&visit_boxes, &visit_parts<false>, &visit_parts<true>, &visit_images,
-                                               &visit_points};
+inline constexpr ConeKernels cone_kernel_table{&visit_boxes,  &visit_parts<false>, &visit_parts<true>,
+                                               &visit_images, &visit_listed_parts, &visit_points};
 
 #if !defined(DCEM_ENGINE)
 inline const ConeKernels& cone_kernels() {

@@ -112,14 +112,44 @@ template <typename Met>
   return Float8(1e-6F) * (simd::absolute(own_place) + own_distance);
 }
 
+/// Eight parts of edges as they are asked about.
+struct PartLanes {
+  Float8 start_x, start_y, start_z, from, direction_x, direction_y, direction_z, to, place, distance;
+
+  [[gnu::always_inline]] explicit PartLanes(const EightParts& parts)
+      : start_x(parts.start[0]),
+        start_y(parts.start[1]),
+        start_z(parts.start[2]),
+        from(parts.from),
+        direction_x(parts.direction[0]),
+        direction_y(parts.direction[1]),
+        direction_z(parts.direction[2]),
+        to(parts.to),
+        place(parts.place),
+        distance(parts.distance) {}
+  /// Those with eight numbers among all.
+  [[gnu::always_inline]] PartLanes(std::span<const PartRecord> all, const std::uint32_t* numbers) {
+    const auto four = [&](auto member) {
+      std::array<const float*, simd_lanes> places;
+      for (std::size_t lane = 0; lane < simd_lanes; ++lane) places[lane] = (all[numbers[lane]].*member).data();
+      return simd::turned(places);
+    };
+    const auto starts = four(&PartRecord::start_from), directions = four(&PartRecord::direction_to),
+               ends = four(&PartRecord::place_distance);
+    start_x = starts[0], start_y = starts[1], start_z = starts[2], from = starts[3];
+    direction_x = directions[0], direction_y = directions[1], direction_z = directions[2], to = directions[3];
+    place = ends[0], distance = ends[1];
+  }
+};
+
 /// Parts on which the point that diffracts between the end and a target may lie in a cone; where `end_moves` it is the
 /// end that may be within `moved_m` of where it is.
 template <bool end_moves>
-[[gnu::always_inline]] inline std::uint32_t parts_met(const EightParts& parts, std::span<const HalfSpace> cone,
+[[gnu::always_inline]] inline std::uint32_t parts_met(const PartLanes& parts, std::span<const HalfSpace> cone,
                                                       const ConeTarget& target) {
-  const Float8 sx(parts.start[0]), sy(parts.start[1]), sz(parts.start[2]);
-  const Float8 ex(parts.direction[0]), ey(parts.direction[1]), ez(parts.direction[2]);
-  const Float8 own_place(parts.place), own_distance(parts.distance), from(parts.from), to(parts.to);
+  const Float8 &sx = parts.start_x, &sy = parts.start_y, &sz = parts.start_z;
+  const Float8 &ex = parts.direction_x, &ey = parts.direction_y, &ez = parts.direction_z;
+  const Float8 &own_place = parts.place, &own_distance = parts.distance, &from = parts.from, &to = parts.to;
   const Float8 dx = Float8(target.x) - sx, dy = Float8(target.y) - sy, dz = Float8(target.z) - sz;
   const Float8 place = dx * ex + dy * ey + dz * ez;
   const Float8 x = dx - place * ex, y = dy - place * ey, z = dz - place * ez;
@@ -141,6 +171,12 @@ template <bool end_moves>
   const Float8 px = sx + point * ex, py = sy + point * ey, pz = sz + point * ez;
   return left_in(cone, beside,
                  [&](const HalfSpace& plane) { return px * plane.x + py * plane.y + pz * plane.z + room; });
+}
+
+template <bool end_moves>
+[[gnu::always_inline]] inline std::uint32_t parts_met(const EightParts& parts, std::span<const HalfSpace> cone,
+                                                      const ConeTarget& target) {
+  return parts_met<end_moves>(PartLanes(parts), cone, target);
 }
 
 /// Which of eight points may lie in a cone.
@@ -191,6 +227,15 @@ inline void visit_parts(const BoxTree& tree, std::span<const EightParts> parts, 
                         const ConeTarget& target, const EightsVisitor& visit) {
   const auto met = [&](std::size_t eight) { return parts_met<end_moves>(parts[eight], cone, target); };
   tell_of_clusters(tree, ConeCorners(cone), met, visit);
+}
+
+/// … of those of all parts that have these numbers, a multiple of eight …
+inline void visit_listed_parts(std::span<const PartRecord> all, std::span<const std::uint32_t> numbers,
+                               std::span<const HalfSpace> cone, const ConeTarget& target, const EightsVisitor& visit) {
+  for (std::size_t first = 0; first < numbers.size(); first += simd_lanes) {
+    const std::uint32_t lanes = parts_met<false>(PartLanes(all, &numbers[first]), cone, target);
+    if (lanes != 0) visit(first, lanes);
+  }
 }
 
 /// … and of images, as `images_met` has it.

@@ -114,7 +114,7 @@ class CrowdJoiner {
   template <typename Visit>
   void edges_before_mirror(FacetId last, const Vec3& image_m, Visit& visit) {
     const float error_m = gates_.error_with(glm::length(image_m) + lanes_.reach_m());
-    mast().for_each_part_in(cone_, image_m, gates_.radius_m(), [&](const EdgePart& part) {
+    mast().for_each_part_before(last, cone_, image_m, gates_.radius_m(), [&](const EdgePart& part) {
       const WedgeId first(part.edge);
       const WorldWedge& wedge = scene_.wedge(first);
       if (wedge.facets[0] == last || wedge.facets[1] == last) return;  // that is in the wedge's own terms

@@ -70,19 +70,22 @@ class FacetOutlines {
   /// or from what is within `radius_m` of it, and for some more.
   template <typename Visit>
   void for_each_grazed(const Vec3& point_m, double radius_m, double times, Visit&& visit) const {
-    const Vec3 from = point_m - middle_m_;
-    const auto x = static_cast<float>(from.x), y = static_cast<float>(from.y), z = static_cast<float>(from.z);
-    const auto room_m = static_cast<float>(radius_m + 1e-2 + 1e-6 * glm::length(from));
+    const auto room_m = static_cast<float>(radius_m + slack_m(point_m));
     const auto share = static_cast<float>(1.001 * times);
-    for (std::size_t first = 0; first < items_.size(); first += simd_lanes) {
-      const PlaneLanes& eight = planes_[first / simd_lanes];
-      const Float8 off = Float8(eight.x) * x + Float8(eight.y) * y + Float8(eight.z) * z - Float8(eight.offset);
-      std::uint32_t left = (simd::absolute(off) <= Float8(eight.lift) * share + room_m).bits();
-      for (; left != 0; left &= left - 1) {
-        const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(left));
-        if (at < items_.size()) visit(FacetId(items_[at]));
-      }
-    }
+    for_each_plane(visit, [&](const PlaneLanes& eight) {
+      return simd::absolute(off_planes(eight, point_m)) <= Float8(eight.lift) * share + room_m;
+    });
+  }
+  /// The same for the nearest point between two.
+  template <typename Visit>
+  void for_each_grazed_between(const Vec3& from_m, const Vec3& to_m, double times, Visit&& visit) const {
+    const auto room_m = static_cast<float>(std::max(slack_m(from_m), slack_m(to_m)));
+    const auto share = static_cast<float>(1.001 * times);
+    for_each_plane(visit, [&](const PlaneLanes& eight) {
+      const Float8 first = off_planes(eight, from_m), last = off_planes(eight, to_m);
+      const Float8 reach = Float8(eight.lift) * share + room_m;
+      return (simd::minimum(first, last) <= reach) & (-reach <= simd::maximum(first, last));
+    });
   }
 
   /// Calls `visit(facet)` for all facets of the scenery but those in boxes of which `hidden(box)` is true when their
@@ -131,6 +134,24 @@ class FacetOutlines {
       return distance_squared != other.distance_squared ? distance_squared > other.distance_squared : node > other.node;
     }
   };
+
+  /// How far planes may be off in single precision.
+  double slack_m(const Vec3& point_m) const { return 1e-2 + 1e-6 * glm::length(point_m - middle_m_); }
+  Float8 off_planes(const PlaneLanes& eight, const Vec3& point_m) const {
+    const Vec3 from = point_m - middle_m_;
+    const auto x = static_cast<float>(from.x), y = static_cast<float>(from.y), z = static_cast<float>(from.z);
+    return Float8(eight.x) * x + Float8(eight.y) * y + Float8(eight.z) * z - Float8(eight.offset);
+  }
+  /// Visits the facets of the scenery whose planes are asked for, eight at a time.
+  template <typename Visit, typename Asked>
+  void for_each_plane(Visit& visit, Asked&& asked) const {
+    for (std::size_t first = 0; first < items_.size(); first += simd_lanes) {
+      for (std::uint32_t left = asked(planes_[first / simd_lanes]).bits(); left != 0; left &= left - 1) {
+        const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(left));
+        if (at < items_.size()) visit(FacetId(items_[at]));
+      }
+    }
+  }
 
   static double distance_squared(const Aabb<double>& box, const Vec3& point_m) {
     const Vec3 way_m = glm::clamp(point_m, box.min, box.max) - point_m;

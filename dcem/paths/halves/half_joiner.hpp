@@ -128,8 +128,8 @@ class HalfJoiner {
     };
     const auto edge_of = [](std::uint32_t edge) { return WedgeId(edge); };
     for (std::uint32_t at = 0; at < near.mirrors.size(); ++at) {
-      reached.for_each_part_in(near.cones[at], near.images_m[at] - reached.origin_m(), 0.0F,
-                               [&](const EdgePart& part) { waiting_.add(at, part.edge); });
+      reached.for_each_part_before(near.mirrors[at], near.cones[at], near.images_m[at] - reached.origin_m(), 0.0F,
+                                   [&](const EdgePart& part) { waiting_.add(at, part.edge); });
       waiting_.ask_if_many(gates_.gates(), edge_of, ask);
     }
     waiting_.ask_all(gates_.gates(), edge_of, ask);

@@ -75,7 +75,7 @@ class KeptHalf {
   void note(const LinkEnd& end, std::size_t receivers) {
     const bool stands = end_ == end;
     if (!stands) {
-      has_scenery_ = has_bodies_ = has_lists_ = has_listed_bodies_ = false;
+      has_scenery_ = has_bodies_ = has_lists_ = has_listed_bodies_ = has_edges_ = false;
       joins_ = frames_standing_ = 0;
     }
     joins_ += receivers;
@@ -90,6 +90,12 @@ class KeptHalf {
   /// that the links from scratch do. Fewer of them let all frames wait for what the lists spare. One that rides on a
   /// body may drive off at any moment: it begins where they would have paid by then.
   void go_on_with_lists(const BeamSource& source, std::size_t receivers);
+
+  /// Where lists are known, looks over some of the edges that are seen, for the facets before them: a part of an edge
+  /// costs a third of a millisecond, once, and spares a join 0.2 to 1.5, by measurement in Munich. So it begins when
+  /// there were half as many joins as there are parts, and takes no longer in a frame than the links from scratch do;
+  /// for very many of these, all of it at once.
+  void go_on_over_edges(const BeamSource& source, std::size_t receivers);
 
   /// Of a device that has moved a little. Until the first place is ready it looks itself.
   void follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const Vec3& step_m,
@@ -128,7 +134,8 @@ class KeptHalf {
 
   PathHalf half_;
   BeamLists lists_;
-  bool has_scenery_ = false, has_bodies_ = false, has_lists_ = false, is_closer_ = false, keeps_places_ = false;
+  bool has_scenery_ = false, has_bodies_ = false, has_lists_ = false, has_edges_ = false, is_closer_ = false,
+       keeps_places_ = false;
   bool images_at_once_ = false, over_mirrors_ = false, has_listed_bodies_ = false;
   double longest_step_m_ = 0.0;
   std::size_t joins_ = 0;            ///< since the device stands

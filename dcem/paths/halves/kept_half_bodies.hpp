@@ -41,7 +41,9 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
     lists_.find_scenery(source);
   }
   has_lists_ = has_lists_ || makes_lists;
+  has_edges_ = has_edges_ && !makes_lists;
   if (keeps_places_ && !has_lists_) go_on_with_lists(source, wanted.receivers);
+  if (has_lists_ && !has_edges_ && wanted.over_mirrors) go_on_over_edges(source, wanted.receivers);
   if (!wanted.at_once || outlines.bodies().empty() || (!makes_lists && is_known && has_listed_bodies_)) return;
   half_.settle();
   lists_.find_bodies(source, moved, lists_follow && !makes_lists);
@@ -64,6 +66,13 @@ DCEM_INLINE void KeptHalf::go_on_with_lists(const BeamSource& source, std::size_
     lists_.begin_scenery(source);
   }
   if (frames_standing_ > 2) has_lists_ = lists_.go_on(source, mirrors_for_a_link * receivers);
+}
+
+DCEM_INLINE void KeptHalf::go_on_over_edges(const BeamSource& source, std::size_t receivers) {
+  constexpr std::size_t parts_for_a_link = 8;
+  const std::size_t parts = lists_.tables()[BeamLists::of_scenery].parts().size();
+  if (2 * joins_ < parts) return;
+  has_edges_ = lists_.go_on_over_edges(source, 2 * receivers >= parts ? parts : parts_for_a_link * receivers);
 }
 
 DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
