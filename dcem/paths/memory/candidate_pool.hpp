@@ -27,13 +27,19 @@ class CandidatePool {
   /// Of which nothing is known yet. What is known of the place, and what the standing end has listed, must stay as long
   /// as the pool is asked.
   CandidatePool(std::shared_ptr<const Place> place, const BeamLists& reached, const JoinOrders& orders)
-      : place_(std::move(place)), reached_(reached), orders_(orders), edges_(place_->box().middle_m) {}
+      : place_(std::move(place)),
+        reached_(reached),
+        orders_(orders),
+        knows_edges_(reached.knows_edges()),
+        edges_(place_->box().middle_m) {}
 
   /// Finds a part of the candidates; `steps_left` of them until all are known, and may be asked for.
   void go_on(const Scene& scene, const FacetOutlines& outlines);
   int steps_left() const { return steps_left_; }
 
   const Place& place() const { return *place_; }
+  /// Whether it holds more than it would if it were found now: the standing end knows more.
+  bool is_outdated() const { return !knows_edges_ && reached_.knows_edges(); }
   std::size_t size() const { return mirrors_.size() + direct_.size() + over_mirrors_.size(); }
 
   /// Calls `visit(number)` for candidates of which the edge's point, where there is an edge, may be where it must; of
@@ -98,6 +104,7 @@ class CandidatePool {
   std::shared_ptr<const Place> place_;
   const BeamLists& reached_;
   JoinOrders orders_;
+  bool knows_edges_;
   int steps_left_ = steps;
   std::vector<MirrorCandidate> mirrors_;
   std::vector<DirectCandidate> direct_;          ///< in the order in which they are in `edges_`
@@ -158,16 +165,17 @@ inline void CandidatePool::find_edges_over(const Scene& scene, const FacetOutlin
   }
   const Vec3 image = mirror.image_m - reached_.origin_m();
   edges_.begin_mirror(plane, outlines.sides(mirror.facet));
-  reached_.for_each_part_in(mirror.cone, image, static_cast<float>(place_->radius_m()), [&](const EdgePart& part) {
-    const WorldWedge& wedge = scene.wedge(WedgeId(part.edge));
-    if (holds_edge(plane, wedge.edge, scene.settings().weld_tolerance_m)) return;
-    // The wedge's solid is convex: what all corners are inside of, the whole place is.
-    const bool is_inside = std::ranges::none_of(
-        images_m, [&](const Vec3& image_m) { return may_face(wedge.edge, image_m - wedge.edge.start_m); });
-    if (is_inside) return;
-    over_mirrors_.push_back({mirror.number, WedgeId(part.edge)});
-    edges_.add_over(plane, wedge.edge, part);
-  });
+  reached_.for_each_part_before(
+      mirror.facet, mirror.cone, image, static_cast<float>(place_->radius_m()), [&](const EdgePart& part) {
+        const WorldWedge& wedge = scene.wedge(WedgeId(part.edge));
+        if (holds_edge(plane, wedge.edge, scene.settings().weld_tolerance_m)) return;
+        // The wedge's solid is convex: what all corners are inside of, the whole place is.
+        const bool is_inside = std::ranges::none_of(
+            images_m, [&](const Vec3& image_m) { return may_face(wedge.edge, image_m - wedge.edge.start_m); });
+        if (is_inside) return;
+        over_mirrors_.push_back({mirror.number, WedgeId(part.edge)});
+        edges_.add_over(plane, wedge.edge, part);
+      });
 }
 
 inline void CandidatePool::find_over_edges(const Scene& scene) {

@@ -87,6 +87,15 @@ class PooledLink {
     enter_triples();
   }
 
+  /// Where the transmitter has learnt what makes fewer candidates of the place, finds some of them anew, over frames in
+  /// which no other place is prepared, and goes over to them.
+  void renew(const PoolSource& source, const std::shared_ptr<const Place>& place) {
+    constexpr int frames = 14;
+    if (!pool_->is_outdated() || place->beams() != nullptr) return;  // those of three elements would be found, too
+    prepare(source, place, frames);
+    if (steps_left() == 0) enter(source, place);
+  }
+
   /// Calls `solve(sequence) -> bool` for candidates that may carry a path; it says whether they do.
   template <typename Index, typename Solve>
   void for_each_open(const PoolJudge<Index>& judge, Solve&& solve) {

@@ -144,8 +144,11 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Fol
   PooledLink& pooled = link.pooled();
   const Following& following = link.of;
   const KeptHalf& mast = following.transmitters.halves[link.transmitter];
+  const PoolSource source{scene_, *outlines_, *lanes_, *mast.lists(), joined_orders(following.search)};
   if (!pooled.is_of(*half.place())) {
-    pooled.enter({scene_, *outlines_, *lanes_, *mast.lists(), joined_orders(following.search)}, half.place());
+    pooled.enter(source, half.place());
+  } else if (!half.next_place()) {
+    pooled.renew(source, half.place());
   }
   std::vector<PathContribution> paths;
   const auto solve = [&](const Sequence& sequence) {
