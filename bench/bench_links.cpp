@@ -1,7 +1,7 @@
 /// Times the exact search for links in a city, step by step, one thread.
 ///
 ///   bench_links ROUNDS FILE.obj --mast X Y Z [--receivers N] [--within METRES] [--height METRES] [--copies N]
-///                              [--interactions N] [--diffractions N] [--no-lists]
+///                              [--interactions N] [--diffractions N] [--no-lists | --over-edges]
 ///
 /// Receivers stand at random where nothing is above them but the sky, the transmitter at a mast. For each link: what
 /// the receiver may see (its half), its half joined with that of the mast, and the solver. One CSV row for each step:
@@ -34,7 +34,7 @@ struct Options {
   std::size_t receivers = 100;
   double within_m = 280.0, height_m = 1.5;
   int copies = 1, interactions = 2, diffractions = 1;
-  bool no_lists = false;
+  bool no_lists = false, over_edges = false;
 };
 
 constexpr const char* step_names[] = {"half", "join", "solver", "sum"};
@@ -70,7 +70,9 @@ class City {
     const Stopwatch watch;
     mast_.position_m = {options_.mast_m[0], options_.mast_m[1], options_.mast_m[2]};
     const bool triples = dcem::joins_triples(search_);
-    dcem::HalfLists lists{&*lanes_, options_.interactions >= 2, !options_.no_lists || triples, 1, nullptr};
+    constexpr std::size_t very_many = 1'000'000;  // links: lists over edges come for all edges at once
+    dcem::HalfLists lists{&*lanes_, options_.interactions >= 2, !options_.no_lists || triples,
+                          options_.over_edges ? very_many : 1, nullptr};
     halves_[0].update(scene_, *outlines_, mast_, dcem::half_settings(search_), lists);
     return watch.elapsed_ms();
   }
@@ -167,7 +169,12 @@ bool bench(const Options& options) {
     dcem::bench::CsvRow row;
     row.text(std::filesystem::path(options.file).stem().string()).count(city.scene().triangles().size());
     row.count(static_cast<std::size_t>(options.interactions)).count(static_cast<std::size_t>(options.diffractions));
-    row.text(options.no_lists ? "no" : "yes").count(places.size()).number(mast_ms, 1).text(step_names[step]);
+    row.text(options.no_lists     ? "no"
+             : options.over_edges ? "over edges"
+                                  : "yes")
+        .count(places.size())
+        .number(mast_ms, 1)
+        .text(step_names[step]);
     row.number(mean_ms, 3).number(dcem::quantile(ms, 0.95), 3).number(dcem::quantile(ms, 1.0), 3);
     row.count(sum.mirrors).count(sum.edges).count(sum.proposed).count(sum.paths).hash(expected).print();
   }
@@ -188,7 +195,8 @@ int main(int count, char** arguments) {
   app.add_option("--copies", options.copies, "N x N copies of the scene")->check(CLI::Range(1, 16));
   app.add_option("--interactions", options.interactions, "at most")->check(CLI::Range(0, 3));
   app.add_option("--diffractions", options.diffractions, "at most")->check(CLI::Range(0, 2));
-  app.add_flag("--no-lists", options.no_lists, "the mast has not stood for long");
+  auto* const no_lists = app.add_flag("--no-lists", options.no_lists, "the mast has not stood for long");
+  app.add_flag("--over-edges", options.over_edges, "the mast has stood for thousands of links")->excludes(no_lists);
   return dcem::bench::run_program(app, count, arguments, [&] {
     std::puts(
         "scene,triangles,max_interactions,max_diffractions,lists,links,mast_ms,step,mean_ms,p95_ms,maximum_ms,mirrors,"

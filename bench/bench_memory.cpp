@@ -105,7 +105,7 @@ bool bench(const Options& options, const DriveOrder& order) {
   const dcem::Scene scene = dcem::bench::street_drive(order);
   Contender off(scene, options, CacheMode::off), exact(scene, options, CacheMode::exact);
   // What a mast lists is worked out over many frames, here in which everything trembles.
-  const std::size_t warm = options.warm > 0 ? options.warm : 10 + 900 / std::max<std::size_t>(1, order.receivers);
+  const std::size_t warm = options.warm > 0 ? options.warm : 10 + 4500 / std::max<std::size_t>(1, order.receivers);
   double cold_off_ms = 0.0, cold_exact_ms = 0.0;
   for (std::size_t index = 0; index < warm; ++index) {
     const double time_s = 1e-3 * static_cast<double>(index % 2);
