@@ -29,8 +29,10 @@ class BeamLists {
   /// over so many mirrors more …
   void begin_scenery(const BeamSource& source);
   bool go_on(const BeamSource& source, std::size_t mirrors);
-  /// … then, as well, which facets of the scenery are lit over so many more of the parts of edges that are seen.
+  /// … then, as well, which facets of the scenery are lit over so many more of the parts of edges that are seen. Where
+  /// there would be more than `most_lit_over` of them, it says that all is there, and nothing is known.
   bool go_on_over_edges(const BeamSource& source, std::size_t parts);
+  static constexpr std::size_t most_lit_over = 16'000'000;  ///< they take four bytes each, and three times that before
   /// … and the rest. The scenery's must be known. `moved` as in `PathHalf::find_bodies`; `follows`: what was listed of
   /// bodies is that of the frame before, and stays true of those that have not moved.
   void find_bodies(const BeamSource& source, std::span<const char> moved = {}, bool follows = false);

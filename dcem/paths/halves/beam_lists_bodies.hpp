@@ -1,5 +1,6 @@
 #pragma once
 /// Bodies of beam_lists.hpp.
+#include <algorithm>
 #include <utility>
 
 #include "dcem/core/build_mode.hpp"
@@ -63,6 +64,12 @@ DCEM_INLINE bool BeamLists::go_on_over_edges(const BeamSource& source, std::size
   while (last < all.size() && last > 0 && all[last].edge == all[last - 1].edge) ++last;
   BeamFinder(source, mirrors_).look_over_edges(all, looked_over_, last, lit_over_);
   looked_over_ = last;
+  constexpr std::size_t some = 256;  // parts, of which it is told how many there will be
+  const std::size_t foreseen = last < some ? 0 : lit_over_.size() / last * all.size();
+  if (std::max(foreseen, lit_over_.size()) > most_lit_over) {
+    lit_over_ = {};
+    return true;
+  }
   if (last < all.size()) return false;
   tables_[of_scenery].list_parts_before(source.scene, lit_over_);
   lit_over_ = {};

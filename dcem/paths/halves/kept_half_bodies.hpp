@@ -69,10 +69,14 @@ DCEM_INLINE void KeptHalf::go_on_with_lists(const BeamSource& source, std::size_
 }
 
 DCEM_INLINE void KeptHalf::go_on_over_edges(const BeamSource& source, std::size_t receivers) {
-  constexpr std::size_t parts_for_a_link = 8;
+  constexpr std::size_t parts_for_a_link = 8, parts_at_once = 1024;
   const std::size_t parts = lists_.tables()[BeamLists::of_scenery].parts().size();
   if (2 * joins_ < parts) return;
-  has_edges_ = lists_.go_on_over_edges(source, 2 * receivers >= parts ? parts : parts_for_a_link * receivers);
+  if (2 * receivers < parts) {
+    has_edges_ = lists_.go_on_over_edges(source, parts_for_a_link * receivers);
+  } else {
+    while (!has_edges_) has_edges_ = lists_.go_on_over_edges(source, parts_at_once);
+  }
 }
 
 DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
