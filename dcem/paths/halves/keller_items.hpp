@@ -10,9 +10,12 @@
 
 namespace dcem {
 
+/// So many columns make a full turn.
+inline constexpr std::uint32_t keller_columns = 512;
+
 /// Unit vectors to azimuths a column apart, more than there are columns, so that eight can be read from each on.
 struct KellerAzimuths {
-  static constexpr std::size_t count = 512 + 2 * simd_lanes;
+  static constexpr std::size_t count = keller_columns + 2 * simd_lanes;
   std::array<float, count> cosine{}, sine{};
 };
 
@@ -23,7 +26,7 @@ struct KellerSides {
 
 /// Columns of azimuth about an edge, each of one or two eights of cells along it.
 struct KellerCells {
-  static constexpr std::uint32_t columns = 512, most_rows = 2 * simd_lanes;
+  static constexpr std::uint32_t columns = keller_columns, most_rows = 2 * simd_lanes;
   using Row = std::array<float, most_rows>;
 
   const KellerSides* sides = nullptr;
@@ -52,7 +55,7 @@ struct KellerOutline {
   /// The nearness in a cell is (n + share) · factor, n being the normal's part along the azimuth: where the cell
   /// begins, and where it ends.
   KellerCells::Row from_share{}, to_share{}, from_factor{}, to_factor{};
-  KellerCells::Row least_m{};         ///< of the plane's distance from a cell; 0 where it crosses that, or comes close
+  KellerCells::Row least_m{};         ///< of the plane's distance from a cell; 1 where it crosses that, or comes close
   float error_m = 0.0F;               ///< how far that may be off
   KellerCells::Row nearer{}, more{};  ///< by which factor, and by how much more, it counts as nearer
 };
