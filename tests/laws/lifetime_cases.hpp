@@ -12,16 +12,6 @@
 
 namespace dcem::test {
 
-inline PathSearchSettings search_settings_of(const Asked& asked) {
-  PathSearchSettings settings;
-  settings.max_reflections = asked.reflections;
-  settings.max_diffractions = asked.diffractions;
-  settings.max_interactions = asked.interactions;
-  settings.max_transmissions = asked.transmissions;
-  settings.edges.free_edges = asked.free_edges;
-  return settings;
-}
-
 /// The lifetime of a link that has these paths.
 inline double lifetime_m(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
                          const std::vector<Path>& paths, double limit_m = 1.0) {

@@ -7,6 +7,7 @@
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/edge_looker.hpp"
+#include "dcem/paths/halves/hiding_outlines.hpp"
 #include "dcem/paths/query/leg_filter.hpp"
 #include "dcem/paths/solve/edge_rules.hpp"
 
@@ -66,23 +67,11 @@ DCEM_INLINE bool EdgeLooker::is_ignored_along(FacetId id, const WorldWedge& wedg
 }
 
 DCEM_INLINE void EdgeLooker::cover(FacetId id) {
-  constexpr double flat_m = 2e-6, least_size = 1e-6, close_m = 0.01;  // as in `Sight`
-  const WorldFacet& facet = scene_.facet(id);
   const FacetOutline& outline = outlines_.of(id);
-  if (outline.stray_m <= flat_m && outline.fills_hull) {
-    return view_.cover(scene_.hull_m(facet), facet.plane, outline.lift_m, outline.stray_m);
-  }
-  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    const std::array<Vec3, 3> corners_m = scene_.corners_m(facet.first_triangle + triangle);
-    if (outline.stray_m <= flat_m) {
-      view_.cover(corners_m, facet.plane, outline.lift_m, outline.stray_m);
-      continue;
-    }
-    const Vec3 normal = glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]);
-    const double size = glm::length(normal);
-    if (!(size > least_size)) continue;  // a sliver's normal says little, and it hides little
-    view_.cover(corners_m, {corners_m[0], normal / size}, std::max(outline.lift_m, 0.5 * close_m), 0.0);
-  }
+  detail::for_each_hiding_outline(scene_, outlines_, id, [&](std::span<const Vec3> corners_m, const Plane* own) {
+    if (own == nullptr) return view_.cover(corners_m, scene_.facet(id).plane, outline.lift_m, outline.stray_m);
+    view_.cover(corners_m, *own, std::max(outline.lift_m, 0.5 * detail::hiding_triangle_m), 0.0);
+  });
 }
 
 }  // namespace dcem

@@ -93,7 +93,7 @@ class KeptHalf {
 
   /// Where lists are known, looks over some of the edges that are seen, for the facets before them: a part of an edge
   /// costs a third of a millisecond, once, and spares a join 0.2 to 1.5, by measurement in Munich. So it begins when
-  /// there were half as many joins as there are parts, and takes no longer in a frame than the links from scratch do;
+  /// there were half as many joins as there are parts, and takes about as long in a frame as the links from scratch do;
   /// for very many of these, all of it at once.
   void go_on_over_edges(const BeamSource& source, std::size_t receivers);
 

@@ -137,9 +137,6 @@ class Sight {
   }
 
  private:
-  /// Triangles that leave their facet's plane by more hide as they are, not as the facet's hull. 2 µm from 13 cm away
-  /// are 0.002 of a pixel.
-  static constexpr double flat_m = 2e-6;
   /// A cell with fewer facets is not looked into: it takes longer than it saves.
   static constexpr std::size_t crowded = 24;
   static constexpr int most_cell_pixels = 512;
@@ -195,8 +192,6 @@ class Sight {
              const FaceSpan& faces = {}) const;
   static void count_sheets(const Scene& scene, const HalfSettings& settings, ViewMap& map);
   /// `sheet`: its plane, where it is a sheet that a path may cross; null: nothing passes.
-  void cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet, ViewMap& map,
-                       const FaceSpan& faces) const;
   void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet, ViewMap& map,
                     const FaceSpan& faces) const;
   /// Whether all points are in a facet's plane: nothing is reflected there, though its edges may diffract.

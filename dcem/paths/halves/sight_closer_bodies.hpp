@@ -10,6 +10,7 @@
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/core/thread_pool.hpp"
+#include "dcem/paths/halves/hiding_outlines.hpp"
 #include "dcem/paths/halves/sight.hpp"
 
 namespace dcem {
@@ -74,7 +75,7 @@ DCEM_INLINE void Sight::look_into(const Scene& scene, const FacetOutlines& outli
     const FacetOutline& outline = outlines.of(id);
     const double away_m =
         glm::distance(glm::clamp(position_m(), outline.box.min, outline.box.max), position_m()) - 2.0 * radius_m_;
-    return away_m * margin_rad < std::min(outline.stray_m, flat_m) || away_m < 0.1;
+    return away_m * margin_rad < std::min(outline.stray_m, detail::flat_facet_m) || away_m < 0.1;
   };
   for (const std::uint32_t place : places) {
     if (!is_close(seen[place])) cover(scene, outlines, seen[place], settings, map);

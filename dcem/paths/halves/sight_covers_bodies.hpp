@@ -1,10 +1,10 @@
 #pragma once
 /// Bodies of sight.hpp: what hides what is behind it.
 #include <algorithm>
-#include <array>
 #include <span>
 
 #include "dcem/core/build_mode.hpp"
+#include "dcem/paths/halves/hiding_outlines.hpp"
 #include "dcem/paths/halves/sight.hpp"
 #include "dcem/paths/query/leg_filter.hpp"
 
@@ -29,14 +29,13 @@ DCEM_INLINE void Sight::cover(const Scene& scene, const FacetOutlines& outlines,
   const Plane* const sheet = facet.transmits && settings.sheets > 0 ? &facet.plane : nullptr;
   if (sheet != nullptr && settings.sheets > detail::SheetLayers::most_crossed) return;
   if (least_distance_m(facet.plane) <= 2.0 * outline.lift_m) return;  // an end that touches it looks past it
-  if (outline.stray_m > flat_m) return cover_triangles(scene, facet, sheet, map, faces);
   const double side = signed_distance_m(facet.plane, position_m());
   Plane plane = facet.plane;
   plane.point_m -= (side > 0.0 ? 1.0 : -1.0) * outline.stray_m * plane.normal;  // where it is farthest
-  if (outline.fills_hull) return cover_beyond(scene.hull_m(facet), plane, sheet, map, faces);
-  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    cover_beyond(scene.corners_m(facet.first_triangle + triangle), plane, sheet, map, faces);
-  }
+  detail::for_each_hiding_outline(scene, outlines, id, [&](std::span<const Vec3> corners_m, const Plane* own) {
+    if (own != nullptr && least_distance_m(*own) <= detail::hiding_triangle_m) return;
+    cover_beyond(corners_m, own != nullptr ? *own : plane, sheet, map, faces);
+  });
 }
 
 /// A leg takes parallel sheets for one that lie within the weld tolerance of each other, or stray as far as facets may.
@@ -44,18 +43,6 @@ DCEM_INLINE void Sight::cover(const Scene& scene, const FacetOutlines& outlines,
 DCEM_INLINE void Sight::count_sheets(const Scene& scene, const HalfSettings& settings, ViewMap& map) {
   const double pile_m = 1e3 * scene.settings().weld_tolerance_m + 2.0 * facet_reach_m(scene);
   map.count_sheets(std::clamp(settings.sheets, 1, detail::SheetLayers::most_crossed), pile_m);
-}
-
-DCEM_INLINE void Sight::cover_triangles(const Scene& scene, const WorldFacet& facet, const Plane* sheet, ViewMap& map,
-                                        const FaceSpan& faces) const {
-  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    const std::array<Vec3, 3> corners_m = scene.corners_m(facet.first_triangle + triangle);
-    const Vec3 normal = glm::cross(corners_m[1] - corners_m[0], corners_m[2] - corners_m[0]);
-    const double size = glm::length(normal);
-    if (!(size > 1e-6)) continue;  // a sliver's normal says little, and it hides little
-    const Plane plane{corners_m[0], normal / size};
-    if (least_distance_m(plane) > 0.01) cover_beyond(corners_m, plane, sheet, map, faces);
-  }
 }
 
 }  // namespace dcem

@@ -63,21 +63,33 @@ inline std::vector<Path> all_sequences(TracedScene<>& traced, const LinkEnd& fro
   return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached).front().paths;
 }
 
+/// What an exact search is asked for.
+inline PathSearchSettings search_settings_of(const Asked& asked) {
+  PathSearchSettings settings;
+  settings.max_reflections = asked.reflections;
+  settings.max_diffractions = asked.diffractions;
+  settings.max_interactions = asked.interactions;
+  settings.max_transmissions = asked.transmissions;
+  settings.edges.free_edges = asked.free_edges;
+  return settings;
+}
+
+/// The same for halves that are joined.
+inline PathSearchSettings joined_settings_of(const Asked& asked) {
+  PathSearchSettings settings = search_settings_of(asked);
+  settings.exhaustive = false;
+  settings.joined = most_joined_interactions;
+  settings.rays = 0;
+  return settings;
+}
+
 /// What the transmitter has listed beforehand.
 enum class Listed { nothing, scenery, all };
 
 /// The same by joining halves.
 inline std::vector<Path> joined(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked,
                                 int pixels = 256, Listed listed = Listed::all) {
-  PathSearchSettings settings;
-  settings.exhaustive = false;
-  settings.joined = most_joined_interactions;
-  settings.rays = 0;
-  settings.max_reflections = asked.reflections;
-  settings.max_diffractions = asked.diffractions;
-  settings.max_interactions = asked.interactions;
-  settings.max_transmissions = asked.transmissions;
-  settings.edges.free_edges = asked.free_edges;
+  const PathSearchSettings settings = joined_settings_of(asked);
   const FacetOutlines outlines(traced.scene);
   std::vector<KeptHalf> transmitters(1, KeptHalf(pixels));
   const LaneScene lanes(traced.scene, outlines);

@@ -19,19 +19,6 @@ using namespace dcem::test;
 
 namespace {
 
-PathSearchSettings search_of(const Asked& asked) {
-  PathSearchSettings settings;
-  settings.exhaustive = false;
-  settings.joined = most_joined_interactions;
-  settings.rays = 0;
-  settings.max_reflections = asked.reflections;
-  settings.max_diffractions = asked.diffractions;
-  settings.max_interactions = asked.interactions;
-  settings.max_transmissions = asked.transmissions;
-  settings.edges.free_edges = asked.free_edges;
-  return settings;
-}
-
 /// A transmitter, and what it has listed. It stays where it is in memory.
 class Mast {
  public:
@@ -74,7 +61,7 @@ class Mast {
     receiver.find_scenery(traced_.scene, outlines_, to, half_settings_of(asked_));
     receiver.find_bodies(traced_.scene, outlines_, half_settings_of(asked_));
     std::vector<SequenceList> lists(1);
-    HalfJoiner(traced_.scene, outlines_, joined_orders(search_of(asked_)))
+    HalfJoiner(traced_.scene, outlines_, joined_orders(joined_settings_of(asked_)))
         .for_each_sequence(
             receiver, half_, [&](const Sequence& sequence) { lists[0].add(sequence); }, &lists_);
     return lists;
@@ -84,7 +71,8 @@ class Mast {
     SearchCounters counters;
     const std::vector<std::optional<LinkEnd>> ends{from_};
     const std::vector<ReachedEdges> reached(1);
-    return find_paths(traced_.tracer, search_of(asked_), to, {"rx", 0}, ends, counters, nullptr, reached, proposed)
+    return find_paths(traced_.tracer, joined_settings_of(asked_), to, {"rx", 0}, ends, counters, nullptr, reached,
+                      proposed)
         .front()
         .paths;
   }
