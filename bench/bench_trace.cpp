@@ -22,7 +22,7 @@
 #include "bench/moving_boxes.hpp"
 #include "bench/tiled_mesh.hpp"
 #include "bench/timed_rays.hpp"
-#include "dcem/accel/box_index.hpp"
+#include "dcem/accel/binary_index.hpp"
 #include "dcem/accel/ray_order.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "dcem/core/statistics.hpp"

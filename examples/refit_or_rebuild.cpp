@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "dcem/accel/box_index.hpp"
+#include "dcem/accel/binary_index.hpp"
 #include "dcem/accel/wide_index.hpp"
 #include "dcem/dcem.hpp"
 #include "dcem/io/line_chart.hpp"

@@ -1,5 +1,6 @@
 #pragma once
-/// A tree of boxes, which knows boxes and numbers only, as a `SpatialIndex` over triangles.
+/// A tree of boxes, which knows boxes and numbers only, as a `SpatialIndex` over triangles: see `binary_index.hpp` and
+/// `brute_force_index.hpp`.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,17 +13,15 @@
 #include <string>
 #include <vector>
 
-#include "dcem/accel/binary/updater.hpp"
-#include "dcem/accel/brute_force.hpp"
-#include "dcem/accel/bvh.hpp"
+#include "dcem/accel/binary/sah_settings.hpp"
 #include "dcem/accel/detail/box_check.hpp"
 #include "dcem/accel/exact_hit.hpp"
 #include "dcem/accel/spatial_index.hpp"
 
 namespace dcem {
 
-/// See `SpatialIndex`. `Tree` is `Bvh<double>` or `BruteForce<double>`.
-template <typename Tree>
+/// See `SpatialIndex`. `Tree` is `Bvh<double>` or `BruteForce<double>`, and `Updater` what keeps it while boxes move.
+template <typename Tree, typename Updater>
 class BoxIndex {
  public:
   /// Throws std::invalid_argument for settings out of range.
@@ -151,18 +150,11 @@ class BoxIndex {
 
   SahSettings build_settings_;
   Tree tree_;
-  UpdaterOf<Tree> updater_;
+  Updater updater_;
   std::vector<Aabb<double>> boxes_;  ///< with room; empty for triangles that are not there
   std::vector<Vec3> vertices_m_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::uint32_t> object_of_triangle_;
 };
-
-/// The binary tree of `bvh.hpp`.
-using BinaryIndex = BoxIndex<Bvh<double>>;
-/// No tree at all: to check the others.
-using BruteForceIndex = BoxIndex<BruteForce<double>>;
-
-static_assert(SpatialIndex<BinaryIndex> && SpatialIndex<BruteForceIndex>);
 
 }  // namespace dcem

@@ -15,6 +15,7 @@
 #include "dcem/accel/counters.hpp"
 #include "dcem/accel/detail/box_check.hpp"
 #include "dcem/accel/sah_cost.hpp"
+#include "dcem/accel/tree_settings.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/ray.hpp"
 
@@ -147,6 +148,21 @@ class BruteForce {
   std::vector<Box> boxes_;
   SahSettings settings_;
   std::size_t object_count_ = 0;
+};
+
+/// The oracle has no shape that could degrade.
+template <std::floating_point Scalar>
+class BruteForceUpdater {
+ public:
+  explicit BruteForceUpdater(const TreeUpdateSettings& settings = {}) { validate(settings); }
+
+  TreeUpdateReport update(BruteForce<Scalar>& tree, std::span<const std::uint32_t> moved,
+                          typename BruteForce<Scalar>::Boxes boxes) const {
+    tree.refit(moved, boxes);
+    TreeUpdateReport report;
+    report.sah_cost = report.sah_cost_at_build = tree.sah_cost();
+    return report;
+  }
 };
 
 }  // namespace dcem

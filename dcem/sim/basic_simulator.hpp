@@ -34,7 +34,7 @@
 namespace dcem {
 
 /// Owns the scene and the index over it. `Surface` says how all surfaces reflect and transmit: the scene's materials,
-/// or a model of the caller's own. `Index` is `WideIndex`, or one of those of `box_index.hpp` to check it.
+/// or a model of the caller's own. `Index` is `WideIndex`, or one of those made of a `BoxIndex` to check it.
 template <SurfaceModel Surface = MaterialTable, SpatialIndex Index = WideIndex>
 class BasicSimulator {
  public:

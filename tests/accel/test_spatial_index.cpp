@@ -6,7 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dcem/accel/box_index.hpp"
+#include "dcem/accel/binary_index.hpp"
+#include "dcem/accel/brute_force_index.hpp"
 #include "dcem/accel/wide_index.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
 

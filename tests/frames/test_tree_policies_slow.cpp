@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dcem/accel/binary/updater.hpp"
+#include "dcem/accel/brute_force.hpp"
 #include "tests/accel/random_boxes.hpp"
 
 namespace test_tree_policies_slow {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dcem/accel/binary_index.hpp"
 #include "dcem/sim/verify/brute_force_simulator.hpp"
 #include "tests/support/law_scenes.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/accel/box_index.hpp"
+#include "dcem/accel/brute_force_index.hpp"
 #include "dcem/accel/wide_index.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/paths/query/link_end.hpp"

@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dcem/accel/brute_force.hpp"
 #include "dcem/accel/bvh.hpp"
 #include "dcem/accel/tree_settings.hpp"
 
@@ -56,40 +55,6 @@ class BvhUpdater {
   std::vector<bool> is_visited_;        ///< per slot
   double visited_since_renewal_ = 0.0;  ///< nodes that refits have visited since the root was built
 };
-
-/// The oracle has no shape that could degrade.
-template <std::floating_point Scalar>
-class BruteForceUpdater {
- public:
-  explicit BruteForceUpdater(const TreeUpdateSettings& settings = {}) { validate(settings); }
-
-  TreeUpdateReport update(BruteForce<Scalar>& tree, std::span<const std::uint32_t> moved,
-                          typename BruteForce<Scalar>::Boxes boxes) const {
-    tree.refit(moved, boxes);
-    TreeUpdateReport report;
-    report.sah_cost = report.sah_cost_at_build = tree.sah_cost();
-    return report;
-  }
-};
-
-namespace detail {
-
-template <typename Tree>
-struct UpdaterOf;
-template <std::floating_point Scalar>
-struct UpdaterOf<Bvh<Scalar>> {
-  using type = BvhUpdater<Scalar>;
-};
-template <std::floating_point Scalar>
-struct UpdaterOf<BruteForce<Scalar>> {
-  using type = BruteForceUpdater<Scalar>;
-};
-
-}  // namespace detail
-
-/// The class that keeps a tree of a given type.
-template <typename Tree>
-using UpdaterOf = typename detail::UpdaterOf<Tree>::type;
 
 // ---------------------------------------------------------------------------------------------------------------------
 

@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
-#include <mutex>
 #include <span>
 #include <string_view>
-#include <utility>
-#include <vector>
 
-#include "dcem/accel/ray_order.hpp"
 #include "dcem/core/constants.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/geometry/ray.hpp"
@@ -28,38 +23,18 @@ inline Vec3 fibonacci_direction(std::uint32_t index, std::uint32_t count) {
 }
 
 /// A rotation drawn uniformly from all rotations (Shoemake, Graphics Gems III, 1992).
-inline Mat3 random_rotation(RandomStream& random) {
-  const double u1 = random.uniform(), u2 = 2.0 * pi * random.uniform(), u3 = 2.0 * pi * random.uniform();
-  const double x = std::sqrt(1.0 - u1) * std::sin(u2), y = std::sqrt(1.0 - u1) * std::cos(u2);
-  const double z = std::sqrt(u1) * std::sin(u3), w = std::sqrt(u1) * std::cos(u3);
-  return Mat3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y),  //
-              2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x),  //
-              2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y));
-}
+Mat3 random_rotation(RandomStream& random);
 
 /// The rotation of the launch sphere of one receiver in one frame.
-inline Mat3 launch_rotation(std::uint64_t seed, std::string_view receiver_id, std::size_t frame) {
-  RandomStream random(hash_values(seed, hash_text(receiver_id), frame));
-  return random_rotation(random);
-}
+Mat3 launch_rotation(std::uint64_t seed, std::string_view receiver_id, std::size_t frame);
 
 /// All directions of a sphere of `count` rays, in an order in which neighbours follow each other: a Fibonacci sphere
 /// goes round with every point, and each ray would look at another part of the scene than the one before. Computed once
 /// and kept; any thread may ask.
-inline std::span<const Vec3> launch_directions(std::uint32_t count) {
-  static std::mutex mutex;
-  static std::map<std::uint32_t, std::vector<Vec3>> spheres;
-  const std::scoped_lock lock(mutex);
-  const auto known = spheres.find(count);
-  if (known != spheres.end()) return known->second;
-  std::vector<Ray<double>> rays;
-  for (std::uint32_t index = 0; index < count; ++index) {
-    rays.push_back({Vec3(0.0), fibonacci_direction(index, count)});
-  }
-  std::vector<Vec3> sphere;
-  RayOrder order;
-  for (const std::uint32_t index : order.sort(rays)) sphere.push_back(rays[index].direction);
-  return spheres.emplace(count, std::move(sphere)).first->second;
-}
+std::span<const Vec3> launch_directions(std::uint32_t count);
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/discover/launch_sphere_bodies.hpp"
+#endif

@@ -19,14 +19,7 @@
 namespace dcem {
 
 /// The mirrors and edges of a path, counted from the receiver.
-inline Sequence sequence_of(const Path& path) {
-  Sequence sequence;
-  for (auto interaction = path.interactions.rbegin(); interaction != path.interactions.rend(); ++interaction) {
-    if (interaction->kind == InteractionKind::reflection) sequence.emplace_back(interaction->facet);
-    if (interaction->kind == InteractionKind::diffraction) sequence.emplace_back(interaction->wedge);
-  }
-  return sequence;
-}
+Sequence sequence_of(const Path& path);
 
 /// The memory of one receiver, one list per transmitter. A list is written anew in each frame from the paths of that
 /// frame, so what is not found again is forgotten without further ado.
@@ -43,31 +36,11 @@ class PathCache {
   }
 
   /// Forgets everything, as when the receiver was away; returns how many sequences that were.
-  std::size_t clear() {
-    std::size_t forgotten = 0;
-    for (const Link& link : links_) forgotten += link ? link->size() : 0;
-    links_.clear();
-    proposals_.clear();
-    reach_.clear();
-    return forgotten;
-  }
+  std::size_t clear();
 
   /// Says which transmitters, ascending, the receiver has links with in the new frame, where that is not all of them:
   /// from here on link n is that of `transmitters[n]`. Forgets the others; returns how many sequences that were.
-  std::size_t select(std::span<const std::uint32_t> transmitters) {
-    std::vector<Link> kept(transmitters.size());
-    for (std::size_t link = 0; link < transmitters.size(); ++link) {
-      const auto before = std::lower_bound(transmitters_.begin(), transmitters_.end(), transmitters[link]);
-      if (before == transmitters_.end() || *before != transmitters[link]) continue;
-      const auto place = static_cast<std::size_t>(before - transmitters_.begin());
-      if (place < links_.size()) kept[link] = std::exchange(links_[place], std::nullopt);
-    }
-    std::size_t forgotten = 0;
-    for (const Link& link : links_) forgotten += link ? link->size() : 0;
-    links_ = std::move(kept);
-    transmitters_.assign(transmitters.begin(), transmitters.end());
-    return forgotten;
-  }
+  std::size_t select(std::span<const std::uint32_t> transmitters);
 
   ProposalMemory& proposals() { return proposals_; }
   EdgeReach& reach() { return reach_; }
@@ -90,10 +63,7 @@ class PathCache {
   }
 
   /// The paths of a link in the new frame.
-  void remember(std::size_t transmitter, std::span<const Path> paths) {
-    std::vector<Sequence>& sequences = links_.at(transmitter).emplace();
-    for (const Path& path : paths) sequences.push_back(sequence_of(path));
-  }
+  void remember(std::size_t transmitter, std::span<const Path> paths);
 
  private:
   std::vector<Link> links_;
@@ -103,3 +73,7 @@ class PathCache {
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/discover/path_cache_bodies.hpp"
+#endif

@@ -14,28 +14,13 @@ namespace dcem {
 class ProposalMemory {
  public:
   /// Notes that a ray followed a sequence; returns whether it is in the memory already.
-  bool note(const Sequence& sequence) {
-    const auto [entry, is_new] = index_.try_emplace(sequence, proposals_.size());
-    if (is_new) {
-      proposals_.push_back({sequence, frame_});
-    } else {
-      proposals_[entry->second].last_frame = frame_;
-    }
-    return !is_new;
-  }
+  bool note(const Sequence& sequence);
 
   /// Adds a sequence that is known to be new and that no later frame will ask for: the memory is filled once and read.
   void append(const Sequence& sequence) { proposals_.push_back({sequence, frame_}); }
 
   /// Goes on to the next frame and forgets what no ray has followed in the last `lifetime_frames` frames.
-  void next_frame(std::uint32_t lifetime_frames) {
-    ++frame_;
-    const std::size_t forgotten = std::erase_if(
-        proposals_, [&](const Proposal& proposal) { return proposal.last_frame + lifetime_frames < frame_; });
-    if (forgotten == 0) return;
-    index_.clear();
-    for (std::size_t index = 0; index < proposals_.size(); ++index) index_.emplace(proposals_[index].sequence, index);
-  }
+  void next_frame(std::uint32_t lifetime_frames);
 
   /// In the order in which they were first proposed.
   template <typename Visit>
@@ -58,3 +43,7 @@ class ProposalMemory {
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/discover/proposal_memory_bodies.hpp"
+#endif

@@ -5,9 +5,7 @@
 /// Directly, or over a mirror next to the device: then the edge is mirrored, and the way from the device to the
 /// mirrored edge must cross the mirror. All in single precision around the middle of the place; each number carries how
 /// far it may be off.
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,36 +22,15 @@ class EdgeCandidates {
   explicit EdgeCandidates(const Vec3& origin_m) : origin_m_(origin_m) {}
 
   /// A part of an edge as the standing end, or its image, sees it.
-  void add(const Wedge& edge, const EdgePart& part) {
-    set(direct_, direct_count_++, edge.start_m, edge_direction(edge), part);
-  }
+  void add(const Wedge& edge, const EdgePart& part);
 
   /// What is added over a mirror from now on is over this one.
-  void begin_mirror(const Plane& mirror, std::span<const HullSide> outline) {
-    if (mirrors_.empty() || mirrors_.back().end > last_begins_at_) mirrors_.emplace_back();
-    last_begins_at_ = mirrored_count_;
-    CandidateMirror& last = mirrors_.back();
-    last = {};
-    last.end = mirrored_count_;
-    last.plane = around_origin(mirror.normal, glm::dot(mirror.normal, mirror.point_m));
-    for (std::size_t side = 0; side < std::min(outline.size(), last.sides.size()); ++side) {
-      last.sides[side] = around_origin(outline[side].normal, outline[side].offset_m);
-    }
-  }
+  void begin_mirror(const Plane& mirror, std::span<const HullSide> outline);
   /// A part of an edge, over the mirror that was begun last.
-  void add_over(const Plane& mirror, const Wedge& edge, const EdgePart& part) {
-    const Vec3 along = edge_direction(edge);
-    set(mirrored_, mirrored_count_++, mirrored(mirror, edge.start_m),
-        along - 2.0 * glm::dot(along, mirror.normal) * mirror.normal, part);
-    mirrors_.back().end = mirrored_count_;
-  }
+  void add_over(const Plane& mirror, const Wedge& edge, const EdgePart& part);
 
   /// Nothing more is added: gives back room for it.
-  void fit() {
-    direct_.shrink_to_fit();
-    mirrored_.shrink_to_fit();
-    mirrors_.shrink_to_fit();
-  }
+  void fit();
 
   std::size_t direct_count() const { return direct_count_; }
   std::size_t mirrored_count() const { return mirrored_count_; }
@@ -77,19 +54,8 @@ class EdgeCandidates {
   static constexpr float rounding = 1.6e-6F;
 
   void set(std::vector<EightCandidates>& all, std::size_t number, const Vec3& start_m, const Vec3& along,
-           const EdgePart& part) const {
-    const std::size_t lane = number % simd_lanes;
-    if (lane == 0) all.emplace_back();
-    const Vec3 start = start_m - origin_m_;
-    set_part(all.back().parts, lane, part, start, along);
-    const auto largest = static_cast<float>(glm::length(start)) + std::abs(part.place) + part.distance +
-                         std::abs(part.from) + std::abs(part.to);
-    all.back().error[lane] = rounding * (largest + 100.0F);
-  }
-  CandidateMirror::Plane around_origin(const Vec3& normal, double offset_m) const {
-    return {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
-            static_cast<float>(offset_m - glm::dot(normal, origin_m_))};
-  }
+           const EdgePart& part) const;
+  CandidateMirror::Plane around_origin(const Vec3& normal, double offset_m) const;
   CandidatePoint around_origin(const Vec3& point_m) const {
     const Vec3 at = point_m - origin_m_;
     return {static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)};
@@ -113,3 +79,7 @@ class EdgeCandidates {
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/memory/edge_candidates_bodies.hpp"
+#endif

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "dcem/paths/memory/candidate_pool.hpp"
-#include "dcem/paths/memory/key_table.hpp"
 #include "dcem/paths/memory/sure_blocker.hpp"
 #include "dcem/paths/memory/triple_ways.hpp"
 #include "dcem/paths/memory/way_finder.hpp"
@@ -41,60 +40,18 @@ struct PoolSource {
 
 class PooledLink {
  public:
-  void forget() {
-    pool_.reset();
-    next_.reset();
-    triples_.reset();
-    next_triples_.reset();
-    slots_ = {};
-    triple_slots_ = {};
-  }
+  void forget();
   bool is_of(const Place& place) const { return pool_ && &pool_->place() == &place; }
 
   /// Finds candidates of a place that will be entered after so many frames: a share of them.
-  void prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames) {
-    if (!next_ || &next_->place() != place.get()) {
-      next_triples_ =
-          place->beams() != nullptr ? std::make_unique<TriplePool>(place, source.reached, source.orders) : nullptr;
-      next_ = std::make_unique<CandidatePool>(std::move(place), source.reached, source.orders);
-    }
-    const int share = (steps_left() + frames) / (frames + 1);  // the frame in which it is entered has one, too
-    for (int step = 0; step < share && steps_left() > 0; ++step) {
-      if (next_->steps_left() > 0) {
-        next_->go_on(source.scene, source.outlines);
-      } else {
-        next_triples_->go_on(source.scene, source.outlines, source.lanes);
-      }
-    }
-  }
+  void prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames);
 
   /// Goes over to another place. What is known of a candidate that both places have is kept.
-  void enter(const PoolSource& source, std::shared_ptr<const Place> place) {
-    prepare(source, std::move(place), 0);
-    std::unique_ptr<CandidatePool> next = std::move(next_);
-    KeyTable known(slots_.size());
-    for (std::uint32_t number = 0; number < slots_.size(); ++number) {
-      if (slots_[number].is_known || slots_[number].is_open) known.add(pool_->key(number), number);
-    }
-    std::vector<Slot> slots(next->size());
-    for (std::size_t number = 0; number < slots.size(); ++number) {
-      if (const auto before = known.find(next->key(number))) slots[number] = slots_[*before];
-      // What is hidden from one place may be seen from the other.
-      if (slots[number].is_masked) slots[number].refused_until_m = 0.0;
-    }
-    slots_ = std::move(slots);
-    pool_ = std::move(next);
-    enter_triples();
-  }
+  void enter(const PoolSource& source, std::shared_ptr<const Place> place);
 
   /// Where the transmitter has learnt what makes fewer candidates of the place, finds some of them anew, over frames in
   /// which no other place is prepared, and goes over to them.
-  void renew(const PoolSource& source, const std::shared_ptr<const Place>& place) {
-    constexpr int frames = 14;
-    if (!pool_->is_outdated() || place->beams() != nullptr) return;  // those of three elements would be found, too
-    prepare(source, place, frames);
-    if (steps_left() == 0) enter(source, place);
-  }
+  void renew(const PoolSource& source, const std::shared_ptr<const Place>& place);
 
   /// Calls `solve(sequence) -> bool` for candidates that may carry a path; it says whether they do.
   template <typename Index, typename Solve>
@@ -158,28 +115,10 @@ class PooledLink {
   /// It pays to ask for no less than the frame after the next one.
   float shortest_ahead_m() const { return static_cast<float>(1.5 * step_m_); }
 
-  void note_step(const Vec3& receiver_m) {
-    if (before_m_) step_m_ = glm::distance(*before_m_, receiver_m);
-    way_m_ += 1.000001 * step_m_ + 1e-9;
-    before_m_ = receiver_m;
-  }
+  void note_step(const Vec3& receiver_m);
 
   /// Goes over to the candidates of three elements of the next place.
-  void enter_triples() {
-    const std::unique_ptr<TriplePool> before = std::exchange(triples_, std::move(next_triples_));
-    const std::vector<Slot> known = std::exchange(triple_slots_, {});
-    if (!triples_) return;
-    const std::span<const Triple> all = triples_->candidates();
-    triple_slots_.resize(all.size());
-    const std::span<const Triple> old = before ? before->candidates() : std::span<const Triple>{};
-    for (std::size_t now = 0, then = 0; now < all.size(); ++now) {
-      while (then < old.size() && old[then] < all[now]) ++then;
-      if (then == old.size()) break;
-      if (old[then] != all[now]) continue;
-      triple_slots_[now] = known[then];
-      if (known[then].is_masked) triple_slots_[now].refused_until_m = 0.0;
-    }
-  }
+  void enter_triples();
 
   /// Whether something opaque surely stops the candidate aimed at; if so, until when, and what it is.
   /// `reach_m(moved_m)` says how far the points of the way may move.
@@ -208,12 +147,7 @@ class PooledLink {
     return slot.is_masked;
   }
   bool hides(const Scene& scene, const FacetOutlines& outlines, const Sight& sight, std::size_t at,
-             const WayReach& moved_m) const {
-    const SequenceElement element = way_.elements[at];
-    const double nearer = element.is_edge() ? sight.nearer_on(scene, outlines, element.edge())
-                                            : sight.nearer_on(scene, outlines, element.mirror());
-    return sight.map().hides(way_.points_m[at], nearer, moved_m[at]);
-  }
+             const WayReach& moved_m) const;
 
   template <typename Index, typename Reach>
   bool is_stopped(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach_m) const {
@@ -290,3 +224,7 @@ class PooledLink {
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/memory/pooled_link_bodies.hpp"
+#endif

@@ -41,19 +41,11 @@ struct LinkMemory {
   StandingLink<PathContribution> standing;  ///< while both ends stand
   std::unique_ptr<PooledLink> pooled;       ///< while the transmitter stands and the receiver goes through places
 
-  void forget() {
-    result.reset();
-    standing.forget();
-    pooled.reset();
-  }
+  void forget();
 };
 
 /// How many paths they had.
-inline std::size_t path_count(std::span<const LinkMemory> links) {
-  std::size_t count = 0;
-  for (const LinkMemory& link : links) count += link.result ? link.result->paths.size() : 0;
-  return count;
-}
+std::size_t path_count(std::span<const LinkMemory> links);
 
 struct ReceiverMemory {
   std::optional<DeviceState> state;  ///< none: it was not there
@@ -67,87 +59,30 @@ struct ReceiverMemory {
   /// paths those links had that are no more.
   std::size_t select(std::span<const std::uint32_t> transmitters, std::size_t count);
   /// By the number of the transmitter in the scene; the link must be there.
-  LinkMemory& link(std::size_t transmitter) {
-    if (numbers.empty()) return links[transmitter];
-    const auto place = std::lower_bound(numbers.begin(), numbers.end(), transmitter);
-    return links[static_cast<std::size_t>(place - numbers.begin())];
-  }
+  LinkMemory& link(std::size_t transmitter);
 
   /// What the receiver sees, and what is known of its links beyond what they brought in the frame before.
-  void forget_views() {
-    half.forget();
-    forget_pools();
-    for (LinkMemory& link : links) link.standing.forget();
-  }
+  void forget_views();
 
   /// The candidates of the places that it was in.
-  void forget_pools() {
-    for (LinkMemory& link : links) link.pooled.reset();
-  }
+  void forget_pools();
 
   /// The frame before, of which the next one is not the successor.
-  void forget_frame() {
-    state.reset();
-    end.reset();
-    links.clear();
-    numbers.clear();
-    half.forget_bodies();
-  }
+  void forget_frame();
 
   /// All of it: the receiver has left.
-  void forget() {
-    forget_frame();
-    half.forget();
-  }
+  void forget();
 };
 
-inline std::size_t ReceiverMemory::select(std::span<const std::uint32_t> transmitters, std::size_t count) {
-  if (transmitters.empty() && numbers.empty() && count > 0) {
-    links.resize(count);
-    return 0;
-  }
-  if (links.size() == transmitters.size() && std::ranges::equal(numbers, transmitters)) return 0;
-  std::vector<LinkMemory> kept(transmitters.size());
-  auto before = numbers.begin();
-  for (std::size_t now = 0; now < kept.size(); ++now) {
-    before = std::lower_bound(before, numbers.end(), transmitters[now]);
-    if (before == numbers.end() || *before != transmitters[now] || links.empty()) continue;
-    kept[now] = std::move(links[static_cast<std::size_t>(before - numbers.begin())]);
-  }
-  const std::size_t gone = path_count(links);  // of those that are kept nothing has stayed behind
-  links = std::move(kept);
-  numbers.assign(transmitters.begin(), transmitters.end());
-  return gone;
-}
-
 /// Whether a device is as it was, to the last bit: from a coordinate of −0 follow other signs than from 0.
-inline bool same_bits(const std::optional<LinkEnd>& before, const LinkEnd& now) {
-  return before == now && same_bits(before->position_m, now.position_m);
-}
-inline bool same_bits(const std::optional<DeviceState>& before, const DeviceState& now) {
-  return before == now && same_bits(before->position_m, now.position_m) &&
-         same_bits(before->velocity_mps, now.velocity_mps) && same_bits(before->rotation[0], now.rotation[0]) &&
-         same_bits(before->rotation[1], now.rotation[1]) && same_bits(before->rotation[2], now.rotation[2]);
-}
+bool same_bits(const std::optional<LinkEnd>& before, const LinkEnd& now);
+bool same_bits(const std::optional<DeviceState>& before, const DeviceState& now);
 
 /// Counts the paths that a link has now and had not, and those that it had.
-inline void count_births(const std::optional<LinkResult>& before, const LinkResult& now, CacheCounters& counters) {
-  const auto same = [](const PathContribution& one, const PathContribution& other) {
-    return same_sequence(one.path, other.path);
-  };
-  if (before && std::ranges::equal(before->paths, now.paths, same)) return;
-  const auto keys_of = [](const std::vector<PathContribution>& paths) {
-    std::vector<std::uint64_t> keys;
-    for (const PathContribution& path : paths) keys.push_back(SequenceHash()(sequence_of(path.path)));
-    std::ranges::sort(keys);
-    return keys;
-  };
-  const std::vector<std::uint64_t> old = before ? keys_of(before->paths) : std::vector<std::uint64_t>{};
-  const std::vector<std::uint64_t> present = keys_of(now.paths);
-  std::vector<std::uint64_t> both;
-  std::ranges::set_intersection(old, present, std::back_inserter(both));
-  counters.born += present.size() - both.size();
-  counters.died += old.size() - both.size();
-}
+void count_births(const std::optional<LinkResult>& before, const LinkResult& now, CacheCounters& counters);
 
 }  // namespace dcem::detail
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/sim/detail/receiver_memory_bodies.hpp"
+#endif

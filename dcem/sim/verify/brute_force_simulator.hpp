@@ -1,6 +1,6 @@
 #pragma once
 /// The simulator that asks every triangle: slow, and nothing in it that a tree could have missed.
-#include "dcem/accel/box_index.hpp"
+#include "dcem/accel/brute_force_index.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 
 namespace dcem {

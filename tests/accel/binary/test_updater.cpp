@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/accel/brute_force.hpp"
 #include "tests/accel/random_boxes.hpp"
 
 namespace test_binary_updater {
@@ -747,7 +748,7 @@ TEST_CASE("the oracle's updater takes over the boxes and reports nothing of a sh
   BruteForce<double> oracle;
   oracle.build(boxes);
   boxes[7] = cube(Vec3(99.0), 1.0);
-  const TreeUpdateReport report = UpdaterOf<BruteForce<double>>().update(oracle, Numbers{7}, boxes);
+  const TreeUpdateReport report = BruteForceUpdater<double>().update(oracle, Numbers{7}, boxes);
   CHECK(oracle.validate(boxes) == "");
   CHECK(report.nodes_kept + report.nodes_refit + report.nodes_rebuilt == 0);
   CHECK(report.sah_cost == oracle.sah_cost());

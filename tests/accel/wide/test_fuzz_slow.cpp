@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "dcem/accel/ray_order.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
 #include "tests/accel/wide/wide_traffic.hpp"
