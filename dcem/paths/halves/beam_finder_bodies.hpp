@@ -68,7 +68,7 @@ DCEM_INLINE void BeamFinder::find_parts_of(std::span<const WedgeId> edges, int m
 
 DCEM_INLINE void BeamFinder::look_over_edges(std::span<const EdgePart> parts, std::size_t first, std::size_t last,
                                              std::vector<std::array<std::uint32_t, 2>>& lit) const {
-  constexpr std::size_t block = 64;  // and as many more as the last edge has
+  constexpr std::size_t block = 16;  // and as many more as the last edge has
   std::vector<std::size_t> starts{first};
   for (std::size_t at = first; at < last; ++at) {
     if (at - starts.back() >= block && parts[at].edge != parts[at - 1].edge) starts.push_back(at);

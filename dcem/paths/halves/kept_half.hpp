@@ -68,8 +68,8 @@ class KeptHalf {
   /// Where it will be soon, and in how many frames; none where that is not known.
   std::shared_ptr<const Place> next_place() const { return next_ && next_->is_known() ? next_ : nullptr; }
   int frames_to_next() const { return frames_to_next_; }
-  /// What of that place is still to be worked out, in the steps that it is made in; 0: all is known, or there is none.
-  int steps_to_next() const { return next_ ? next_->steps_left() : 0; }
+  /// What the frame at hand has spent on it, and on entering the place that the device is in now.
+  int work_on_next() const { return work_on_next_; }
 
  private:
   void note(const LinkEnd& end, std::size_t receivers) {
@@ -101,9 +101,8 @@ class KeptHalf {
   void follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const Vec3& step_m,
               const HalfSettings& settings);
 
-  /// Works on the next place, so much in each frame that it is known, with time for what others prepare, when the
-  /// device comes into it. Of a device that is in a place, and has time, few frames work on it, with as much as a look
-  /// from scratch takes, and not that in which it `enters` one: most frames do nothing of the kind.
+  /// Works on the next place, as much in each frame, so that it is known, with time for what others prepare, when the
+  /// device comes into it. The frame that `enters` one has spent some time on that.
   void prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m, const Vec3& step_m,
                     bool enters, const HalfSettings& settings);
 
@@ -143,7 +142,7 @@ class KeptHalf {
   std::optional<LinkEnd> end_;       ///< whose half it is; none yet: nobody's
   std::shared_ptr<const Place> place_;
   std::shared_ptr<Place> next_;
-  int frames_to_next_ = 0;
+  int frames_to_next_ = 0, work_on_next_ = 0;
   double step_m_ = 0.0;  ///< from the frame before
 };
 

@@ -6,6 +6,7 @@
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/kept_half.hpp"
+#include "dcem/paths/halves/spread_work.hpp"
 
 namespace dcem {
 
@@ -102,8 +103,9 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
 
 DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
                                         const Vec3& step_m, bool enters, const HalfSettings& settings) {
-  constexpr int most_frames = 8, steps_of_look = 3;
-  const int steps_of_others = over_mirrors_ ? 14 : 6;  // as many as their pools have
+  constexpr int most_frames = 8;
+  // As `Place` has it: what pools of candidates take, and to go over to those of the place that is entered.
+  const int work_of_others = over_mirrors_ ? 1380 : 20, work_of_entering = over_mirrors_ ? 350 : 7;
   if (place_) {
     frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
   } else if (--frames_to_next_ <= 0 || !next_) {
@@ -111,15 +113,17 @@ DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines&
     // Meanwhile the device looks itself, through its mirrors, too, if places do.
     frames_to_next_ = over_mirrors_ ? most_frames : most_frames / 2;
   }
+  work_on_next_ = enters ? work_of_entering : 0;
   if (frames_to_next_ > most_frames) return;
   if (!next_) {
     const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
     next_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m), over_mirrors_);
   }
-  const int all = next_->steps_left() + steps_of_others, frames = frames_to_next_ + 1;
-  const int evenly = (all + frames / 2) / frames, soon = (all + frames - 1) / frames;
-  const int now = !place_ ? evenly : evenly > 1 ? soon : enters ? 0 : steps_of_look;
-  for (int step = 0; step < now && !next_->is_known(); ++step) next_->go_on(scene, outlines, settings);
+  const int share = even_share(next_->work_left() + work_of_others, work_on_next_, frames_to_next_);
+  while (!next_->is_known() && fits(next_->next_work(), work_on_next_, share)) {
+    work_on_next_ += next_->next_work();
+    next_->go_on(scene, outlines, settings);
+  }
 }
 
 DCEM_INLINE int KeptHalf::frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most) {

@@ -13,6 +13,7 @@
 
 #include "dcem/paths/halves/shared_beams.hpp"
 #include "dcem/paths/halves/sight.hpp"
+#include "dcem/paths/halves/spread_work.hpp"
 
 namespace dcem {
 
@@ -74,6 +75,9 @@ class Place {
   /// time.
   void go_on(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings);
   int steps_left() const { return steps_left_; }
+  /// What the next part takes, and all that are left.
+  int next_work() const { return work().next(steps_left_); }
+  int work_left() const { return work().left(steps_left_); }
   bool is_known() const { return steps_left_ == 0; }
 
   const PlaceBox& box() const { return box_; }
@@ -95,6 +99,11 @@ class Place {
   void look_through_mirrors(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int step);
 
   static constexpr int beam_steps = 8;
+  /// Four faces of the map, two of them, what is seen in it, its mirrors; then what is seen through these.
+  static constexpr std::array<int, Sight::scenery_steps + 1 + beam_steps> step_work{
+      7, 9, 4, 8, 2, 8, 7, 200, 200, 200, 200, 200, 200, 200, 200};
+  WorkSteps work() const { return WorkSteps(std::span(step_work).first(step_work.size() - (beams_ ? 0 : beam_steps))); }
+
   PlaceBox box_;
   std::array<Vec3, 8> corners_m_;
   Sight sight_;

@@ -17,6 +17,7 @@
 #include "dcem/paths/halves/join_gates.hpp"
 #include "dcem/paths/halves/pair_gates.hpp"
 #include "dcem/paths/halves/place.hpp"
+#include "dcem/paths/halves/spread_work.hpp"
 #include "dcem/paths/memory/candidate_way.hpp"
 #include "dcem/paths/memory/edge_candidates.hpp"
 
@@ -31,6 +32,9 @@ class CandidatePool {
   /// Finds a part of the candidates; `steps_left` of them until all are known, and may be asked for.
   void go_on(const Scene& scene, const FacetOutlines& outlines);
   int steps_left() const { return steps_left_; }
+  /// As `Place` has them.
+  int next_work() const { return WorkSteps(step_work).next(steps_left_); }
+  int work_left() const { return WorkSteps(step_work).left(steps_left_); }
 
   const Place& place() const { return *place_; }
   /// Whether it holds more than it would if it were found now: the standing end knows more.
@@ -76,6 +80,7 @@ class CandidatePool {
   void fit();
 
   static constexpr int steps = 6;  ///< mirrors in five parts of them, then edges
+  static constexpr std::array<int, steps> step_work{6, 2, 3, 3, 3, 3};
   std::shared_ptr<const Place> place_;
   const BeamLists& reached_;
   JoinOrders orders_;

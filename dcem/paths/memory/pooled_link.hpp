@@ -43,8 +43,9 @@ class PooledLink {
   void forget();
   bool is_of(const Place& place) const { return pool_ && &pool_->place() == &place; }
 
-  /// Finds candidates of a place that will be entered after so many frames: a share of them.
-  void prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames);
+  /// Finds candidates of a place that will be entered after so many frames: a share of them, in a frame that has spent
+  /// some work on the place itself.
+  void prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames, int spent);
 
   /// Goes over to another place. What is known of a candidate that both places have is kept.
   void enter(const PoolSource& source, std::shared_ptr<const Place> place);
@@ -106,7 +107,11 @@ class PooledLink {
     bool is_known = false, is_open = false, is_masked = false;
   };
 
-  int steps_left() const { return next_->steps_left() + (next_triples_ ? next_triples_->steps_left() : 0); }
+  /// Makes room for the candidates of a place, if they are not those that are being found.
+  void begin(const PoolSource& source, std::shared_ptr<const Place> place);
+  void go_on(const PoolSource& source);
+  int work_left() const { return next_->work_left() + (next_triples_ ? next_triples_->work_left() : 0); }
+  int next_work() const { return next_->steps_left() > 0 ? next_->next_work() : next_triples_->next_work(); }
 
   /// What is known of something for as far ahead as would be asked first: nothing, or that it does not hold; what may
   /// move holds for now alone.

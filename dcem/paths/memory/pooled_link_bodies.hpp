@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dcem/core/build_mode.hpp"
+#include "dcem/paths/halves/spread_work.hpp"
 #include "dcem/paths/memory/key_table.hpp"
 #include "dcem/paths/memory/pooled_link.hpp"
 
@@ -23,24 +24,34 @@ DCEM_INLINE void PooledLink::forget() {
   triple_slots_ = {};
 }
 
-DCEM_INLINE void PooledLink::prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames) {
-  if (!next_ || &next_->place() != place.get()) {
-    next_triples_ =
-        place->beams() != nullptr ? std::make_unique<TriplePool>(place, source.reached, source.orders) : nullptr;
-    next_ = std::make_unique<CandidatePool>(std::move(place), source.reached, source.orders);
+DCEM_INLINE void PooledLink::begin(const PoolSource& source, std::shared_ptr<const Place> place) {
+  if (next_ && &next_->place() == place.get()) return;
+  next_triples_ =
+      place->beams() != nullptr ? std::make_unique<TriplePool>(place, source.reached, source.orders) : nullptr;
+  next_ = std::make_unique<CandidatePool>(std::move(place), source.reached, source.orders);
+}
+
+DCEM_INLINE void PooledLink::go_on(const PoolSource& source) {
+  if (next_->steps_left() > 0) {
+    next_->go_on(source.scene, source.outlines);
+  } else {
+    next_triples_->go_on(source.scene, source.outlines, source.lanes);
   }
-  const int share = (steps_left() + frames) / (frames + 1);  // the frame in which it is entered has one, too
-  for (int step = 0; step < share && steps_left() > 0; ++step) {
-    if (next_->steps_left() > 0) {
-      next_->go_on(source.scene, source.outlines);
-    } else {
-      next_triples_->go_on(source.scene, source.outlines, source.lanes);
-    }
+}
+
+DCEM_INLINE void PooledLink::prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames,
+                                     int spent) {
+  begin(source, std::move(place));
+  const int share = even_share(work_left(), spent, frames);
+  while (work_left() > 0 && fits(next_work(), spent, share)) {
+    spent += next_work();
+    go_on(source);
   }
 }
 
 DCEM_INLINE void PooledLink::enter(const PoolSource& source, std::shared_ptr<const Place> place) {
-  prepare(source, std::move(place), 0);
+  begin(source, std::move(place));
+  while (work_left() > 0) go_on(source);
   std::unique_ptr<CandidatePool> next = std::move(next_);
   KeyTable known(slots_.size());
   for (std::uint32_t number = 0; number < slots_.size(); ++number) {
@@ -58,10 +69,10 @@ DCEM_INLINE void PooledLink::enter(const PoolSource& source, std::shared_ptr<con
 }
 
 DCEM_INLINE void PooledLink::renew(const PoolSource& source, const std::shared_ptr<const Place>& place) {
-  constexpr int frames = 14;
   if (!pool_->is_outdated() || place->beams() != nullptr) return;  // those of three elements would be found, too
-  prepare(source, place, frames);
-  if (steps_left() == 0) enter(source, place);
+  begin(source, place);
+  go_on(source);
+  if (work_left() == 0) enter(source, place);
 }
 
 DCEM_INLINE void PooledLink::note_step(const Vec3& receiver_m) {

@@ -33,6 +33,9 @@ class TriplePool {
   /// Finds a part of the candidates; `steps_left` of them until all are known.
   void go_on(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes);
   int steps_left() const { return steps_left_; }
+  /// As `Place` has them.
+  int next_work() const { return step_work; }
+  int work_left() const { return step_work * steps_left_; }
 
   /// All of them, each once, in order.
   std::span<const Triple> candidates() const { return candidates_; }
@@ -40,7 +43,7 @@ class TriplePool {
  private:
   struct Finder;
 
-  static constexpr int steps = 8;
+  static constexpr int steps = 8, step_work = 170;
   std::shared_ptr<const Place> place_;
   const BeamLists& reached_;
   JoinOrders orders_;

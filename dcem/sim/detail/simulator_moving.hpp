@@ -134,7 +134,7 @@ void BasicSimulator<Surface, Index>::prepare_pool(FollowedLink& link, const Kept
   if (!next) return;
   const BeamLists& reached = *link.of.transmitters.halves[link.transmitter].lists();
   link.pooled().prepare({scene_, *outlines_, *lanes_, reached, joined_orders(link.of.search)}, std::move(next),
-                        half.frames_to_next());
+                        half.frames_to_next(), half.work_on_next());
 }
 
 /// All paths of a link whose transmitter stands, from the candidates of the receiver's place.
