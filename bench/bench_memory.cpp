@@ -2,7 +2,7 @@
 ///
 ///   bench_memory FILE.obj --mast X Y Z [--steps M...] [--cars N...] [--receivers N...] [--reflections N]
 ///                [--diffractions N] [--interactions N] [--frames N] [--warm N] [--within M] [--v2v] [--mast-step M]
-///                [--threads N]
+///                [--threads N] [--settle N] [--column N] [--gap M]
 ///                [--processor-time] [--series FILE]
 ///
 /// Receivers and cars drive straight through the streets of a city. Each frame is solved by two simulators in turns,
@@ -38,8 +38,8 @@ struct Options {
   std::vector<double> steps_m{0.0, 0.014, 0.14, 0.5, 1.4};
   std::vector<std::size_t> cars{0}, receivers{10};
   int reflections = 2, diffractions = 1, interactions = 2;
-  std::size_t frames = 40, warm = 0;
-  double within_m = 150.0, car_step_m = 1.0;
+  std::size_t frames = 40, warm = 0, settle = 4, column = 1;
+  double within_m = 150.0, car_step_m = 1.0, gap_m = 20.0;
   std::optional<double> mast_step_m;
   bool between_vehicles = false, alone = false, processor_time = false;
   std::string series;
@@ -119,21 +119,23 @@ bool bench(const Options& options, const DriveOrder& order) {
   std::uint64_t hash = 0;
   for (std::size_t frame = 0; frame < order.frames; ++frame) {
     const auto time_s = static_cast<double>(frame);
-    const dcem::FrameResult own = exact.advance(time_s, warm + frame, true);
+    // All of them have just started, from standing to their speed at once.
+    const bool is_timed = frame >= options.settle;
+    const dcem::FrameResult own = exact.advance(time_s, warm + frame, is_timed);
     if (options.alone) continue;
-    const dcem::FrameResult expected = off.advance(time_s, warm + frame, true);
+    const dcem::FrameResult expected = off.advance(time_s, warm + frame, is_timed);
     same += dcem::bench::hash_of(own, 0) == dcem::bench::hash_of(expected, 0) ? 1 : 0;
     hash = dcem::bench::hash_of(expected, hash);
   }
   if (!options.series.empty()) write_series(options.series, order, off, exact);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto frames = static_cast<double>(order.frames);
+  const auto frames = static_cast<double>(options.frames);
   dcem::bench::CsvRow row;
   row.text(std::filesystem::path(options.file).stem().string() + (order.mast_drives ? " v2v" : ""));
   row.count(options.threads).count(static_cast<std::size_t>(options.diffractions));
   row.count(static_cast<std::size_t>(options.interactions));
-  row.number(order.step_m, 3).count(order.cars).count(order.receivers).count(order.frames);
+  row.number(order.step_m, 3).count(order.cars).count(order.receivers).count(options.frames);
   row.number(cold_off_ms, 1).number(cold_exact_ms, 1);
   if (options.alone) off.ms.assign(1, 0.0);
   for (const Contender* one : {&off, &exact}) {
@@ -172,6 +174,10 @@ int main(int count, char** arguments) {
   app.add_option("--interactions", options.interactions, "at most")->check(CLI::Range(0, 3));
   app.add_option("--frames", options.frames, "that are timed")->check(CLI::Range(2, 100'000));
   app.add_option("--warm", options.warm, "frames before those that are timed; 0: as many as lists of a mast may take");
+  app.add_option("--settle", options.settle, "frames that are driven before those that are timed");
+  app.add_option("--column", options.column, "how many receivers drive one behind the other")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--gap", options.gap_m, "between these, m")->check(CLI::PositiveNumber);
   app.add_option("--threads", options.threads, "of each simulator")->check(CLI::Range(1, 1024));
   app.add_flag("--alone", options.alone, "with memory alone, to look into: nothing is compared");
   app.add_flag("--processor-time", options.processor_time, "of all threads instead of that by the clock");
@@ -192,7 +198,8 @@ int main(int count, char** arguments) {
         for (const double step_m : options.steps_m) {
           const dcem::Vec3 mast_m(options.mast_m[0], options.mast_m[1], options.mast_m[2]);
           all_same = bench(options, {options.file, mast_m, options.between_vehicles, options.mast_step_m,
-                                     options.within_m, step_m, receivers, cars, options.frames, options.car_step_m}) &&
+                                     options.within_m, step_m, receivers, cars, options.frames + options.settle,
+                                     options.car_step_m, options.column, options.gap_m}) &&
                      all_same;
         }
       }

@@ -71,6 +71,8 @@ struct DriveOrder {
   double step_m = 0.14;                              ///< of receivers, from frame to frame
   std::size_t receivers = 1, cars = 0, frames = 40;
   double car_step_m = 1.0;
+  std::size_t column = 1;  ///< so many receivers drive one behind the other …
+  double gap_m = 20.0;     ///< … at this distance
 };
 
 /// The motions hold from time 0 on, a second for a frame.
@@ -83,16 +85,25 @@ inline Scene street_drive(const DriveOrder& order) {
   WideIndex index;
   index.build(scene.triangle_view(), scene.triangle_boxes(), scene.first_triangles());
   Streets streets(scene, index, order.mast_m, order.within_m);
-  const auto driving = [&](const std::string& id, double height_m, double step_m) {
-    const auto way = streets.way(height_m, step_m * static_cast<double>(order.frames), 0.3);
-    Device device = device_at(id, way.from_m, 30.0);
-    device.motion = LinearMotion{{way.from_m}, step_m * way.ahead, 0.0};
+  const auto way_of = [&](double height_m, double step_m, double longer_m) {
+    return streets.way(height_m, step_m * static_cast<double>(order.frames) + longer_m, 0.3);
+  };
+  const auto driving = [](const std::string& id, const Streets::Way& way, double ahead_m, double step_m) {
+    const Vec3 from_m = way.from_m + ahead_m * way.ahead;
+    Device device = device_at(id, from_m, 30.0);
+    device.motion = LinearMotion{{from_m}, step_m * way.ahead, 0.0};
     return device;
   };
-  scene.add_transmitter(order.mast_drives ? driving("sender", 1.6, order.mast_step_m.value_or(order.step_m))
+  const double mast_step_m = order.mast_step_m.value_or(order.step_m);
+  scene.add_transmitter(order.mast_drives ? driving("sender", way_of(1.6, mast_step_m, 0.0), 0.0, mast_step_m)
                                           : device_at("mast", order.mast_m, 30.0));
+  Streets::Way way{};
+  const double column_m = order.gap_m * static_cast<double>(order.column - 1);
   for (std::size_t number = 0; number < order.receivers; ++number) {
-    scene.add_receiver(driving("receiver" + std::to_string(number), 1.5, order.step_m));
+    const std::size_t place = number % order.column;
+    if (place == 0) way = way_of(1.5, order.step_m, column_m);
+    const double ahead_m = column_m - order.gap_m * static_cast<double>(place);
+    scene.add_receiver(driving("receiver" + std::to_string(number), way, ahead_m, order.step_m));
   }
   TriangleMesh box;
   const Vec3 low_m(-2.2, -0.9, 0.0), high_m(2.2, 0.9, 1.5);
@@ -109,9 +120,9 @@ inline Scene street_drive(const DriveOrder& order) {
     }
   }
   for (std::size_t number = 0; number < order.cars; ++number) {
-    const auto way = streets.way(0.02, order.car_step_m * static_cast<double>(order.frames), 1.2);
+    const auto car_way = streets.way(0.02, order.car_step_m * static_cast<double>(order.frames), 1.2);
     scene.add_object("car" + std::to_string(number), box,
-                     LinearMotion{{way.from_m, way.yaw_rad, 0.0, 0.0}, order.car_step_m * way.ahead, 0.0});
+                     LinearMotion{{car_way.from_m, car_way.yaw_rad, 0.0, 0.0}, order.car_step_m * car_way.ahead, 0.0});
   }
   return scene;
 }

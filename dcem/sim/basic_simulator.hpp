@@ -206,6 +206,8 @@ class BasicSimulator {
   std::optional<PathContribution> note_standing(FollowedLink& link, const Sequence& sequence) const;
   bool finds_lifetimes() const;
   void find_lifetimes(std::vector<LinkResult>& links, const TransmitterEnds& transmitters);
+  PoolSource pool_source(const FollowedLink& link) const;
+  void note_places();
   void note_transmitters(const TransmitterEnds& ends);
   void choose_remembered();
   std::size_t receivers_on_the_move() const;
@@ -234,6 +236,10 @@ class BasicSimulator {
   std::optional<detail::FrameChange> change_;       ///< since the frame before, where the cache is exact; so the next
   std::vector<detail::ReceiverMemory> receivers_;   ///< one per receiver of the scene …
   std::vector<char> is_remembered_;                 ///< … and whether it is remembered what it sees, in this frame
+  std::unique_ptr<KnownPlaces> known_places_ =
+      std::make_unique<KnownPlaces>();  ///< that devices have come into, where the cache is exact …
+  KnownPools known_pools_;              ///< … and what may carry a path there
+  std::size_t most_known_places_ = 0;
   std::vector<std::optional<LinkEnd>> transmitters_before_;
   std::vector<std::optional<DeviceState>> transmitter_states_before_;
   std::optional<FacetRims> rims_;                              ///< where lifetimes are asked for

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dcem/paths/halves/beam_lists.hpp"
+#include "dcem/paths/halves/known_places.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 #include "dcem/paths/halves/place.hpp"
 
@@ -30,12 +31,14 @@ class KeptHalf {
 
   /// From now on a device that moves by no more than this from frame to frame takes what it may see from the place that
   /// it is in; its images are laid out at once or when they are asked for. `over_mirrors`: places know what is seen
-  /// through their mirrors, too.
-  void keep_places(double longest_step_m, bool images_at_once, bool over_mirrors = false) {
+  /// through their mirrors, too. It takes over those among `known` that lie on its way.
+  void keep_places(double longest_step_m, bool images_at_once, bool over_mirrors = false,
+                   const KnownPlaces* known = nullptr) {
     keeps_places_ = true;
     over_mirrors_ = over_mirrors;
     longest_step_m_ = longest_step_m;
     images_at_once_ = images_at_once;
+    known_ = known;
   }
   /// As `PathHalf` has it.
   void lay_out_images(const Scene& scene, const FacetOutlines& outlines) { half_.lay_out_images(scene, outlines); }
@@ -67,6 +70,8 @@ class KeptHalf {
   const std::shared_ptr<const Place>& place() const { return place_; }
   /// Where it will be soon, and in how many frames; none where that is not known.
   std::shared_ptr<const Place> next_place() const { return next_ && next_->is_known() ? next_ : nullptr; }
+  /// The place that it came into when it moved last; none where it stayed in one.
+  std::shared_ptr<const Place> entered() const { return has_entered_ ? place_ : nullptr; }
   int frames_to_next() const { return frames_to_next_; }
   /// What the frame at hand has spent on it, and on entering the place that the device is in now.
   int work_on_next() const { return work_on_next_; }
@@ -106,14 +111,22 @@ class KeptHalf {
   void prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m, const Vec3& step_m,
                     bool enters, const HalfSettings& settings);
 
+  /// Goes over to another place, if it is in none and one is there.
+  bool enter(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m, const Vec3& step_m,
+             const HalfSettings& settings);
+  void begin_next(const Vec3& now_m, const Vec3& step_m);
+
   /// After how many frames a device that moves on like this is in a place no more: `most` + 1 where it is longer.
   static int frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most);
 
   /// Whether a device that has moved so far will be in a place for some frames.
   bool pays(const Vec3& moved_m) const { return keeps_places_ && glm::length(moved_m) <= longest_step_m_; }
 
-  /// A place that begins a little behind a device and lies where it is going.
-  static PlaceBox place_ahead(const Vec3& before_m, const Vec3& now_m);
+  /// A place that begins so far behind a device and lies where it is going.
+  static PlaceBox place_ahead(const Vec3& before_m, const Vec3& now_m, double behind_m);
+  /// How far behind a device that will be at a point the next place begins: where others come the same way, there where
+  /// the last one ends, so that they are in one of them at any moment.
+  double behind_m(const Vec3& now_m, const Vec3& then_m) const;
 
   HalfSettings looked_at_twice_from(HalfSettings settings, bool closer) const {
     if (over_mirrors_) return settings;
@@ -127,10 +140,6 @@ class KeptHalf {
                     bool closer, ThreadPool* pool);
 
   static constexpr std::size_t very_many = 20'000;  ///< small facets: more than there are in view over one city
-  /// Places are 4 m long by measurement: twice as long they take longer for each metre, half as long, too; of devices
-  /// that move at least so far in a frame 6 m.
-  static constexpr double fast_step_m = 1.0;
-
   PathHalf half_;
   BeamLists lists_;
   bool has_scenery_ = false, has_bodies_ = false, has_lists_ = false, has_edges_ = false, is_closer_ = false,
@@ -140,8 +149,10 @@ class KeptHalf {
   std::size_t joins_ = 0;            ///< since the device stands
   std::size_t frames_standing_ = 0;  ///< in which lists have been worked on
   std::optional<LinkEnd> end_;       ///< whose half it is; none yet: nobody's
-  std::shared_ptr<const Place> place_;
-  std::shared_ptr<Place> next_;
+  const KnownPlaces* known_ = nullptr;
+  std::shared_ptr<const Place> place_, next_;
+  std::shared_ptr<Place> made_;  ///< the next one, as long as it is being made
+  bool has_entered_ = false;
   int frames_to_next_ = 0, work_on_next_ = 0;
   double step_m_ = 0.0;  ///< from the frame before
 };

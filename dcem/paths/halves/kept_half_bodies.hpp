@@ -54,7 +54,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
 DCEM_INLINE void KeptHalf::forget() {
   if (!end_) return;
   KeptHalf nothing(half_.map_pixels());
-  if (keeps_places_) nothing.keep_places(longest_step_m_, images_at_once_, over_mirrors_);
+  if (keeps_places_) nothing.keep_places(longest_step_m_, images_at_once_, over_mirrors_, known_);
   *this = std::move(nothing);
 }
 
@@ -85,20 +85,31 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
   step_m_ = glm::length(step_m);
   HalfSettings of_place = settings;
   if (!over_mirrors_) of_place.closer_from = very_many;  // it takes as long as it saves, or longer
-  const auto is_in = [&](const auto& place) { return place && place->box().holds(end.position_m); };
-  if (!is_in(place_)) place_.reset();
-  // A device that hardly moves is in the place long before it is known: it comes into it when that is wanted.
-  const bool enters = !place_ && is_in(next_) && frames_to_next_ <= 1;
-  if (enters) {
-    while (!next_->is_known()) next_->go_on(scene, outlines, of_place);
-    place_ = std::move(next_);
-  }
-  prepare_next(scene, outlines, end.position_m, step_m, enters, of_place);
+  has_entered_ = enter(scene, outlines, end.position_m, step_m, of_place);
+  prepare_next(scene, outlines, end.position_m, step_m, has_entered_, of_place);
   is_closer_ = false;
   has_scenery_ = true;
   if (!place_) return half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, false));
   half_.take_scenery(scene, outlines, end, of_place, *place_);
   if (images_at_once_) half_.lay_out_images(scene, outlines);
+}
+
+DCEM_INLINE bool KeptHalf::enter(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
+                                 const Vec3& step_m, const HalfSettings& settings) {
+  const auto is_in = [&](const auto& place) { return place && place->box().holds(now_m); };
+  if (is_in(place_)) return false;
+  place_.reset();
+  // A device that hardly moves is in the place long before it is known: it comes into it when that is wanted.
+  if (is_in(next_) && frames_to_next_ <= 1) {
+    while (!next_->is_known()) made_->go_on(scene, outlines, settings);
+    place_ = std::move(next_);
+  } else if (known_ != nullptr) {
+    place_ = known_->find(now_m, step_m, over_mirrors_);
+  }
+  if (!place_) return false;
+  next_.reset();
+  made_.reset();
+  return true;
 }
 
 DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
@@ -110,20 +121,35 @@ DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines&
     frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
   } else if (--frames_to_next_ <= 0 || !next_) {
     next_.reset();  // missed, or none
+    made_.reset();
     // Meanwhile the device looks itself, through its mirrors, too, if places do.
     frames_to_next_ = over_mirrors_ ? most_frames : most_frames / 2;
   }
   work_on_next_ = enters ? work_of_entering : 0;
   if (frames_to_next_ > most_frames) return;
-  if (!next_) {
-    const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
-    next_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m), over_mirrors_);
-  }
+  if (!next_) begin_next(now_m, step_m);
   const int share = even_share(next_->work_left() + work_of_others, work_on_next_, frames_to_next_);
   while (!next_->is_known() && fits(next_->next_work(), work_on_next_, share)) {
     work_on_next_ += next_->next_work();
-    next_->go_on(scene, outlines, settings);
+    made_->go_on(scene, outlines, settings);
   }
+}
+
+DCEM_INLINE void KeptHalf::begin_next(const Vec3& now_m, const Vec3& step_m) {
+  const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
+  if (known_ != nullptr) next_ = known_->find(then_m, step_m, over_mirrors_);
+  if (next_) return;
+  made_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m, behind_m(now_m, then_m)), over_mirrors_);
+  next_ = made_;
+}
+
+DCEM_INLINE double KeptHalf::behind_m(const Vec3& now_m, const Vec3& then_m) const {
+  constexpr double least_m = 0.25;
+  const double way_m = glm::distance(now_m, then_m);
+  const bool leaves_gaps = known_ == nullptr || !known_->are_shared();
+  if (!place_ || leaves_gaps || !(way_m > 0.0)) return least_m;
+  const double out_m = place_->box().way_out_m(now_m, (then_m - now_m) / way_m);
+  return std::max(least_m, way_m - out_m + 0.1);
 }
 
 DCEM_INLINE int KeptHalf::frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most) {
@@ -132,14 +158,14 @@ DCEM_INLINE int KeptHalf::frames_until_out(const PlaceBox& box, const Vec3& now_
   return frames;
 }
 
-DCEM_INLINE PlaceBox KeptHalf::place_ahead(const Vec3& before_m, const Vec3& now_m) {
-  constexpr double behind_m = 0.25, half_width_m = 0.5, half_height_m = 0.1;
+DCEM_INLINE PlaceBox KeptHalf::place_ahead(const Vec3& before_m, const Vec3& now_m, double behind_m) {
+  constexpr double half_width_m = 0.5, half_height_m = 0.1;
   const Vec3 moved_m = now_m - before_m;
   const double level_m = std::hypot(moved_m.x, moved_m.y);
   const Vec3 ahead = level_m > 0.0 ? Vec3(moved_m.x / level_m, moved_m.y / level_m, 0.0) : Vec3(1.0, 0.0, 0.0);
   const double climb = moved_m.z / std::max(level_m, 1e-3 + std::abs(moved_m.z));
-  const double length_m = glm::length(moved_m) < fast_step_m ? 4.0 : 6.0;
-  const double half_length_m = 0.5 * length_m, to_middle_m = half_length_m - behind_m;
+  const double ahead_m = PlaceBox::length_for_m(glm::length(moved_m)) - 0.25;
+  const double half_length_m = 0.5 * (behind_m + ahead_m), to_middle_m = half_length_m - behind_m;
   return {now_m + to_middle_m * ahead + Vec3(0.0, 0.0, to_middle_m * climb),
           ahead,
           {half_length_m, half_width_m, half_height_m + half_length_m * std::abs(climb)}};
@@ -149,6 +175,8 @@ DCEM_INLINE void KeptHalf::find_scenery(const Scene& scene, const FacetOutlines&
                                         const HalfSettings& settings, bool closer, ThreadPool* pool) {
   place_.reset();
   next_.reset();
+  made_.reset();
+  has_entered_ = false;
   half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, closer), pool);
   is_closer_ = closer;
   has_scenery_ = true;

@@ -33,6 +33,13 @@ struct PlaceBox {
            std::abs(glm::dot(away_m, aside())) <= half_m.y - hair_m && std::abs(away_m.z) <= half_m.z - hair_m;
   }
 
+  /// How far a point that is inside is from where it comes out if it moves on along `towards`, of unit length; 0 for
+  /// one that is not inside.
+  double way_out_m(const Vec3& point_m, const Vec3& towards) const;
+  /// How long boxes of devices are that move so far from frame to frame: 4 m by measurement; twice as long they take
+  /// longer for each metre, half as long, too. Of fast ones 6 m.
+  static double length_for_m(double step_m) { return step_m < 1.0 ? 4.0 : 6.0; }
+
   /// Corners of the part of the box that is on one `side` (1 or −1) of a plane and not in it; none where there is no
   /// such part.
   void corners_beside(const Plane& plane, double side, std::vector<Vec3>& result_m) const;

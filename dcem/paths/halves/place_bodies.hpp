@@ -1,10 +1,28 @@
 #pragma once
 /// Bodies of place.hpp.
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/common_cone.hpp"
 #include "dcem/paths/halves/place.hpp"
 
 namespace dcem {
+
+DCEM_INLINE double PlaceBox::way_out_m(const Vec3& point_m, const Vec3& towards) const {
+  if (!holds(point_m)) return 0.0;
+  const Vec3 away_m = point_m - middle_m;
+  double way_m = std::numeric_limits<double>::infinity();
+  const std::array<Vec3, 3> axes{ahead, aside(), Vec3(0.0, 0.0, 1.0)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3& along = axes[static_cast<std::size_t>(axis)];
+    const double speed = glm::dot(towards, along), at_m = glm::dot(away_m, along);
+    if (speed != 0.0) way_m = std::min(way_m, ((speed > 0.0 ? half_m[axis] : -half_m[axis]) - at_m) / speed);
+  }
+  return way_m;
+}
 
 DCEM_INLINE void PlaceBox::corners_beside(const Plane& plane, double side, std::vector<Vec3>& result_m) const {
   const std::array<Vec3, 8> all_m = corners_m();

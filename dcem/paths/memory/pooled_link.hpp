@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/paths/memory/candidate_pool.hpp"
+#include "dcem/paths/memory/known_pools.hpp"
 #include "dcem/paths/memory/sure_blocker.hpp"
 #include "dcem/paths/memory/triple_ways.hpp"
 #include "dcem/paths/memory/way_finder.hpp"
@@ -36,12 +36,14 @@ struct PoolSource {
   const LaneScene& lanes;
   const BeamLists& reached;  ///< by the transmitter
   JoinOrders orders;
+  const KnownPools& known;  ///< by others, who came into the place before
+  std::size_t transmitter;  ///< its number there
 };
 
 class PooledLink {
  public:
   void forget();
-  bool is_of(const Place& place) const { return pool_ && &pool_->place() == &place; }
+  bool is_of(const Place& place) const { return of_place_.pool && &of_place_.pool->place() == &place; }
 
   /// Finds candidates of a place that will be entered after so many frames: a share of them, in a frame that has spent
   /// some work on the place itself.
@@ -54,13 +56,21 @@ class PooledLink {
   /// which no other place is prepared, and goes over to them.
   void renew(const PoolSource& source, const std::shared_ptr<const Place>& place);
 
+  /// The candidates that were found for this link, once, as soon as it has gone over to them.
+  std::optional<PlacePools> news() {
+    if (!has_news_) return std::nullopt;
+    has_news_ = false;
+    return of_place_;
+  }
+
   /// Calls `solve(sequence) -> bool` for candidates that may carry a path; it says whether they do.
   template <typename Index, typename Solve>
   void for_each_open(const PoolJudge<Index>& judge, Solve&& solve) {
     note_step(judge.receiver.position_m);
-    pool_->for_each_at(judge.receiver.position_m, [&](std::size_t number) {
+    of_place_.pool->for_each_at(judge.receiver.position_m, [&](std::size_t number) {
       Slot& slot = slots_[number];
-      if (way_m_ < slot.refused_until_m || !pool_->aim(judge.gates, judge.receiver.position_m, number, way_)) return;
+      if (way_m_ < slot.refused_until_m || !of_place_.pool->aim(judge.gates, judge.receiver.position_m, number, way_))
+        return;
       const bool was_open = slot.is_open;
       slot.is_open = was_open && solve(way_.elements);
       const auto reach_m = [&](double moved_m) {
@@ -75,9 +85,9 @@ class PooledLink {
   /// The same for candidates of three elements, after the others.
   template <typename Index, typename Solve>
   void for_each_open_triple(const PoolJudge<Index>& judge, const BeamLists& reached, Solve&& solve) {
-    if (!triples_) return;
-    TripleWays ways(judge.gates, judge.outlines, judge.receiver.position_m, pool_->place().sight(), reached);
-    const std::span<const Triple> all = triples_->candidates();
+    if (!of_place_.triples) return;
+    TripleWays ways(judge.gates, judge.outlines, judge.receiver.position_m, of_place_.pool->place().sight(), reached);
+    const std::span<const Triple> all = of_place_.triples->candidates();
     for (std::size_t number = 0; number < all.size(); ++number) {
       Slot& slot = triple_slots_[number];
       if (way_m_ < slot.refused_until_m) continue;
@@ -107,11 +117,11 @@ class PooledLink {
     bool is_known = false, is_open = false, is_masked = false;
   };
 
-  /// Makes room for the candidates of a place, if they are not those that are being found.
+  /// Takes over the candidates of a place, or makes room for them, if they are not those that are being found.
   void begin(const PoolSource& source, std::shared_ptr<const Place> place);
   void go_on(const PoolSource& source);
-  int work_left() const { return next_->work_left() + (next_triples_ ? next_triples_->work_left() : 0); }
-  int next_work() const { return next_->steps_left() > 0 ? next_->next_work() : next_triples_->next_work(); }
+  int work_left() const { return (made_ ? made_->work_left() : 0) + (made_triples_ ? made_triples_->work_left() : 0); }
+  int next_work() const { return made_->steps_left() > 0 ? made_->next_work() : made_triples_->next_work(); }
 
   /// What is known of something for as far ahead as would be asked first: nothing, or that it does not hold; what may
   /// move holds for now alone.
@@ -123,7 +133,7 @@ class PooledLink {
   void note_step(const Vec3& receiver_m);
 
   /// Goes over to the candidates of three elements of the next place.
-  void enter_triples();
+  void enter_triples(const TriplePool* before);
 
   /// Whether something opaque surely stops the candidate aimed at; if so, until when, and what it is.
   /// `reach_m(moved_m)` says how far the points of the way may move.
@@ -143,7 +153,7 @@ class PooledLink {
   template <typename Index, typename Reach>
   bool is_masked(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach_m) const {
     const Scene& scene = judge.gates.scene();
-    const Sight &near = pool_->place().sight(), &far = judge.transmitter_half.sight();
+    const Sight &near = of_place_.pool->place().sight(), &far = judge.transmitter_half.sight();
     slot.is_masked = holds_for_a_while(slot, [&](double receiver_moved_m) {
       const WayReach moved_m = reach_m(receiver_moved_m);
       return hides(scene, judge.outlines, near, 0, moved_m) ||
@@ -218,8 +228,11 @@ class PooledLink {
   }
 
   static constexpr float longest_ahead_m = 4.0F;
-  std::unique_ptr<CandidatePool> pool_, next_;
-  std::unique_ptr<TriplePool> triples_, next_triples_;  ///< none where no more than two elements are asked for
+  PlacePools of_place_, next_;
+  // The next ones, as long as they are found for this link.
+  std::shared_ptr<CandidatePool> made_;
+  std::shared_ptr<TriplePool> made_triples_;
+  bool has_news_ = false;
   std::vector<Slot> triple_slots_;
   std::vector<Slot> slots_;
   double way_m_ = 0.0, step_m_ = 0.0;  ///< that the receiver has come, in all and since the frame before

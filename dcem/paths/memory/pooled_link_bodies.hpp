@@ -16,26 +16,34 @@
 namespace dcem {
 
 DCEM_INLINE void PooledLink::forget() {
-  pool_.reset();
-  next_.reset();
-  triples_.reset();
-  next_triples_.reset();
+  of_place_ = next_ = {};
+  made_.reset();
+  made_triples_.reset();
+  has_news_ = false;
   slots_ = {};
   triple_slots_ = {};
 }
 
 DCEM_INLINE void PooledLink::begin(const PoolSource& source, std::shared_ptr<const Place> place) {
-  if (next_ && &next_->place() == place.get()) return;
-  next_triples_ =
-      place->beams() != nullptr ? std::make_unique<TriplePool>(place, source.reached, source.orders) : nullptr;
-  next_ = std::make_unique<CandidatePool>(std::move(place), source.reached, source.orders);
+  if (next_.pool && &next_.pool->place() == place.get()) return;
+  made_.reset();
+  made_triples_.reset();
+  if (const PlacePools* const known = source.known.find(*place, source.transmitter)) {
+    next_ = *known;
+    return;
+  }
+  if (place->beams() != nullptr) {
+    made_triples_ = std::make_shared<TriplePool>(place, source.reached, source.orders);
+  }
+  made_ = std::make_shared<CandidatePool>(std::move(place), source.reached, source.orders);
+  next_ = {made_, made_triples_};
 }
 
 DCEM_INLINE void PooledLink::go_on(const PoolSource& source) {
-  if (next_->steps_left() > 0) {
-    next_->go_on(source.scene, source.outlines);
+  if (made_->steps_left() > 0) {
+    made_->go_on(source.scene, source.outlines);
   } else {
-    next_triples_->go_on(source.scene, source.outlines, source.lanes);
+    made_triples_->go_on(source.scene, source.outlines, source.lanes);
   }
 }
 
@@ -52,26 +60,29 @@ DCEM_INLINE void PooledLink::prepare(const PoolSource& source, std::shared_ptr<c
 DCEM_INLINE void PooledLink::enter(const PoolSource& source, std::shared_ptr<const Place> place) {
   begin(source, std::move(place));
   while (work_left() > 0) go_on(source);
-  std::unique_ptr<CandidatePool> next = std::move(next_);
+  has_news_ = made_ != nullptr;
+  made_.reset();
+  made_triples_.reset();
   KeyTable known(slots_.size());
   for (std::uint32_t number = 0; number < slots_.size(); ++number) {
-    if (slots_[number].is_known || slots_[number].is_open) known.add(pool_->key(number), number);
+    if (slots_[number].is_known || slots_[number].is_open) known.add(of_place_.pool->key(number), number);
   }
-  std::vector<Slot> slots(next->size());
+  std::vector<Slot> slots(next_.pool->size());
   for (std::size_t number = 0; number < slots.size(); ++number) {
-    if (const auto before = known.find(next->key(number))) slots[number] = slots_[*before];
+    if (const auto before = known.find(next_.pool->key(number))) slots[number] = slots_[*before];
     // What is hidden from one place may be seen from the other.
     if (slots[number].is_masked) slots[number].refused_until_m = 0.0;
   }
   slots_ = std::move(slots);
-  pool_ = std::move(next);
-  enter_triples();
+  const PlacePools before = std::exchange(of_place_, std::exchange(next_, {}));
+  enter_triples(before.triples.get());
 }
 
 DCEM_INLINE void PooledLink::renew(const PoolSource& source, const std::shared_ptr<const Place>& place) {
-  if (!pool_->is_outdated() || place->beams() != nullptr) return;  // those of three elements would be found, too
+  if (!of_place_.pool->is_outdated() || place->beams() != nullptr)
+    return;  // those of three elements would be found, too
   begin(source, place);
-  go_on(source);
+  if (work_left() > 0) go_on(source);
   if (work_left() == 0) enter(source, place);
 }
 
@@ -81,13 +92,12 @@ DCEM_INLINE void PooledLink::note_step(const Vec3& receiver_m) {
   before_m_ = receiver_m;
 }
 
-DCEM_INLINE void PooledLink::enter_triples() {
-  const std::unique_ptr<TriplePool> before = std::exchange(triples_, std::move(next_triples_));
+DCEM_INLINE void PooledLink::enter_triples(const TriplePool* before) {
   const std::vector<Slot> known = std::exchange(triple_slots_, {});
-  if (!triples_) return;
-  const std::span<const Triple> all = triples_->candidates();
+  if (!of_place_.triples) return;
+  const std::span<const Triple> all = of_place_.triples->candidates();
   triple_slots_.resize(all.size());
-  const std::span<const Triple> old = before ? before->candidates() : std::span<const Triple>{};
+  const std::span<const Triple> old = before != nullptr ? before->candidates() : std::span<const Triple>{};
   for (std::size_t now = 0, then = 0; now < all.size(); ++now) {
     while (then < old.size() && old[then] < all[now]) ++then;
     if (then == old.size()) break;

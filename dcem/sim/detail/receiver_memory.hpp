@@ -35,6 +35,10 @@ inline constexpr double longest_step_in_place_m = 0.25;
 /// and those of the next one. Candidates of three elements, 180,000 of a place in Munich, take ten times as much.
 inline constexpr double remembered_receiver_bytes = 5e6, remembered_link_bytes = 1e6, remembered_triples_bytes = 1e7;
 
+/// So many places that somebody has come into are known for each receiver: behind ten cars that follow each other at
+/// two seconds lie five for each of them.
+inline constexpr std::size_t known_places_per_receiver = 6;
+
 /// One link in the frame before.
 struct LinkMemory {
   std::optional<LinkResult> result;         ///< none: the link was not there

@@ -49,6 +49,7 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   }
   Solved solved = change_ ? follow_all(transmitters) : solve_all(scene_.receivers(), transmitters, caches_, true);
   result.links = std::move(solved.links);
+  if (change_) note_places();
   if (finds_lifetimes()) find_lifetimes(result.links, transmitters);
   result.work = solved.work;
   result.cache += solved.cache;
@@ -101,6 +102,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::choose_remembered() {
   const std::span<const Device> receivers = scene_.receivers();
   is_remembered_.assign(receivers.size(), 1);
+  most_known_places_ = detail::known_places_per_receiver * receivers.size();
   if (plan_.joined == 0 || std::isinf(settings_.most_remembered_bytes)) return;  // nobody looks, or all may
   const auto rests = [&](std::size_t transmitter) { return transmitter_rests_[transmitter] != 0; };
   const auto all_at_rest = std::count_if(transmitter_rests_.begin(), transmitter_rests_.end(), std::identity());
@@ -121,6 +123,11 @@ void BasicSimulator<Surface, Index>::choose_remembered() {
     needed_bytes += bytes[index];
     is_remembered_[index] = needed_bytes <= settings_.most_remembered_bytes ? 1 : 0;
   }
+  // Places that nobody is in take what is left: each of them less than a receiver.
+  const double left_bytes = std::max(0.0, settings_.most_remembered_bytes - needed_bytes);
+  const double of_one_bytes = std::max(1.0, needed_bytes) / std::max(1.0, static_cast<double>(bytes.size()));
+  const double most_places = std::min(left_bytes / of_one_bytes, static_cast<double>(most_known_places_));
+  most_known_places_ = static_cast<std::size_t>(most_places);
 }
 
 /// Notes which transmitters are as in the frame before.
@@ -139,6 +146,8 @@ void BasicSimulator<Surface, Index>::note_transmitters(const TransmitterEnds& en
     transmitters_before_[index] = ends.link[index];
     transmitter_states_before_[index] = state;
   });
+  if (known_pools_.size() == 0) return;
+  known_pools_.keep([&](const Place&, std::size_t transmitter) { return transmitter_rests_[transmitter] != 0; });
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -167,6 +176,7 @@ TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
   frame_ = frame;
   for (detail::ReceiverMemory& receiver : receivers_) receiver.forget_frame();
   for (KeptHalf& half : halves_) half.forget_bodies();
+  known_pools_.clear();
   return update_index(changes);
 }
 

@@ -27,7 +27,8 @@ void BasicSimulator<Surface, Index>::look_from_receiver(Following& following, de
     return;
   }
   memory.half.keep_places(
-      pools ? detail::longest_pooled_step_m(change_->bodies_there()) : detail::longest_step_in_place_m, false);
+      pools ? detail::longest_pooled_step_m(change_->bodies_there()) : detail::longest_step_in_place_m, false, false,
+      known_places_.get());
   memory.half.update(scene_, *outlines_, following.end, half_settings(search), {}, change_->moved());
   following.half = &memory.half.half();
 }
@@ -55,7 +56,7 @@ void BasicSimulator<Surface, Index>::look_for_triples(Following& following, deta
     return;
   }
   const HalfSettings settings = half_settings(search);
-  memory.half.keep_places(detail::longest_step_of_triples_m, false, true);
+  memory.half.keep_places(detail::longest_step_of_triples_m, false, true, known_places_.get());
   HalfLists lists;
   if (stands) lists = {lanes_.get(), true, true, 0, nullptr, BeamFinder::few_pieces};
   memory.half.update(scene_, *outlines_, following.end, settings, lists, change_->moved());
@@ -132,9 +133,20 @@ template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::prepare_pool(FollowedLink& link, const KeptHalf& half) const {
   auto next = half.next_place();
   if (!next) return;
-  const BeamLists& reached = *link.of.transmitters.halves[link.transmitter].lists();
-  link.pooled().prepare({scene_, *outlines_, *lanes_, reached, joined_orders(link.of.search)}, std::move(next),
-                        half.frames_to_next(), half.work_on_next());
+  link.pooled().prepare(pool_source(link), std::move(next), half.frames_to_next(), half.work_on_next());
+}
+
+/// What the candidates of a link are found with.
+template <SurfaceModel Surface, SpatialIndex Index>
+PoolSource BasicSimulator<Surface, Index>::pool_source(const FollowedLink& link) const {
+  const TransmitterEnds& transmitters = link.of.transmitters;
+  return {scene_,
+          *outlines_,
+          *lanes_,
+          *transmitters.halves[link.transmitter].lists(),
+          joined_orders(link.of.search),
+          known_pools_,
+          transmitters.number(link.transmitter)};
 }
 
 /// All paths of a link whose transmitter stands, from the candidates of the receiver's place.
@@ -144,7 +156,7 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Fol
   PooledLink& pooled = link.pooled();
   const Following& following = link.of;
   const KeptHalf& mast = following.transmitters.halves[link.transmitter];
-  const PoolSource source{scene_, *outlines_, *lanes_, *mast.lists(), joined_orders(following.search)};
+  const PoolSource source = pool_source(link);
   if (!pooled.is_of(*half.place())) {
     pooled.enter(source, half.place());
   } else if (!half.next_place()) {
@@ -170,6 +182,27 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Fol
   }
   prepare_pool(link, half);
   return paths;
+}
+
+/// What the frame has brought to light of places: from the next one on everybody may take it over.
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::note_places() {
+  if (plan_.joined == 0) return;
+  for (detail::ReceiverMemory& memory : receivers_) {
+    if (!memory.half.place()) continue;
+    if (const auto entered = memory.half.entered()) known_places_->note(entered);
+    for (std::size_t place = 0; place < memory.links.size(); ++place) {
+      const std::unique_ptr<PooledLink>& pooled = memory.links[place].pooled;
+      if (pooled == nullptr) continue;
+      const std::size_t transmitter = memory.numbers.empty() ? place : memory.numbers[place];
+      if (auto news = pooled->news()) known_pools_.note(transmitter, *std::move(news));
+    }
+  }
+  for (const KeptHalf& half : halves_) {
+    if (const auto entered = half.entered()) known_places_->note(entered);
+  }
+  if (!known_places_->next_frame(most_known_places_)) return;
+  known_pools_.keep([&](const Place& place, std::size_t) { return known_places_->holds(place); });
 }
 
 }  // namespace dcem

@@ -49,7 +49,7 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   const std::size_t transmitters = scene_.transmitters().size();
   halves_ = kept_halves(transmitters, detail::view_pixels_for(transmitters));
   if (cache_ != CacheMode::exact) return;
-  for (KeptHalf& half : halves_) half.keep_places(detail::longest_step_in_place_m, true);
+  for (KeptHalf& half : halves_) half.keep_places(detail::longest_step_in_place_m, true, false, known_places_.get());
 }
 
 /// What a model of the caller's own cannot do would otherwise be left out in silence.
