@@ -209,7 +209,7 @@ class BasicSimulator {
   PoolSource pool_source(const FollowedLink& link) const;
   void note_places();
   void note_transmitters(const TransmitterEnds& ends);
-  void choose_remembered();
+  void choose_remembered(std::size_t walking);
   std::size_t receivers_on_the_move() const;
   /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
   void trace_elements(std::span<PathContribution> paths, const DeviceEnd& from, const DeviceEnd& to,
@@ -236,9 +236,9 @@ class BasicSimulator {
   std::optional<detail::FrameChange> change_;       ///< since the frame before, where the cache is exact; so the next
   std::vector<detail::ReceiverMemory> receivers_;   ///< one per receiver of the scene …
   std::vector<char> is_remembered_;                 ///< … and whether it is remembered what it sees, in this frame
-  std::unique_ptr<KnownPlaces> known_places_ =
-      std::make_unique<KnownPlaces>();  ///< that devices have come into, where the cache is exact …
-  KnownPools known_pools_;              ///< … and what may carry a path there
+  /// That devices have come into, and what may carry a path there; those that are followed point to the places.
+  std::unique_ptr<KnownPlaces> known_places_ = std::make_unique<KnownPlaces>();
+  KnownPools known_pools_;
   std::size_t most_known_places_ = 0;
   std::vector<std::optional<LinkEnd>> transmitters_before_;
   std::vector<std::optional<DeviceState>> transmitter_states_before_;

@@ -104,8 +104,8 @@ struct SimulationSettings {
   bool share_map_work = true;  ///< work that is the same at all points of a map is done once. Never changes a result
   /// What is kept from frame to frame of what receivers see, where the cache is exact, may take about so many bytes:
   /// 2 to 5 MB for a receiver, and 1 MB for each of its links with a transmitter that stands. It is kept of the first
-  /// ones of those that are there; links of others are worked out from scratch where anything has changed. Never
-  /// changes a result.
+  /// ones of those that are there; links of others are worked out from scratch where anything has changed. What is left
+  /// of it goes to places that receivers have been in, for those who come after them. Never changes a result.
   double most_remembered_bytes = std::numeric_limits<double>::infinity();
 };
 

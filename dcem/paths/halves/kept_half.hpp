@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dcem/paths/halves/beam_lists.hpp"
@@ -31,7 +32,7 @@ class KeptHalf {
 
   /// From now on a device that moves by no more than this from frame to frame takes what it may see from the place that
   /// it is in; its images are laid out at once or when they are asked for. `over_mirrors`: places know what is seen
-  /// through their mirrors, too. It takes over those among `known` that lie on its way.
+  /// through their mirrors, too. The device takes over those among `known` that lie on its way; they must outlive it.
   void keep_places(double longest_step_m, bool images_at_once, bool over_mirrors = false,
                    const KnownPlaces* known = nullptr) {
     keeps_places_ = true;
@@ -70,8 +71,8 @@ class KeptHalf {
   const std::shared_ptr<const Place>& place() const { return place_; }
   /// Where it will be soon, and in how many frames; none where that is not known.
   std::shared_ptr<const Place> next_place() const { return next_ && next_->is_known() ? next_ : nullptr; }
-  /// The place that it came into when it moved last; none where it stayed in one.
-  std::shared_ptr<const Place> entered() const { return has_entered_ ? place_ : nullptr; }
+  /// The place that it has come into; told once.
+  std::shared_ptr<const Place> take_entered() { return std::exchange(has_entered_, false) ? place_ : nullptr; }
   int frames_to_next() const { return frames_to_next_; }
   /// What the frame at hand has spent on it, and on entering the place that the device is in now.
   int work_on_next() const { return work_on_next_; }
@@ -140,6 +141,7 @@ class KeptHalf {
                     bool closer, ThreadPool* pool);
 
   static constexpr std::size_t very_many = 20'000;  ///< small facets: more than there are in view over one city
+
   PathHalf half_;
   BeamLists lists_;
   bool has_scenery_ = false, has_bodies_ = false, has_lists_ = false, has_edges_ = false, is_closer_ = false,

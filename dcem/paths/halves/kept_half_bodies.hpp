@@ -85,8 +85,9 @@ DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outli
   step_m_ = glm::length(step_m);
   HalfSettings of_place = settings;
   if (!over_mirrors_) of_place.closer_from = very_many;  // it takes as long as it saves, or longer
-  has_entered_ = enter(scene, outlines, end.position_m, step_m, of_place);
-  prepare_next(scene, outlines, end.position_m, step_m, has_entered_, of_place);
+  const bool enters = enter(scene, outlines, end.position_m, step_m, of_place);
+  has_entered_ = has_entered_ || enters;
+  prepare_next(scene, outlines, end.position_m, step_m, enters, of_place);
   is_closer_ = false;
   has_scenery_ = true;
   if (!place_) return half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, false));
@@ -115,8 +116,9 @@ DCEM_INLINE bool KeptHalf::enter(const Scene& scene, const FacetOutlines& outlin
 DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
                                         const Vec3& step_m, bool enters, const HalfSettings& settings) {
   constexpr int most_frames = 8;
-  // As `Place` has it: what pools of candidates take, and to go over to those of the place that is entered.
-  const int work_of_others = over_mirrors_ ? 1380 : 20, work_of_entering = over_mirrors_ ? 350 : 7;
+  // What pools of candidates take, and to go over to those of the place that is entered.
+  const int work_of_others = candidates_work + (over_mirrors_ ? triples_work : 0);
+  const int work_of_entering = over_mirrors_ ? 350 : 7;
   if (place_) {
     frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
   } else if (--frames_to_next_ <= 0 || !next_) {

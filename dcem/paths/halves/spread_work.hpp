@@ -7,6 +7,10 @@
 
 namespace dcem {
 
+constexpr int sum_of(std::span<const int> work) {
+  return std::accumulate(work.begin(), work.end(), 0);
+}
+
 /// Steps that are taken one after the other, and what each takes: in tenths of a millisecond, as they were measured in
 /// Munich. Where they take more or less than that, all do, and shares stay shares.
 class WorkSteps {
@@ -17,14 +21,14 @@ class WorkSteps {
   int count() const { return static_cast<int>(work_.size()); }
   /// What the first of the last `steps_left` steps takes.
   int next(int steps_left) const { return work_[work_.size() - static_cast<std::size_t>(steps_left)]; }
-  int left(int steps_left) const {
-    const auto of_these = work_.last(static_cast<std::size_t>(steps_left));
-    return std::accumulate(of_these.begin(), of_these.end(), 0);
-  }
+  int left(int steps_left) const { return sum_of(work_.last(static_cast<std::size_t>(steps_left))); }
 
  private:
   std::span<const int> work_;
 };
+
+/// What it takes to find the candidates of a place (`CandidatePool`), and those of three elements (`TriplePool`).
+inline constexpr int candidates_work = 20, triples_work = 1360;
 
 /// What a frame does of work that is to be done within this many frames: an even share of what is left and of what the
 /// frame has spent already.

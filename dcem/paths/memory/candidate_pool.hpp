@@ -72,6 +72,8 @@ class CandidatePool {
     WedgeId edge;
   };
 
+  /// What is reached of the scenery: the places of mirrors on bodies change from frame to frame.
+  const BeamTable& listed() const { return reached_.tables()[BeamLists::of_scenery]; }
   void find_over_mirror(const Scene& scene, const FacetOutlines& outlines, const PlaceMirror& mirror);
   void find_edges_over(const Scene& scene, const FacetOutlines& outlines, const PlaceMirror& mirror);
   void find_single_mirrors();
@@ -81,6 +83,7 @@ class CandidatePool {
 
   static constexpr int steps = 6;  ///< mirrors in five parts of them, then edges
   static constexpr std::array<int, steps> step_work{6, 2, 3, 3, 3, 3};
+  static_assert(sum_of(step_work) == candidates_work);
   std::shared_ptr<const Place> place_;
   const BeamLists& reached_;
   JoinOrders orders_;

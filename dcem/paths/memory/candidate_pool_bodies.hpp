@@ -54,9 +54,8 @@ DCEM_INLINE void CandidatePool::find_single_mirrors() {
 DCEM_INLINE void CandidatePool::find_over_mirror(const Scene& scene, const FacetOutlines& outlines,
                                                  const PlaceMirror& mirror) {
   const Vec3 image = mirror.image_m - reached_.origin_m();
-  const BeamTable& table = reached_.tables()[BeamLists::of_scenery];
   if (orders_.reflections >= 2) {
-    table.for_each_mirror_before(mirror.facet, mirror.cone, [&](std::uint32_t far) {
+    listed().for_each_mirror_before(mirror.facet, mirror.cone, [&](std::uint32_t far) {
       const BeamMirror& first = reached_.mirrors()[far];
       if (may_hold(first.cone, image, static_cast<float>(place_->radius_m()))) mirrors_.push_back({mirror.number, far});
     });
@@ -73,7 +72,7 @@ DCEM_INLINE void CandidatePool::find_edges_over(const Scene& scene, const FacetO
   }
   const Vec3 image = mirror.image_m - reached_.origin_m();
   edges_.begin_mirror(plane, outlines.sides(mirror.facet));
-  reached_.for_each_part_before(
+  listed().for_each_part_before(
       mirror.facet, mirror.cone, image, static_cast<float>(place_->radius_m()), [&](const EdgePart& part) {
         const WorldWedge& wedge = scene.wedge(WedgeId(part.edge));
         if (holds_edge(plane, wedge.edge, scene.settings().weld_tolerance_m)) return;
@@ -91,12 +90,12 @@ DCEM_INLINE void CandidatePool::find_over_edges(const Scene& scene) {
   const Vec3 middle = place_->box().middle_m - reached_.origin_m();
   for (const WedgeId edge : place_->scenery().edges) {
     const Wedge& wedge = scene.wedge(edge).edge;
-    reached_.for_each_part_of(edge, [&](const EdgePart& part) {
+    for (const EdgePart& part : listed().parts_of(edge)) {
       direct_.push_back({edge, alone});
       edges_.add(wedge, part);
-    });
+    }
     if (orders_.interactions < 2 || orders_.reflections < 1) continue;
-    reached_.for_each_lit_part(edge, middle, radius_m, [&](const EdgePart& part, std::uint32_t far) {
+    listed().for_each_lit_part(edge, middle, radius_m, [&](const EdgePart& part, std::uint32_t far) {
       const Plane& plane = scene.facet(reached_.mirrors()[far].facet).plane;
       if (holds_edge(plane, wedge, scene.settings().weld_tolerance_m)) return;
       direct_.push_back({edge, far});

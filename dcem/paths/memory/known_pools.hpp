@@ -21,7 +21,7 @@ struct PlacePools {
 /// As `KnownPlaces`: asked by many threads in a frame, told after it.
 class KnownPools {
  public:
-  /// None where they are not known, or the transmitter has learnt more since.
+  /// None where they are not known.
   const PlacePools* find(const Place& place, std::size_t transmitter) const;
   void note(std::size_t transmitter, PlacePools pools);
   /// Forgets all of which `keeps(place, transmitter)` is false.

@@ -11,7 +11,7 @@ namespace dcem {
 
 DCEM_INLINE const PlacePools* KnownPools::find(const Place& place, std::size_t transmitter) const {
   const std::size_t at = place_of(place, transmitter);
-  return is_of(at, place, transmitter) && !pools_[at].pools.pool->is_outdated() ? &pools_[at].pools : nullptr;
+  return is_of(at, place, transmitter) ? &pools_[at].pools : nullptr;
 }
 
 DCEM_INLINE void KnownPools::note(std::size_t transmitter, PlacePools pools) {

@@ -117,8 +117,9 @@ class PooledLink {
     bool is_known = false, is_open = false, is_masked = false;
   };
 
-  /// Takes over the candidates of a place, or makes room for them, if they are not those that are being found.
-  void begin(const PoolSource& source, std::shared_ptr<const Place> place);
+  /// Takes over the candidates of a place from others, where they are known; `old` ones, too, that hold more than they
+  /// would if they were found now. Otherwise makes room for them, unless they are being found already.
+  void begin(const PoolSource& source, std::shared_ptr<const Place> place, bool old);
   void go_on(const PoolSource& source);
   int work_left() const { return (made_ ? made_->work_left() : 0) + (made_triples_ ? made_triples_->work_left() : 0); }
   int next_work() const { return made_->steps_left() > 0 ? made_->next_work() : made_triples_->next_work(); }

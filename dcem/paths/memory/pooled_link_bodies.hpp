@@ -24,17 +24,19 @@ DCEM_INLINE void PooledLink::forget() {
   triple_slots_ = {};
 }
 
-DCEM_INLINE void PooledLink::begin(const PoolSource& source, std::shared_ptr<const Place> place) {
-  if (next_.pool && &next_.pool->place() == place.get()) return;
-  made_.reset();
-  made_triples_.reset();
-  if (const PlacePools* const known = source.known.find(*place, source.transmitter)) {
+DCEM_INLINE void PooledLink::begin(const PoolSource& source, std::shared_ptr<const Place> place, bool old) {
+  const bool is_begun = next_.pool && &next_.pool->place() == place.get();
+  if (is_begun && work_left() == 0) return;
+  const PlacePools* const known = source.known.find(*place, source.transmitter);
+  if (known != nullptr && (!known->pool->is_outdated() || (old && !is_begun))) {
     next_ = *known;
+    made_.reset();
+    made_triples_.reset();
     return;
   }
-  if (place->beams() != nullptr) {
-    made_triples_ = std::make_shared<TriplePool>(place, source.reached, source.orders);
-  }
+  if (is_begun) return;
+  made_triples_ =
+      place->beams() == nullptr ? nullptr : std::make_shared<TriplePool>(place, source.reached, source.orders);
   made_ = std::make_shared<CandidatePool>(std::move(place), source.reached, source.orders);
   next_ = {made_, made_triples_};
 }
@@ -49,7 +51,7 @@ DCEM_INLINE void PooledLink::go_on(const PoolSource& source) {
 
 DCEM_INLINE void PooledLink::prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames,
                                      int spent) {
-  begin(source, std::move(place));
+  begin(source, std::move(place), false);
   const int share = even_share(work_left(), spent, frames);
   while (work_left() > 0 && fits(next_work(), spent, share)) {
     spent += next_work();
@@ -58,7 +60,7 @@ DCEM_INLINE void PooledLink::prepare(const PoolSource& source, std::shared_ptr<c
 }
 
 DCEM_INLINE void PooledLink::enter(const PoolSource& source, std::shared_ptr<const Place> place) {
-  begin(source, std::move(place));
+  begin(source, std::move(place), true);
   while (work_left() > 0) go_on(source);
   has_news_ = made_ != nullptr;
   made_.reset();
@@ -79,9 +81,9 @@ DCEM_INLINE void PooledLink::enter(const PoolSource& source, std::shared_ptr<con
 }
 
 DCEM_INLINE void PooledLink::renew(const PoolSource& source, const std::shared_ptr<const Place>& place) {
-  if (!of_place_.pool->is_outdated() || place->beams() != nullptr)
-    return;  // those of three elements would be found, too
-  begin(source, place);
+  const bool finds_triples = place->beams() != nullptr;  // for which it does not pay
+  if (finds_triples || !of_place_.pool->is_outdated()) return;
+  begin(source, place, false);
   if (work_left() > 0) go_on(source);
   if (work_left() == 0) enter(source, place);
 }

@@ -44,6 +44,7 @@ class TriplePool {
   struct Finder;
 
   static constexpr int steps = 8, step_work = 170;
+  static_assert(steps * step_work == triples_work);
   std::shared_ptr<const Place> place_;
   const BeamLists& reached_;
   JoinOrders orders_;

@@ -39,13 +39,12 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   result.update_time_s = update_watch.seconds();
   const detail::Stopwatch solve_watch;
   choose_links();
-  const TransmitterEnds transmitters = transmitter_ends(
-      scene_.transmitters(), change_ && plan_.joined > 0 ? receivers_on_the_move() : scene_.receivers().size(), reach_,
-      halves_);
+  const std::size_t walking = change_ && plan_.joined > 0 ? receivers_on_the_move() : scene_.receivers().size();
+  const TransmitterEnds transmitters = transmitter_ends(scene_.transmitters(), walking, reach_, halves_);
   halves_are_current_ = !transmitters.halves.empty() && choice_.takes_all();
   if (change_) {
     note_transmitters(transmitters);
-    choose_remembered();
+    choose_remembered(walking);
   }
   Solved solved = change_ ? follow_all(transmitters) : solve_all(scene_.receivers(), transmitters, caches_, true);
   result.links = std::move(solved.links);
@@ -97,12 +96,13 @@ std::size_t BasicSimulator<Surface, Index>::receivers_on_the_move() const {
   return count;
 }
 
-/// Chooses the receivers of which it is remembered what they see: the first ones of those that are there.
+/// Chooses the receivers of which it is remembered what they see: the first ones of those that are there; `walking` of
+/// them are not where they were.
 template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::choose_remembered() {
+void BasicSimulator<Surface, Index>::choose_remembered(std::size_t walking) {
   const std::span<const Device> receivers = scene_.receivers();
   is_remembered_.assign(receivers.size(), 1);
-  most_known_places_ = detail::known_places_per_receiver * receivers.size();
+  most_known_places_ = detail::known_places_per_receiver * walking;
   if (plan_.joined == 0 || std::isinf(settings_.most_remembered_bytes)) return;  // nobody looks, or all may
   const auto rests = [&](std::size_t transmitter) { return transmitter_rests_[transmitter] != 0; };
   const auto all_at_rest = std::count_if(transmitter_rests_.begin(), transmitter_rests_.end(), std::identity());
@@ -123,9 +123,10 @@ void BasicSimulator<Surface, Index>::choose_remembered() {
     needed_bytes += bytes[index];
     is_remembered_[index] = needed_bytes <= settings_.most_remembered_bytes ? 1 : 0;
   }
-  // Places that nobody is in take what is left: each of them less than a receiver.
+  // Places that nobody is in take what is left: each of them less than a receiver that walks.
   const double left_bytes = std::max(0.0, settings_.most_remembered_bytes - needed_bytes);
-  const double of_one_bytes = std::max(1.0, needed_bytes) / std::max(1.0, static_cast<double>(bytes.size()));
+  double of_one_bytes = detail::remembered_receiver_bytes;
+  for (const double of_receiver_bytes : bytes) of_one_bytes = std::max(of_one_bytes, of_receiver_bytes);
   const double most_places = std::min(left_bytes / of_one_bytes, static_cast<double>(most_known_places_));
   most_known_places_ = static_cast<std::size_t>(most_places);
 }
@@ -177,6 +178,7 @@ TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
   for (detail::ReceiverMemory& receiver : receivers_) receiver.forget_frame();
   for (KeptHalf& half : halves_) half.forget_bodies();
   known_pools_.clear();
+  *known_places_ = {};
   return update_index(changes);
 }
 

@@ -190,16 +190,17 @@ void BasicSimulator<Surface, Index>::note_places() {
   if (plan_.joined == 0) return;
   for (detail::ReceiverMemory& memory : receivers_) {
     if (!memory.half.place()) continue;
-    if (const auto entered = memory.half.entered()) known_places_->note(entered);
+    if (const auto entered = memory.half.take_entered()) known_places_->note(entered);
     for (std::size_t place = 0; place < memory.links.size(); ++place) {
       const std::unique_ptr<PooledLink>& pooled = memory.links[place].pooled;
       if (pooled == nullptr) continue;
-      const std::size_t transmitter = memory.numbers.empty() ? place : memory.numbers[place];
-      if (auto news = pooled->news()) known_pools_.note(transmitter, *std::move(news));
+      auto news = pooled->news();
+      if (!news || !known_places_->holds(news->pool->place())) continue;
+      known_pools_.note(memory.numbers.empty() ? place : memory.numbers[place], *std::move(news));
     }
   }
-  for (const KeptHalf& half : halves_) {
-    if (const auto entered = half.entered()) known_places_->note(entered);
+  for (KeptHalf& half : halves_) {
+    if (const auto entered = half.take_entered()) known_places_->note(entered);
   }
   if (!known_places_->next_frame(most_known_places_)) return;
   known_pools_.keep([&](const Place& place, std::size_t) { return known_places_->holds(place); });

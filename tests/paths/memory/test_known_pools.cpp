@@ -1,6 +1,7 @@
 /// What was found for one link in a place is taken over by the links of others that come into it.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -67,8 +68,9 @@ TEST_CASE("candidates of a place are found once for each transmitter, whoever co
       third.enter(street.source(known, mast), street.places[place]);
       CHECK(third.is_of(*street.places[place]));
       CHECK(!third.news());
-      second.enter(street.source(known, mast), street.places[place]);
-      CHECK(second.news().has_value());
+      second.enter(street.source(known, mast), street.places[place]);  // what it has begun is known by now
+      CHECK(second.is_of(*street.places[place]));
+      CHECK(!second.news());
       known.note(mast, *news);  // again: in the place of what was there
       CHECK(known.size() == 2 * place + mast + 1);
     }
@@ -89,7 +91,7 @@ TEST_CASE("candidates of a place are found once for each transmitter, whoever co
   CHECK(known.size() == 0);
 }
 
-TEST_CASE("candidates that were found before the transmitter knew its edges are not taken over") {
+TEST_CASE("candidates from before the transmitter knew its edges are taken over by who is in a hurry alone") {
   Draw draw(9);
   Street street(draw);
   KeptHalf mast(64);
@@ -99,7 +101,7 @@ TEST_CASE("candidates that were found before the transmitter knew its edges are 
   REQUIRE(!mast.lists()->knows_edges());
   KnownPools known;
   const PoolSource source{street.traced.scene, street.outlines, street.lanes, *mast.lists(), {2, 1, 2}, known, 0};
-  PooledLink early, late;
+  PooledLink early, late, hurried;
   early.enter(source, street.places[0]);
   known.note(0, *early.news());
   REQUIRE(known.find(*street.places[0], 0) != nullptr);
@@ -107,14 +109,50 @@ TEST_CASE("candidates that were found before the transmitter knew its edges are 
   joined.receivers = 100'000;
   mast.update(street.traced.scene, street.outlines, end, street.settings, joined);
   REQUIRE(mast.lists()->knows_edges());
-  CHECK(known.find(*street.places[0], 0) == nullptr);
+  REQUIRE(known.find(*street.places[0], 0) != nullptr);
+  CHECK(known.find(*street.places[0], 0)->pool->is_outdated());
+  hurried.enter(source, street.places[0]);  // takes them nevertheless: they miss nothing
+  CHECK(!hurried.news());
+  late.prepare(source, street.places[0], 3, 0);
   late.enter(source, street.places[0]);
   const auto news = late.news();
   REQUIRE(news);
+  CHECK(!news->pool->is_outdated());
   known.note(0, *news);
   CHECK(known.size() == 1);
   for (int frame = 0; frame < 20; ++frame) early.renew(source, street.places[0]);
   CHECK(!early.news());  // it went over to those of the late one
+}
+
+TEST_CASE("candidates of a place are of the scenery alone: what stands on bodies is another in the next frame") {
+  Draw draw(11);
+  std::size_t aimed = 0, on_bodies = 0, listed_on_bodies = 0;
+  for (int round = 0; round < 12; ++round) {
+    const Street street(draw);
+    const Scene& scene = street.traced.scene;
+    const auto body_of = [&](SequenceElement element) {
+      return element.is_edge() ? scene.wedge(element.edge()).body : scene.facet(element.mirror()).body;
+    };
+    const BeamLists& reached = *street.masts[0].lists();
+    for (const BeamMirror& mirror : reached.mirrors()) {
+      listed_on_bodies += scene.facet(mirror.facet).body != BodyId(0) ? 1U : 0U;
+    }
+    for (const auto& place : street.places) {
+      CandidatePool pool(place, reached, {2, 1, 3});
+      while (pool.steps_left() > 0) pool.go_on(scene, street.outlines);
+      const JoinGates gates(scene, street.outlines);
+      CandidateWay way;
+      for (std::size_t number = 0; number < pool.size(); ++number) {
+        if (!pool.aim(gates, place->box().middle_m, number, way)) continue;
+        ++aimed;
+        on_bodies += std::ranges::any_of(way.elements, [&](SequenceElement at) { return body_of(at) != BodyId(0); });
+      }
+    }
+  }
+  MESSAGE(aimed << " candidates aimed at, " << listed_on_bodies << " mirrors on bodies");
+  CHECK(on_bodies == 0);
+  CHECK(aimed > 1'000);
+  CHECK(listed_on_bodies > 20);
 }
 
 }  // namespace test_known_pools
