@@ -92,20 +92,7 @@ MemoryTally follow_column(std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE("what others knew of a place changes no bit, though transmitters move and frames are left out") {
-  MemoryTally sum;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const MemoryTally tally = follow_column(seed);
-    sum.frames += tally.frames;
-    sum.paths += tally.paths;
-    sum.different += tally.different;
-    sum.work += tally.work;
-    sum.work_anew += tally.work_anew;
-  }
-  MESSAGE(sum.frames << " frames, " << sum.paths << " paths, " << sum.different << " different, work " << sum.work
-                     << " of " << sum.work_anew);
-  CHECK(sum.different == 0);
-  CHECK(sum.paths > 10'000);
-  CHECK(10 * sum.work < 9 * sum.work_anew);
+  check_drives(40, follow_column);
 }
 
 }  // namespace test_memory_of_columns

@@ -129,14 +129,7 @@ void follow_drive(std::uint64_t seed, Sums& sums) {
     const FrameResult expected = trial.advance(frame);
     sums.places.add(scene, expected.links);
   }
-  const MemoryTally& tally = trial.tally();
-  sums.tally.frames += tally.frames;
-  sums.tally.links += tally.links;
-  sums.tally.paths += tally.paths;
-  sums.tally.taken_over += tally.taken_over;
-  sums.tally.different += tally.different;
-  sums.tally.work += tally.work;
-  sums.tally.work_anew += tally.work_anew;
+  sums.tally += trial.tally();
 }
 
 /// A street in which two cars drive beside one that is parked, between a lamp and a post.

@@ -83,20 +83,7 @@ MemoryTally follow_walk(std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE("memory changes no bit of walks through random streets, over three interactions") {
-  MemoryTally sum;
-  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
-    const MemoryTally tally = follow_walk(seed);
-    sum.frames += tally.frames;
-    sum.paths += tally.paths;
-    sum.different += tally.different;
-    sum.work += tally.work;
-    sum.work_anew += tally.work_anew;
-  }
-  MESSAGE(sum.frames << " frames, " << sum.paths << " paths, " << sum.different << " different, work " << sum.work
-                     << " of " << sum.work_anew);
-  CHECK(sum.different == 0);
-  CHECK(sum.paths > 10'000);
-  CHECK(10 * sum.work < 9 * sum.work_anew);  // places were walked through
+  check_drives(24, follow_walk);
 }
 
 }  // namespace test_memory_of_walkers

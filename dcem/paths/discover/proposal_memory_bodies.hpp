@@ -2,7 +2,6 @@
 /// Bodies of proposal_memory.hpp.
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/discover/proposal_memory.hpp"

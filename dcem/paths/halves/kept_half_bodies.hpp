@@ -10,6 +10,13 @@
 
 namespace dcem {
 
+namespace detail {
+
+/// A place that leaves a gap to the last one begins so far behind where the device comes into it.
+inline constexpr double least_behind_m = 0.25;
+
+}  // namespace detail
+
 DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
                                   const HalfSettings& asked, const HalfLists& wanted, std::span<const char> moved) {
   HalfSettings settings = asked;
@@ -146,12 +153,11 @@ DCEM_INLINE void KeptHalf::begin_next(const Vec3& now_m, const Vec3& step_m) {
 }
 
 DCEM_INLINE double KeptHalf::behind_m(const Vec3& now_m, const Vec3& then_m) const {
-  constexpr double least_m = 0.25;
   const double way_m = glm::distance(now_m, then_m);
   const bool leaves_gaps = known_ == nullptr || !known_->are_shared();
-  if (!place_ || leaves_gaps || !(way_m > 0.0)) return least_m;
+  if (!place_ || leaves_gaps || !(way_m > 0.0)) return detail::least_behind_m;
   const double out_m = place_->box().way_out_m(now_m, (then_m - now_m) / way_m);
-  return std::max(least_m, way_m - out_m + 0.1);
+  return std::max(detail::least_behind_m, way_m - out_m + 0.1);
 }
 
 DCEM_INLINE int KeptHalf::frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most) {
@@ -166,7 +172,7 @@ DCEM_INLINE PlaceBox KeptHalf::place_ahead(const Vec3& before_m, const Vec3& now
   const double level_m = std::hypot(moved_m.x, moved_m.y);
   const Vec3 ahead = level_m > 0.0 ? Vec3(moved_m.x / level_m, moved_m.y / level_m, 0.0) : Vec3(1.0, 0.0, 0.0);
   const double climb = moved_m.z / std::max(level_m, 1e-3 + std::abs(moved_m.z));
-  const double ahead_m = PlaceBox::length_for_m(glm::length(moved_m)) - 0.25;
+  const double ahead_m = PlaceBox::length_for_m(glm::length(moved_m)) - detail::least_behind_m;
   const double half_length_m = 0.5 * (behind_m + ahead_m), to_middle_m = half_length_m - behind_m;
   return {now_m + to_middle_m * ahead + Vec3(0.0, 0.0, to_middle_m * climb),
           ahead,
