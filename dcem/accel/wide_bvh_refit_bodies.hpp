@@ -46,13 +46,15 @@ DCEM_INLINE void WideBvh::write_dirty_leaves(std::span<const Vec3> from_m, WideR
   }
 }
 
-/// Vertices first, by one thread: leaves may have some in common.
+/// Vertices first: leaves may have some in common.
 DCEM_INLINE void WideBvh::write_dirty_leaves(std::span<const Vec3> from_m, WideRefitReport& report, ThreadPool& pool) {
-  for (const std::uint32_t leaf : dirty_leaves_) arrays_.copy_vertices(leaf, from_m);
+  pool.for_each_quick(dirty_leaves_.size(),
+                      [&](std::size_t index) { arrays_.copy_vertices_together(dirty_leaves_[index], from_m); });
   dirty_boxes_.resize(dirty_leaves_.size());
   pool.for_each_quick(dirty_leaves_.size(),
                       [&](std::size_t index) { dirty_boxes_[index] = arrays_.write_leaf(dirty_leaves_[index]); });
   for (std::size_t index = 0; index < dirty_leaves_.size(); ++index) {
+    if (settings_.fetch_ahead && index + 2 < dirty_leaves_.size()) arrays_.fetch_node_of(dirty_leaves_[index + 2]);
     take_leaf(dirty_leaves_[index], dirty_boxes_[index], report);
   }
 }

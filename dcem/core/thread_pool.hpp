@@ -51,6 +51,8 @@ class ThreadPool {
   void open(Loop& loop);
   void close(Loop& loop);
   void start(std::size_t workers);
+  std::size_t take_calls();
+  void wake(std::size_t calls);
   detail::LoopTimes help(std::unique_lock<std::mutex>& lock, unsigned worker);
   void wait_for_loops(unsigned worker);
   bool is_within() const { return detail::loop_place.pool == this; }
@@ -62,6 +64,7 @@ class ThreadPool {
   std::vector<std::thread> threads_;
   std::vector<Loop*> open_;       ///< that have iterations left, or had when somebody looked
   std::size_t idle_ = 0;          ///< threads that wait for a loop
+  std::size_t to_wake_ = 0;       ///< of them, that loops have use for: by those who are woken before
   bool caller_may_help_ = false;  ///< it waits for the others to end the loop that it has asked for
   bool ends_ = false;
 };
@@ -106,17 +109,33 @@ inline void ThreadPool::run(Loop& loop) {
   if (loop.failure) std::rethrow_exception(loop.failure);
 }
 
-/// Lets others know of a loop: as many of those that wait as it has use for.
+/// Lets others know of a loop: as many of those that wait as it has use for. To wake one takes some microseconds: with
+/// many threads, each of which wakes two more, the caller begins with the loop sooner, and so do most of them.
 inline void ThreadPool::open(Loop& loop) {
-  std::size_t wanted = std::min<std::size_t>(size_, loop.count) - 1;
+  const std::size_t wanted = std::min<std::size_t>(size_, loop.count) - 1;
+  std::size_t calls = 0;
   {
     const std::lock_guard lock(mutex_);
     start(is_within() ? size_ : wanted + 1);
+    if (open_.empty()) to_wake_ = 0;
     open_.push_back(&loop);
     if (caller_may_help_) done_.notify_all();
-    wanted = std::min(wanted, idle_);
+    to_wake_ += wanted;
+    calls = take_calls();
   }
-  for (; wanted > 0; --wanted) wake_.notify_one();
+  wake(calls);
+}
+
+/// How many threads the calling one is to wake. Under the lock.
+inline std::size_t ThreadPool::take_calls() {
+  to_wake_ = std::min(to_wake_, idle_);
+  const std::size_t calls = std::min<std::size_t>(to_wake_, 2);
+  to_wake_ -= calls;
+  return calls;
+}
+
+inline void ThreadPool::wake(std::size_t calls) {
+  for (; calls > 0; --calls) wake_.notify_one();
 }
 
 /// Waits until nobody is within a loop any more; who has asked for the outermost one helps with others meanwhile.
@@ -146,7 +165,9 @@ inline void ThreadPool::start(std::size_t workers) {
 inline detail::LoopTimes ThreadPool::help(std::unique_lock<std::mutex>& lock, unsigned worker) {
   Loop& loop = *open_.front();
   ++loop.helpers;
+  const std::size_t calls = loop.next < loop.count ? take_calls() : 0;
   lock.unlock();
+  wake(calls);
   const detail::LoopTimes times = loop.work({this, worker});
   lock.lock();
   std::erase(open_, &loop);  // it has no iterations left

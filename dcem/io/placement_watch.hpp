@@ -43,6 +43,7 @@ class PlacementWatch {
     bool transmits = false;  ///< somewhere
   };
   enum class Kind { transmitter, receiver, grid, object };
+  static constexpr std::size_t kinds = 4;
   enum class Problem { far_outside, under_ground, shut_in, shut_in_alone, drives_through, goes_through };
   struct Sighting;
   class Record;
@@ -50,10 +51,8 @@ class PlacementWatch {
   /// Calls `look(index)` on all threads.
   template <typename Look>
   void for_each(std::size_t count, Look&& look) const;
-  /// The same, with the record of each.
-  template <typename Look>
-  void look_at_each(Kind kind, std::size_t count, Look&& look);
   void note_rooms();
+  void look_at(Kind kind, std::size_t number, Record& record);
   void look_at_place(const Vec3& position_m, const std::string& subject, Record& record) const;
   void look_at_receiver(const Device& device, Record& record) const;
   void look_at_transmitter(std::size_t number, Record& record) const;
@@ -88,7 +87,7 @@ class PlacementWatch {
   std::vector<std::optional<std::vector<Shell>>> houses_before_;
   mutable std::mutex mutex_;                                       ///< of `shell_facts_`
   mutable std::map<BodyId, std::vector<ShellFacts>> shell_facts_;  ///< by number, from 1
-  std::array<std::vector<Record>, 4> records_;                     ///< by kind and index
+  std::array<std::vector<Record>, kinds> records_;                 ///< by kind and index
 };
 
 }  // namespace dcem::io

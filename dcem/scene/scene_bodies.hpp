@@ -219,7 +219,7 @@ DCEM_INLINE void Scene::check_frame(const Frame& frame) const {
     const BodyState& state = frame.bodies[index];
     if (state == states_[index]) continue;
     const std::string& name = bodies_[index].is_slot ? state.occupant : bodies_[index].id;
-    detail::naming("object '" + name + "'", [&] { validate(state.placement); });
+    detail::naming([&] { return "object '" + name + "'"; }, [&] { validate(state.placement); });
     if (state.occupant.empty() == (bodies_[index].is_slot && state.present)) {
       throw std::invalid_argument("frame: expected an object name for each slot in use, and for nothing else");
     }

@@ -105,6 +105,24 @@ TEST_CASE("one pool does many loops of all lengths, each of them whole") {
   }
 }
 
+TEST_CASE("all threads are woken for a loop that has use for them: each by one that was woken before") {
+  for (const unsigned threads : {2U, 3U, 4U, 7U, 16U, 33U}) {
+    ThreadPool pool(threads);
+    for (int repeat = 0; repeat < 50; ++repeat) {
+      std::atomic<unsigned> there{0};
+      std::vector<char> came(threads);  // each iteration ends when all have begun
+      pool.for_each(threads, [&](std::size_t index, unsigned) {
+        ++there;
+        const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (there < threads && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
+        came[index] = there >= threads ? 1 : 0;
+      });
+      CAPTURE(threads);
+      REQUIRE(came == std::vector<char>(threads, 1));
+    }
+  }
+}
+
 TEST_CASE("quick iterations, too, are done once each") {
   for (const unsigned threads : {1U, 2U, 5U}) {
     ThreadPool pool(threads);

@@ -92,11 +92,14 @@ struct WideArrays {
   /// pushed most of it out of the caches since the last frame, and writing one leaf is too much work for the processor
   /// to look as far ahead as the next.
   void fetch_leaf(std::uint32_t leaf) const;
+  void fetch_node_of(std::uint32_t leaf) const;
   void fetch_around_leaf(std::uint32_t leaf, std::span<const Vec3> from_m) const;
   /// To be called once the quads of a leaf are there.
   void find_run(std::uint32_t leaf);
   /// Takes over where the corners of a leaf are.
   void copy_vertices(std::uint32_t leaf, std::span<const Vec3> from_m);
+  /// The same, while other threads do it for other leaves.
+  void copy_vertices_together(std::uint32_t leaf, std::span<const Vec3> from_m);
   TriangleCorners corners_m(std::uint32_t triangle) const {
     const auto& [a, b, c] = triangles[triangle];
     return {vertices_m[a], vertices_m[b], vertices_m[c]};

@@ -1,7 +1,6 @@
 #pragma once
 /// Bodies of gather_links.hpp.
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -17,37 +16,57 @@ DCEM_INLINE std::vector<std::size_t> busiest_first(std::size_t receivers,
   std::vector<std::size_t> order(receivers);
   std::iota(order.begin(), order.end(), std::size_t{0});
   if (transmitters_of.size() != receivers || receivers > very_many) return order;
-  std::vector<std::size_t> links;
-  for (const std::vector<std::uint32_t>& of_one : transmitters_of) links.push_back(of_one.size());
-  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t receiver) { return links[receiver]; });
+  std::size_t most = 0;
+  for (const std::vector<std::uint32_t>& of_one : transmitters_of) most = std::max(most, of_one.size());
+  std::vector<std::size_t> next(most + 2);  // by how many links a receiver has less than the busiest
+  for (const std::vector<std::uint32_t>& of_one : transmitters_of) ++next[most - of_one.size() + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::size_t receiver = 0; receiver < receivers; ++receiver) {
+    order[next[most - transmitters_of[receiver].size()]++] = receiver;
+  }
   return order;
 }
 
-/// Where the links of each receiver begin, one after the other, and how many there are in all.
-inline std::vector<std::size_t> first_links(std::span<const std::vector<LinkResult>> by_receiver) {
-  std::vector<std::size_t> first{0};
-  first.reserve(by_receiver.size() + 1);
-  for (const std::vector<LinkResult>& links : by_receiver) first.push_back(first.back() + links.size());
-  return first;
-}
-
-/// Where each link of each receiver, one after the other, stands among all: by transmitter, then receiver.
-inline std::vector<std::size_t> places_of(std::span<const std::vector<LinkResult>> by_receiver,
-                                          const std::vector<std::size_t>& first, ThreadPool& pool) {
-  std::vector<std::size_t> places(first.back());
-  pool.for_each(by_receiver.size(), [&](std::size_t receiver, unsigned) {
-    std::size_t link = first[receiver];
-    for (const LinkResult& one : by_receiver[receiver]) places[link++] = one.transmitter;
-  });
-  std::vector<std::size_t> next;  // by transmitter
-  for (const std::size_t transmitter : places) {
-    if (next.size() < transmitter + 2) next.resize(transmitter + 2);
-    ++next[transmitter + 1];
+/// Where the links of receivers stand among all, by transmitter, then receiver. Each of several runs of receivers
+/// counts its own: then one thread has only these counts to go through.
+class LinkPlaces {
+ public:
+  LinkPlaces(std::span<const std::vector<LinkResult>> by_receiver, ThreadPool& pool)
+      : by_receiver_(by_receiver), next_(std::min<std::size_t>(by_receiver.size(), std::max(16U, 4 * pool.size()))) {
+    pool.for_each(runs(), [&](std::size_t run, unsigned) { count(run); });
+    turn_counts_into_places();
   }
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  for (std::size_t& place : places) place = next[place]++;
-  return places;
-}
+
+  std::size_t runs() const { return next_.size(); }
+  std::size_t first_receiver(std::size_t run) const { return by_receiver_.size() * run / runs(); }
+  /// The place of the next link with a transmitter: receivers of a run are to be asked for in their order, once.
+  std::size_t next(std::size_t run, std::size_t transmitter) { return next_[run][transmitter]++; }
+
+ private:
+  void count(std::size_t run) {
+    std::vector<std::size_t>& of_transmitter = next_[run];
+    for (std::size_t receiver = first_receiver(run); receiver < first_receiver(run + 1); ++receiver) {
+      for (const LinkResult& link : by_receiver_[receiver]) {
+        if (of_transmitter.size() <= link.transmitter) of_transmitter.resize(link.transmitter + 1);
+        ++of_transmitter[link.transmitter];
+      }
+    }
+  }
+
+  void turn_counts_into_places() {
+    std::size_t transmitters = 0;
+    for (const std::vector<std::size_t>& of_run : next_) transmitters = std::max(transmitters, of_run.size());
+    for (std::size_t transmitter = 0; transmitter < transmitters; ++transmitter) {
+      for (std::vector<std::size_t>& of_run : next_) {
+        if (transmitter < of_run.size()) links_ += std::exchange(of_run[transmitter], links_);
+      }
+    }
+  }
+
+  std::span<const std::vector<LinkResult>> by_receiver_;
+  std::vector<std::vector<std::size_t>> next_;  ///< by run and transmitter
+  std::size_t links_ = 0;
+};
 
 /// Makes room for so many links, and some more, which all threads touch first: the system clears fresh memory page by
 /// page for whoever does.
@@ -66,20 +85,21 @@ inline void make_room(std::vector<LinkResult>& links, std::size_t count, ThreadP
 
 DCEM_INLINE std::vector<LinkResult> gather_links(std::vector<std::vector<LinkResult>>& by_receiver,
                                                  std::vector<LinkResult>&& room, ThreadPool& pool) {
-  const std::vector<std::size_t> first = first_links(by_receiver);
+  std::size_t count = 0;
+  for (const std::vector<LinkResult>& links : by_receiver) count += links.size();
   ThreadPool alone(1);
-  ThreadPool& threads = first.back() < many_links ? alone : pool;
-  const std::vector<std::size_t> places = places_of(by_receiver, first, threads);
+  ThreadPool& threads = count < many_links ? alone : pool;
+  LinkPlaces places(by_receiver, threads);
   std::vector<LinkResult> all = std::move(room);
   const bool has_room = !all.empty();
-  make_room(all, first.back(), threads);
-  all.resize(first.back());
-  threads.for_each(by_receiver.size(), [&](std::size_t receiver, unsigned) {
-    std::vector<LinkResult>& links = by_receiver[receiver];
-    for (std::size_t link = 0; link < links.size(); ++link) {
-      std::swap(all[places[first[receiver] + link]], links[link]);
+  make_room(all, count, threads);
+  all.resize(count);
+  threads.for_each(places.runs(), [&](std::size_t run, unsigned) {
+    for (std::size_t receiver = places.first_receiver(run); receiver < places.first_receiver(run + 1); ++receiver) {
+      std::vector<LinkResult>& links = by_receiver[receiver];
+      for (LinkResult& link : links) std::swap(all[places.next(run, link.transmitter)], link);
+      if (!has_room) links = {};
     }
-    if (!has_room) links = {};
   });
   return all;
 }

@@ -21,7 +21,7 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
   ends.by_id = are_of_scene ? numbers_ : std::make_shared<const detail::DeviceNumbers>(detail::numbers_by_id(devices));
   ends.embedded = std::move(embedded);
   ends.link.resize(devices.size());
-  ends.radio.resize(devices.size());
+  ends.radio.assign(devices.size(), RadioEnd{});  // its axes are worked out once, not for each
   pool_->for_each_quick(devices.size(), [&](std::size_t index) {
     const DeviceState state = state_of(devices[index]);
     TraversalCounters counters;

@@ -202,19 +202,12 @@ TreeUpdateReport BasicSimulator<Surface, Index>::pass(const Frame& frame, const 
 template <SurfaceModel Surface, SpatialIndex Index>
 TreeUpdateReport BasicSimulator<Surface, Index>::update_index(const ChangeSet& changes) {
   halves_are_current_ = false;
-  std::vector<std::size_t> places;  // among those that have moved
-  std::size_t count = moved_.size();
   for (const BodyId body : changes.moved) {
-    places.push_back(count);
     const auto [first, last] = scene_.triangle_range(body);
-    count += last - first;
+    const auto had = static_cast<std::ptrdiff_t>(moved_.size());
+    moved_.resize(moved_.size() + (last - first));
+    std::iota(moved_.begin() + had, moved_.end(), first);
   }
-  moved_.resize(count);
-  pool_->for_each_quick(places.size(), [&](std::size_t number) {
-    const auto [first, last] = scene_.triangle_range(changes.moved[number]);
-    std::iota(moved_.begin() + static_cast<std::ptrdiff_t>(places[number]),
-              moved_.begin() + static_cast<std::ptrdiff_t>(places[number] + (last - first)), first);
-  });
   if (outlines_) {
     outlines_->update(scene_, changes.moved);
     if (lanes_) lanes_->update(scene_, *outlines_, changes.moved);

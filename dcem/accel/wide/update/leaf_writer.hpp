@@ -2,6 +2,7 @@
 /// How the leaves of a `WideArrays` are written from their triangles: for those who build and edit trees.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -15,9 +16,13 @@ namespace dcem {
   fetch(&quads[std::size_t{leaf} * simd_lanes], simd_lanes);
 }
 
+[[gnu::always_inline]] inline void WideArrays::fetch_node_of(std::uint32_t leaf) const {
+  fetch(&nodes[lane_of_leaf[leaf].node()], 1);
+}
+
 [[gnu::always_inline]] inline void WideArrays::fetch_around_leaf(std::uint32_t leaf,
                                                                  std::span<const Vec3> from_m) const {
-  fetch(&nodes[lane_of_leaf[leaf].node()], 1);
+  fetch_node_of(leaf);
   fetch(&planes[std::size_t{leaf} * simd_lanes], std::bit_width(leaves[leaf].lanes));
   if (const auto [first, count] = run_of_leaf[leaf]; count != 0) {
     fetch(&from_m[first], count);
@@ -63,6 +68,24 @@ inline void WideArrays::copy_vertices(std::uint32_t leaf, std::span<const Vec3> 
     const Quad& quad = quads[leaf * simd_lanes + lane];
     if (quad.is_none()) continue;
     for (const std::uint32_t vertex : quad.corner) vertices_m[vertex] = from_m[vertex];
+  }
+}
+
+/// A corner that two leaves have in common is written by two threads: the same numbers, each in one piece.
+inline void WideArrays::copy_vertices_together(std::uint32_t leaf, std::span<const Vec3> from_m) {
+  const auto copy = [&](std::uint32_t vertex) {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::atomic_ref(vertices_m[vertex][axis]).store(from_m[vertex][axis], std::memory_order_relaxed);
+    }
+  };
+  if (const auto [first, count] = run_of_leaf[leaf]; count != 0) {
+    for (std::uint32_t vertex = first; vertex < first + count; ++vertex) copy(vertex);
+    return;
+  }
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    const Quad& quad = quads[leaf * simd_lanes + lane];
+    if (quad.is_none()) continue;
+    std::ranges::for_each(quad.corner, copy);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <string_view>
 #include <unordered_map>
 
@@ -124,30 +125,37 @@ void PlacementWatch::look(const Frame& frame) {
   if (box_.empty()) return;
   frame_ = &frame;
   note_rooms();
-  look_at_each(Kind::transmitter, rooms_.size(),
-               [&](std::size_t number, Record& record) { look_at_transmitter(number, record); });
-  look_at_each(Kind::receiver, std::min(receivers_.size(), most_watched),
-               [&](std::size_t number, Record& record) { look_at_receiver(receivers_[number], record); });
-  look_at_each(Kind::grid, grids_.size(),
-               [&](std::size_t number, Record& record) { look_at_grid(grids_[number], record); });
-  look_at_each(Kind::object, simulator_.scene().bodies().size() - 1,
-               [&](std::size_t number, Record& record) { look_at_object(BodyId(number + 1), record); });
+  const std::array<std::size_t, kinds> counts{rooms_.size(), std::min(receivers_.size(), most_watched), grids_.size(),
+                                              simulator_.scene().bodies().size() - 1};
+  for (std::size_t kind = 0; kind < kinds; ++kind) {
+    if (records_[kind].size() < counts[kind]) records_[kind].resize(counts[kind]);
+  }
+  for_each(std::reduce(counts.begin(), counts.end()), [&](std::size_t number) {
+    std::size_t kind = 0;
+    for (; number >= counts[kind]; ++kind) number -= counts[kind];
+    Record& record = records_[kind][number];
+    record.begin(frame_->index);
+    look_at(static_cast<Kind>(kind), number, record);
+  });
+}
+
+void PlacementWatch::look_at(Kind kind, std::size_t number, Record& record) {
+  switch (kind) {
+    case Kind::transmitter:
+      return look_at_transmitter(number, record);
+    case Kind::receiver:
+      return look_at_receiver(receivers_[number], record);
+    case Kind::grid:
+      return look_at_grid(grids_[number], record);
+    case Kind::object:
+      return look_at_object(BodyId(number + 1), record);
+  }
 }
 
 template <typename Look>
 void PlacementWatch::for_each(std::size_t count, Look&& look) const {
   simulator_.pool().for_each((count + at_once - 1) / at_once, [&](std::size_t block, unsigned) {
     for (std::size_t number = block * at_once; number < std::min(count, (block + 1) * at_once); ++number) look(number);
-  });
-}
-
-template <typename Look>
-void PlacementWatch::look_at_each(Kind kind, std::size_t count, Look&& look) {
-  std::vector<Record>& records = records_[static_cast<std::size_t>(kind)];
-  if (records.size() < count) records.resize(count);
-  for_each(count, [&](std::size_t number) {
-    records[number].begin(frame_->index);
-    look(number, records[number]);
   });
 }
 
