@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/laws/independent_tracer.hpp"
+#include "tests/support/all_tests.hpp"
 
 namespace test_completeness {
 
@@ -73,51 +74,51 @@ void report(const Count& count, std::size_t least) {
 
 TEST_CASE("exact discovery finds all paths and no other: random rooms, three reflections, two transmissions") {
   Count count;
-  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+  for (std::uint64_t seed = 1; seed <= all_or(400U, 100U); ++seed) {
     CAPTURE(seed);
     check_complete(random_room(10'000 + seed, 1 + seed % 5, seed % 2), 3, 2, count);
   }
-  report(count, 20'000);
+  report(count, all_or(20'000U, 5'000U));
 }
 
 TEST_CASE("exact discovery finds all paths and no other: many surfaces, two reflections, ten transmissions") {
   Count count;
-  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+  for (std::uint64_t seed = 1; seed <= all_or(120U, 30U); ++seed) {
     CAPTURE(seed);
     check_complete(random_room(20'000 + seed, 12, 3), 2, 10, count);
   }
-  report(count, 2500);
+  report(count, all_or(2500U, 600U));
 }
 
 TEST_CASE("exact discovery finds all paths and no other: few surfaces, five reflections") {
   Count count;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = 1; seed <= all_or(60U, 15U); ++seed) {
     CAPTURE(seed);
     RandomRoom room = random_room(30'000 + seed, 1, 0);
     room.patches.erase(room.patches.begin() + 5);  // no ceiling
     check_complete(room, 5, 1, count);
   }
-  report(count, 3000);
+  report(count, all_or(3000U, 700U));
 }
 
 TEST_CASE("exact discovery finds all paths and no other: loose tilted sheets without a room") {
   Count count;
-  for (std::uint64_t seed = 1; seed <= 600; ++seed) {
+  for (std::uint64_t seed = 1; seed <= all_or(600U, 150U); ++seed) {
     CAPTURE(seed);
     RandomRoom room = random_room(40'000 + seed, 12, 0);
     room.patches.erase(room.patches.begin(), room.patches.begin() + 6);
     check_complete(room, 3, 3, count);
   }
-  report(count, 1000);
+  report(count, all_or(1000U, 250U));
 }
 
 TEST_CASE("exact discovery finds all paths and no other: furnished storeys with shared planes and edges") {
   Count count;
-  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+  for (std::uint64_t seed = 1; seed <= all_or(120U, 30U); ++seed) {
     CAPTURE(seed);
     check_complete(furnished_room(45'000 + seed), 3, 3, count);
   }
-  report(count, 4000);
+  report(count, all_or(4000U, 1000U));
 }
 
 }  // namespace test_completeness
