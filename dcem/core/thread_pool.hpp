@@ -117,7 +117,7 @@ inline void ThreadPool::open(Loop& loop) {
   {
     const std::lock_guard lock(mutex_);
     start(is_within() ? size_ : wanted + 1);
-    if (open_.empty()) to_wake_ = 0;
+    if (open_.empty()) to_wake_ = 0;  // what is left was for loops that are over
     open_.push_back(&loop);
     if (caller_may_help_) done_.notify_all();
     to_wake_ += wanted;

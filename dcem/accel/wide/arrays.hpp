@@ -96,6 +96,9 @@ struct WideArrays {
   void fetch_around_leaf(std::uint32_t leaf, std::span<const Vec3> from_m) const;
   /// To be called once the quads of a leaf are there.
   void find_run(std::uint32_t leaf);
+  /// Calls `take` with each vertex that the quads of a leaf have, with some of them more than once.
+  template <typename Take>
+  void for_each_corner(std::uint32_t leaf, Take&& take) const;
   /// Takes over where the corners of a leaf are.
   void copy_vertices(std::uint32_t leaf, std::span<const Vec3> from_m);
   /// The same, while other threads do it for other leaves.

@@ -54,18 +54,17 @@ class LinkPlaces {
   }
 
   void turn_counts_into_places() {
-    std::size_t transmitters = 0;
+    std::size_t transmitters = 0, links = 0;
     for (const std::vector<std::size_t>& of_run : next_) transmitters = std::max(transmitters, of_run.size());
     for (std::size_t transmitter = 0; transmitter < transmitters; ++transmitter) {
       for (std::vector<std::size_t>& of_run : next_) {
-        if (transmitter < of_run.size()) links_ += std::exchange(of_run[transmitter], links_);
+        if (transmitter < of_run.size()) links += std::exchange(of_run[transmitter], links);
       }
     }
   }
 
   std::span<const std::vector<LinkResult>> by_receiver_;
   std::vector<std::vector<std::size_t>> next_;  ///< by run and transmitter
-  std::size_t links_ = 0;
 };
 
 /// Makes room for so many links, and some more, which all threads touch first: the system clears fresh memory page by

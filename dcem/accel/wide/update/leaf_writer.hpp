@@ -59,34 +59,33 @@ inline void WideArrays::find_run(std::uint32_t leaf) {
   run_of_leaf[leaf] = follows ? VertexRun{lowest, count} : VertexRun{};
 }
 
+template <typename Take>
+void WideArrays::for_each_corner(std::uint32_t leaf, Take&& take) const {
+  if (const auto [first, count] = run_of_leaf[leaf]; count != 0) {
+    for (std::uint32_t vertex = first; vertex < first + count; ++vertex) take(vertex);
+    return;
+  }
+  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
+    const Quad& quad = quads[leaf * simd_lanes + lane];
+    if (!quad.is_none()) std::ranges::for_each(quad.corner, take);
+  }
+}
+
 inline void WideArrays::copy_vertices(std::uint32_t leaf, std::span<const Vec3> from_m) {
   if (const auto [first, count] = run_of_leaf[leaf]; count != 0) {
     std::copy_n(from_m.begin() + first, count, vertices_m.begin() + first);
     return;
   }
-  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    const Quad& quad = quads[leaf * simd_lanes + lane];
-    if (quad.is_none()) continue;
-    for (const std::uint32_t vertex : quad.corner) vertices_m[vertex] = from_m[vertex];
-  }
+  for_each_corner(leaf, [&](std::uint32_t vertex) { vertices_m[vertex] = from_m[vertex]; });
 }
 
 /// A corner that two leaves have in common is written by two threads: the same numbers, each in one piece.
 inline void WideArrays::copy_vertices_together(std::uint32_t leaf, std::span<const Vec3> from_m) {
-  const auto copy = [&](std::uint32_t vertex) {
+  for_each_corner(leaf, [&](std::uint32_t vertex) {
     for (int axis = 0; axis < 3; ++axis) {
       std::atomic_ref(vertices_m[vertex][axis]).store(from_m[vertex][axis], std::memory_order_relaxed);
     }
-  };
-  if (const auto [first, count] = run_of_leaf[leaf]; count != 0) {
-    for (std::uint32_t vertex = first; vertex < first + count; ++vertex) copy(vertex);
-    return;
-  }
-  for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
-    const Quad& quad = quads[leaf * simd_lanes + lane];
-    if (quad.is_none()) continue;
-    std::ranges::for_each(quad.corner, copy);
-  }
+  });
 }
 
 inline Aabb<float> WideArrays::write_leaf(std::uint32_t index) {
