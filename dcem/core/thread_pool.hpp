@@ -40,9 +40,15 @@ class ThreadPool {
   /// took; a loop of one iteration, or of another pool within a loop, is like any other code.
   template <typename Body>
   void for_each(std::size_t count, Body&& body);
-  /// `body(index)` for each index, in blocks: for iterations so quick that a few are not worth waking anybody.
+  /// `body(index)` for each index, in blocks: for iterations so quick that a few are not worth waking anybody. A block
+  /// is to take some ten microseconds: shorter ones cost more than they bring where threads are many.
   template <typename Body>
-  void for_each_quick(std::size_t count, Body&& body);
+  void for_each_quick(std::size_t count, Body&& body, std::size_t block = 64);
+  /// The same for iterations of a few nanoseconds.
+  template <typename Body>
+  void for_each_tiny(std::size_t count, Body&& body) {
+    for_each_quick(count, body, 2048);
+  }
 
  private:
   using Loop = detail::PoolLoop;
@@ -94,8 +100,7 @@ void ThreadPool::for_each(std::size_t count, Body&& body) {
 }
 
 template <typename Body>
-void ThreadPool::for_each_quick(std::size_t count, Body&& body) {
-  constexpr std::size_t block = 64;
+void ThreadPool::for_each_quick(std::size_t count, Body&& body, std::size_t block) {
   for_each((count + block - 1) / block, [&](std::size_t number, unsigned) {
     for (std::size_t index = number * block; index < std::min(count, (number + 1) * block); ++index) body(index);
   });
@@ -142,12 +147,19 @@ inline void ThreadPool::wake(std::size_t calls) {
 inline void ThreadPool::close(Loop& loop) {
   std::unique_lock lock(mutex_);
   std::erase(open_, &loop);
+  if (loop.helpers == 0) return;
+  const double begun_s = thread_time_s();
+  double helped_s = 0.0;
   while (loop.helpers > 0) {
     caller_may_help_ = caller_may_help_ || !is_within();
     done_.wait(lock, [&] { return loop.helpers == 0 || (!is_within() && !open_.empty()); });
-    if (loop.helpers > 0) detail::asked_work.own_s += help(lock, loop.owner).busy_s;
+    if (loop.helpers > 0) helped_s += help(lock, loop.owner).busy_s;
   }
   if (!is_within()) caller_may_help_ = false;
+  // To fall asleep and wake up is time of the loop: others are still at work, and nobody waits for it.
+  const double waited_s = thread_time_s() - begun_s;
+  detail::asked_work.own_s += waited_s;
+  detail::asked_work.all_s += waited_s - helped_s;
 }
 
 inline void ThreadPool::start(std::size_t workers) {

@@ -44,6 +44,9 @@ class LinkLines {
   const std::string& receiver(const LinkResult& link) const { return receivers_[link.receiver]; }
 
  private:
+  /// `begun`: what all lines of the frame begin with.
+  void append(std::string& text, std::string_view begun, const LinkResult& link) const;
+
   std::vector<std::string> transmitters_, receivers_;
 };
 

@@ -102,7 +102,10 @@ class BasicSimulator {
 
   using TransmitterEnds = detail::TransmitterEnds;
   using DeviceEnd = detail::DeviceEnd;
+  using LinkSlots = detail::LinkSlots;
   using Solved = detail::Solved;
+  using Spent = detail::Spent;
+  using LinkListsOfAll = std::vector<std::vector<std::uint32_t>>;
   struct Following;
   struct FollowedLink;
   /// A link that is to be solved: its transmitter among those of the receiver, its place among the results, whether
@@ -161,13 +164,17 @@ class BasicSimulator {
   struct Proposals {
     ReceiverRoom* room = nullptr;
     std::span<const SequenceList> joined{};
-    std::vector<LinkResult>* spent = nullptr;  ///< links that nobody needs any more: new ones are made in their room
   };
   struct ReceiverSearch;
 
-  /// The links of one receiver, one per transmitter that is present; empty where the receiver is absent.
-  Solved solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
-                        PathCache* cache, const Proposals& proposals) const;
+  /// By receiver, the transmitters that are there and not the same device; none of one that is away.
+  LinkListsOfAll all_links(std::span<const Device> receivers, const TransmitterEnds& transmitters) const;
+  /// The links of one receiver, one per transmitter that is present, at their places; none where it is absent.
+  Spent solve_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, PathCache* cache,
+                       const Proposals& proposals, const LinkSlots& links) const;
+  /// The same for a receiver by itself.
+  Solved solve_alone(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
+                     const Proposals& proposals) const;
   /// What a receiver sees of surfaces, where diffuse power is asked for.
   std::shared_ptr<const SurfaceView> surfaces_seen_from(const Device& receiver, const LinkEnd& end,
                                                         const TransmitterEnds& transmitters, ReceiverRoom* room) const;
@@ -184,15 +191,15 @@ class BasicSimulator {
   /// The links of all receivers of the scene, from what is remembered of the frame before …
   Solved follow_all(const TransmitterEnds& transmitters);
   /// … and those of one; `transmitters` are those that it has links with.
-  Solved follow_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
-                         ReceiverRoom* room);
-  void follow_links(const Following& following, detail::ReceiverMemory& memory, std::span<const LinkToFollow> links,
-                    Solved& solved) const;
+  Spent follow_receiver(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
+                        ReceiverRoom* room, const LinkSlots& links);
+  Spent follow_links(const Following& following, detail::ReceiverMemory& memory, std::span<const LinkToFollow> wanted,
+                     const LinkSlots& links) const;
   LinkResult follow_link(FollowedLink& link, const KeptHalf& half, bool fields_stay) const;
-  void check_some(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
-                  std::span<const LinkResult> links, ReceiverRoom* room) const;
-  Solved solve_again(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters,
-                     ReceiverRoom* room);
+  void check_some(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room,
+                  const LinkSlots& links) const;
+  Spent solve_again(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room,
+                    const LinkSlots& links);
   void look_from_receiver(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;
   void look_anew(Following& following, ReceiverRoom& room) const;
   void look_for_triples(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;
@@ -224,18 +231,18 @@ class BasicSimulator {
   CacheMode cache_;
   LinkChoice choice_;
   std::shared_ptr<const detail::DeviceNumbers> numbers_;  ///< of the scene's transmitters
-  std::vector<std::vector<std::uint32_t>> chosen_;  ///< by receiver of the scene, where not all have links with all …
-  std::vector<std::size_t> links_of_;               ///< … and how many links each transmitter has
-  std::vector<std::uint32_t> moved_;                ///< triangles that the index has still to hear of
-  std::vector<PathCache> caches_;                   ///< one per receiver of the scene; none where the cache is off
-  std::vector<EdgeReach> reach_;                    ///< one per transmitter; none where the cache is off
-  std::optional<FacetOutlines> outlines_;           ///< where views are made
-  std::unique_ptr<LaneScene> lanes_;                ///< where the plan has halves; those that are kept point to it
-  std::vector<KeptHalf> halves_;                    ///< one per transmitter, where the plan has them …
-  bool halves_are_current_ = false;                 ///< … and whether they are those of the current frame
-  std::optional<detail::FrameChange> change_;       ///< since the frame before, where the cache is exact; so the next
-  std::vector<detail::ReceiverMemory> receivers_;   ///< one per receiver of the scene …
-  std::vector<char> is_remembered_;                 ///< … and whether it is remembered what it sees, in this frame
+  LinkListsOfAll chosen_;                          ///< by receiver of the scene, where not all have links with all …
+  std::vector<std::size_t> links_of_;              ///< … and how many links each transmitter has
+  std::vector<std::uint32_t> moved_;               ///< triangles that the index has still to hear of
+  std::vector<PathCache> caches_;                  ///< one per receiver of the scene; none where the cache is off
+  std::vector<EdgeReach> reach_;                   ///< one per transmitter; none where the cache is off
+  std::optional<FacetOutlines> outlines_;          ///< where views are made
+  std::unique_ptr<LaneScene> lanes_;               ///< where the plan has halves; those that are kept point to it
+  std::vector<KeptHalf> halves_;                   ///< one per transmitter, where the plan has them …
+  bool halves_are_current_ = false;                ///< … and whether they are those of the current frame
+  std::optional<detail::FrameChange> change_;      ///< since the frame before, where the cache is exact; so the next
+  std::vector<detail::ReceiverMemory> receivers_;  ///< one per receiver of the scene …
+  std::vector<char> is_remembered_;                ///< … and whether it is remembered what it sees, in this frame
   /// That devices have come into, and what may carry a path there; those that are followed point to the places.
   std::unique_ptr<KnownPlaces> known_places_ = std::make_unique<KnownPlaces>();
   KnownPools known_pools_;
@@ -245,9 +252,8 @@ class BasicSimulator {
   std::optional<FacetRims> rims_;                              ///< where lifetimes are asked for
   std::vector<char> transmitter_rests_, transmitter_is_same_;  ///< as in the frame before: its place; all of it
   Frame frame_;
-  std::vector<LinkResult> room_;                ///< of a frame that has been given back …
-  std::vector<std::vector<LinkResult>> spent_;  ///< … and of one before, by receiver
-  std::unique_ptr<ThreadPool> pool_;            ///< of all work on frames and maps
+  std::vector<LinkResult> room_;      ///< of a frame that has been given back
+  std::unique_ptr<ThreadPool> pool_;  ///< of all work on frames and maps
 };
 
 }  // namespace dcem

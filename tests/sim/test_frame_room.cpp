@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "dcem/sim/detail/gather_links.hpp"
+#include "dcem/sim/detail/frame_links.hpp"
 #include "dcem/sim/simulator.hpp"
 #include "tests/support/memory_trial.hpp"
 
@@ -65,32 +65,35 @@ TEST_CASE("frames from room that was given back are those of fresh memory, for a
 }
 
 TEST_CASE(
-    "links are gathered by transmitter, then receiver; those of a smaller frame leave nothing of a larger one, "
-    "and what was in their place goes to the receivers") {
+    "links stand by transmitter, then receiver, each receiver's at places of their own; those of a smaller frame leave "
+    "nothing of a larger one, and what was at their places is their room") {
   ThreadPool pool(3);
   std::vector<LinkResult> room;
   std::size_t reused = 0;
-  for (const std::size_t receivers : {150U, 90U, 3U, 0U, 120U}) {
-    std::vector<std::vector<LinkResult>> by_receiver(receivers);
+  for (const std::size_t receivers : {150U, 90U, 3U, 0U, 120U, 130U}) {
+    std::vector<std::vector<std::uint32_t>> lists(receivers);
     std::size_t count = 0;
     for (std::size_t receiver = 0; receiver < receivers; ++receiver) {
-      for (std::size_t transmitter = receiver % 3; transmitter < 100; transmitter += 1 + receiver % 2) {
-        LinkResult& link = by_receiver[receiver].emplace_back();
-        link.transmitter = transmitter;
-        link.receiver = receiver;
-        link.paths.resize(receiver % 4);
-        ++count;
+      const std::size_t step = receiver % 7 == 5 ? 100 : 1 + receiver % 2;  // some have one link, or none
+      for (std::size_t transmitter = receiver % 7; transmitter < 100 - receiver % 7; transmitter += step) {
+        lists[receiver].push_back(static_cast<std::uint32_t>(transmitter));
+      }
+      count += lists[receiver].size();
+    }
+    detail::FrameLinks links(lists, std::move(room), pool);
+    for (std::size_t receiver = 0; receiver < receivers; ++receiver) {
+      const detail::LinkSlots slots = links.of(receiver);
+      REQUIRE(slots.size() == lists[receiver].size());
+      for (std::size_t number = 0; number < slots.size(); ++number) {
+        reused += slots[number].paths.empty() ? 0 : 1;
+        slots[number] = {};
+        slots[number].transmitter = lists[receiver][number];
+        slots[number].receiver = receiver;
+        slots[number].paths.resize(receiver % 4);
       }
     }
-    const std::size_t held = room.size();
-    std::vector<LinkResult> all = detail::gather_links(by_receiver, std::move(room), pool);
+    std::vector<LinkResult> all = std::move(links).take();
     REQUIRE(all.size() == count);
-    std::size_t left = 0;
-    for (const std::vector<LinkResult>& links : by_receiver) {
-      left += links.size();
-      for (const LinkResult& link : links) reused += link.paths.empty() ? 0 : 1;
-    }
-    CHECK(left == (held == 0 ? 0 : count));
     for (std::size_t link = 0; link < count; ++link) {
       REQUIRE(all[link].paths.size() == all[link].receiver % 4);
       if (link == 0) continue;
@@ -103,12 +106,39 @@ TEST_CASE(
   CHECK(reused > 1000);  // or no room has gone round
 }
 
+TEST_CASE(
+    "direct paths alone: the first frame in which nothing has changed solves them, those after it take them over") {
+  const Scene scene = crowd(12);
+  Simulator simulator(scene, direct_paths(2));
+  Simulator expected(scene, with_cache(direct_paths(1), CacheMode::off));
+  REQUIRE(simulator.cache() == CacheMode::exact);
+  const auto step = [&](double time_s, std::size_t index) {
+    FrameResult result = simulator.advance_to(time_s, index);
+    CHECK((bits(scene, result.links) == bits(scene, expected.advance_to(time_s, index).links)));
+    return result;
+  };
+  CHECK(step(0.0, 0).work.legs > 0);
+  CHECK(step(0.0, 1).work.legs == 0);  // nothing was known of a frame before the first: it was kept
+  CHECK(step(0.1, 2).work.legs > 0);
+  CHECK(step(0.2, 3).work.legs > 0);
+  const FrameResult solved = step(0.2, 4);
+  CHECK(solved.work.legs > 0);
+  CHECK(solved.cache.born + solved.cache.died == 0);
+  const FrameResult taken_over = step(0.2, 5);
+  CHECK(taken_over.work.legs == 0);
+  CHECK(taken_over.cache.taken_over == taken_over.work.paths);
+  CHECK(step(0.3, 6).work.legs > 0);
+}
+
 TEST_CASE("each receiver is taken once, those with most links first") {
   const std::vector<std::vector<std::uint32_t>> chosen{{1}, {}, {1, 2, 3}, {4, 5}, {7}};
-  CHECK(detail::busiest_first(5, chosen) == std::vector<std::size_t>{2, 3, 0, 4, 1});
-  CHECK(detail::busiest_first(3, {}) == std::vector<std::size_t>{0, 1, 2});
-  CHECK(detail::busiest_first(0, {}).empty());
-  const std::vector<std::size_t> many = detail::busiest_first(5000, std::vector<std::vector<std::uint32_t>>(5000));
+  CHECK(detail::busiest_first(chosen) == std::vector<std::size_t>{2, 3, 0, 4, 1});
+  const std::vector<std::vector<std::uint32_t>> alike(3, {0});
+  CHECK(detail::busiest_first(alike) == std::vector<std::size_t>{0, 1, 2});
+  CHECK(detail::busiest_first({}).empty());
+  std::vector<std::vector<std::uint32_t>> very_many(5000);
+  very_many.back().push_back(0);
+  const std::vector<std::size_t> many = detail::busiest_first(very_many);
   for (std::size_t place = 0; place < many.size(); ++place) REQUIRE(many[place] == place);
 }
 

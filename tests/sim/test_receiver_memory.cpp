@@ -1,6 +1,7 @@
 /// What is remembered of a receiver's links, as the choice of links changes.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,12 +18,21 @@ using Numbers = std::vector<std::uint32_t>;
 
 namespace {
 
-/// Gives each link as many paths as its transmitter's number says.
+/// A link over each of the first facets by itself, the direct path instead of the first one.
+LinkResult link_over(std::size_t paths) {
+  LinkResult link;
+  link.paths.resize(paths);
+  for (std::size_t index = 1; index < paths; ++index) {
+    link.paths[index].path.interactions.push_back({InteractionKind::reflection, FacetId(index)});
+  }
+  return link;
+}
+
+/// Gives each link as many paths as its transmitter's number says; of every other one no more is remembered than these.
 void solve(detail::ReceiverMemory& memory) {
   for (std::size_t place = 0; place < memory.links.size(); ++place) {
-    LinkResult& link = memory.links[place].result.emplace();
-    link.transmitter = memory.numbers[place];
-    link.paths.resize(memory.numbers[place]);
+    const LinkResult link = link_over(memory.numbers[place]);
+    memory.numbers[place] % 2 == 0 ? memory.links[place].keep(link) : memory.links[place].keep_paths(link);
   }
 }
 
@@ -35,18 +45,39 @@ TEST_CASE("links keep what is known of them as others come and go, and what is g
   CHECK(memory.select(Numbers{1, 4, 7}, 3) == 0);  // the same
   CHECK(memory.link(4).result->paths.size() == 4);
   CHECK(memory.select(Numbers{1, 4, 8}, 3) == 7);  // as many, but others
-  CHECK(!memory.link(8).result.has_value());
+  CHECK(memory.link(8).path_count() == 0);
   solve(memory);
   CHECK(memory.select(Numbers{0, 4, 5, 9}, 4) == 9);  // 1 and 8 are gone
   CHECK(memory.links.size() == 4);
   CHECK(memory.link(4).result->paths.size() == 4);
-  for (const std::size_t fresh : {0U, 5U, 9U}) CHECK(!memory.link(fresh).result.has_value());
+  for (const std::size_t fresh : {0U, 5U, 9U}) CHECK(memory.link(fresh).path_count() == 0);
   solve(memory);
   CHECK(detail::path_count(memory.links) == 18);
   CHECK(memory.select(Numbers{}, 0) == 18);
   CHECK(memory.links.empty());
   CHECK(memory.select(Numbers{3}, 1) == 0);
-  CHECK(!memory.link(3).result.has_value());
+  CHECK(memory.link(3).path_count() == 0);
+}
+
+TEST_CASE("births and deaths are the same, whether links are remembered or their paths alone") {
+  for (std::size_t before = 0; before < 6; ++before) {
+    for (std::size_t now = 0; now < 6; ++now) {
+      for (const bool first_is_gone : {false, true}) {
+        LinkResult link = link_over(now);
+        if (first_is_gone && now > 0) link.paths.erase(link.paths.begin());
+        const std::size_t present = link.paths.size(), gone = now - present;
+        const std::size_t kept = std::min(before, now) - std::min(before, gone);
+        for (const bool whole : {false, true}) {
+          detail::LinkMemory memory;
+          whole ? memory.keep(link_over(before)) : memory.keep_paths(link_over(before));
+          CacheCounters counters;
+          memory.count_births(link, counters);
+          CHECK(counters.born == present - kept);
+          CHECK(counters.died == before - kept);
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("where bodies are many, only who stays in a place for long is followed through places") {

@@ -1,7 +1,6 @@
 #pragma once
 /// The half of a device from frame to frame: what it sees of the scenery is worked out again only where the device has
 /// moved, or has left its place.
-#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>

@@ -2,7 +2,6 @@
 /// Facets that a leg crosses now: whether it surely goes on crossing them while ends and bodies move.
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "dcem/paths/lifetime/way_gates.hpp"

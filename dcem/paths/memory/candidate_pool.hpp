@@ -4,13 +4,10 @@
 ///
 /// Worked out once for the place, from what the standing end reaches (`BeamLists`) and what the place may see; in each
 /// frame the gates of the point at which the device is are asked of all of it.
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "dcem/paths/halves/beam_lists.hpp"

@@ -11,36 +11,34 @@
 #include "dcem/paths/discover/search_counters.hpp"
 #include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/scene/scene.hpp"
-#include "dcem/sim/detail/gather_links.hpp"
+#include "dcem/sim/detail/frame_links.hpp"
 #include "dcem/sim/frame_result.hpp"
 
 namespace dcem::detail {
 
-/// A solution of some receivers, with what it took.
-struct Solved {
-  std::vector<LinkResult> links;
+/// What links took.
+struct Spent {
+  Spent& operator+=(const Spent& other) {
+    work += other.work;
+    cache += other.cache;
+    return *this;
+  }
+
   WorkCounters work;
   CacheCounters cache;
 };
 
-/// All links by transmitter, then receiver. `of_transmitters`: what these took beside. `room`: as in `gather_links`;
-/// what that leaves to the receivers is in `links` afterwards.
-inline Solved sum_of(std::span<Solved> by_receiver, const WorkCounters& of_transmitters, ThreadPool& pool,
-                     std::vector<LinkResult>&& room, std::vector<std::vector<LinkResult>>& links) {
-  Solved sum;
-  sum.work = of_transmitters;
-  links.clear();
-  for (Solved& one : by_receiver) {
-    links.push_back(std::move(one.links));
-    sum.work += one.work;
-    sum.cache += one.cache;
-  }
-  sum.links = gather_links(links, std::move(room), pool);
-  return sum;
-}
-inline Solved sum_of(std::span<Solved> by_receiver, const WorkCounters& of_transmitters, ThreadPool& pool) {
-  std::vector<std::vector<LinkResult>> links;
-  return sum_of(by_receiver, of_transmitters, pool, {}, links);
+/// Links, and what they took.
+struct Solved {
+  std::vector<LinkResult> links;
+  Spent spent;
+};
+
+/// Those of a frame; `by_receiver`: what each receiver took, `of_transmitters` beside.
+inline Solved solved(FrameLinks&& links, std::span<const Spent> by_receiver, const WorkCounters& of_transmitters) {
+  Solved all{std::move(links).take(), {of_transmitters, {}}};
+  for (const Spent& one : by_receiver) all.spent += one;
+  return all;
 }
 
 inline void add_search_work(const SearchCounters& counters, WorkCounters& work) {

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "dcem/field/path_contribution.hpp"
@@ -14,6 +13,7 @@
 #include "dcem/paths/halves/kept_half.hpp"
 #include "dcem/paths/memory/pooled_link.hpp"
 #include "dcem/paths/memory/standing_link.hpp"
+#include "dcem/sim/detail/path_keys.hpp"
 #include "dcem/sim/frame_result.hpp"
 #include "dcem/sim/verify/same_bits.hpp"
 
@@ -41,11 +41,19 @@ inline constexpr std::size_t known_places_per_receiver = 6;
 
 /// One link in the frame before.
 struct LinkMemory {
-  std::optional<LinkResult> result;         ///< none: the link was not there
+  std::unique_ptr<LinkResult> result;       ///< none: the link was not there, or only `paths` are remembered of it
+  PathKeys paths;                           ///< those that it had, where there is no result
   StandingLink<PathContribution> standing;  ///< while both ends stand
   std::unique_ptr<PooledLink> pooled;       ///< while the transmitter stands and the receiver goes through places
 
+  /// All that it brings, which the next frame may take over.
+  void keep(const LinkResult& now);
+  /// Which paths it has, and no more: the result takes a kilobyte that nobody may read.
+  void keep_paths(const LinkResult& now);
   void forget();
+  std::size_t path_count() const { return result ? result->paths.size() : paths.size(); }
+  /// Counts the paths that it has now and had not, and those that it had.
+  void count_births(const LinkResult& now, CacheCounters& counters) const;
 };
 
 /// How many paths they had.
@@ -81,9 +89,6 @@ struct ReceiverMemory {
 /// Whether a device is as it was, to the last bit: from a coordinate of −0 follow other signs than from 0.
 bool same_bits(const std::optional<LinkEnd>& before, const LinkEnd& now);
 bool same_bits(const std::optional<DeviceState>& before, const DeviceState& now);
-
-/// Counts the paths that a link has now and had not, and those that it had.
-void count_births(const std::optional<LinkResult>& before, const LinkResult& now, CacheCounters& counters);
 
 }  // namespace dcem::detail
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -14,15 +14,38 @@
 
 namespace dcem::detail {
 
+DCEM_INLINE void LinkMemory::keep(const LinkResult& now) {
+  if (result == nullptr) {
+    result = std::make_unique<LinkResult>(now);
+    paths.clear();
+  } else {
+    *result = now;
+  }
+}
+
+DCEM_INLINE void LinkMemory::keep_paths(const LinkResult& now) {
+  result.reset();
+  paths.assign(now.paths);
+}
+
+DCEM_INLINE void LinkMemory::count_births(const LinkResult& now, CacheCounters& counters) const {
+  if (result == nullptr) return paths.count_births(now.paths, counters);
+  const auto same = [](const PathContribution& one, const PathContribution& other) {
+    return same_sequence(one.path, other.path);
+  };
+  if (!std::ranges::equal(result->paths, now.paths, same)) PathKeys(result->paths).count_births(now.paths, counters);
+}
+
 DCEM_INLINE void LinkMemory::forget() {
   result.reset();
+  paths.clear();
   standing.forget();
   pooled.reset();
 }
 
 DCEM_INLINE std::size_t path_count(std::span<const LinkMemory> links) {
   std::size_t count = 0;
-  for (const LinkMemory& link : links) count += link.result ? link.result->paths.size() : 0;
+  for (const LinkMemory& link : links) count += link.path_count();
   return count;
 }
 
@@ -37,7 +60,7 @@ DCEM_INLINE std::size_t ReceiverMemory::select(std::span<const std::uint32_t> tr
   for (std::size_t now = 0; now < kept.size(); ++now) {
     before = std::lower_bound(before, numbers.end(), transmitters[now]);
     if (before == numbers.end() || *before != transmitters[now] || links.empty()) continue;
-    kept[now] = std::move(links[static_cast<std::size_t>(before - numbers.begin())]);
+    kept[now] = std::exchange(links[static_cast<std::size_t>(before - numbers.begin())], {});
   }
   const std::size_t gone = path_count(links);  // of those that are kept nothing has stayed behind
   links = std::move(kept);
@@ -82,25 +105,6 @@ DCEM_INLINE bool same_bits(const std::optional<DeviceState>& before, const Devic
   return before == now && same_bits(before->position_m, now.position_m) &&
          same_bits(before->velocity_mps, now.velocity_mps) && same_bits(before->rotation[0], now.rotation[0]) &&
          same_bits(before->rotation[1], now.rotation[1]) && same_bits(before->rotation[2], now.rotation[2]);
-}
-
-DCEM_INLINE void count_births(const std::optional<LinkResult>& before, const LinkResult& now, CacheCounters& counters) {
-  const auto same = [](const PathContribution& one, const PathContribution& other) {
-    return same_sequence(one.path, other.path);
-  };
-  if (before && std::ranges::equal(before->paths, now.paths, same)) return;
-  const auto keys_of = [](const std::vector<PathContribution>& paths) {
-    std::vector<std::uint64_t> keys;
-    for (const PathContribution& path : paths) keys.push_back(SequenceHash()(sequence_of(path.path)));
-    std::ranges::sort(keys);
-    return keys;
-  };
-  const std::vector<std::uint64_t> old = before ? keys_of(before->paths) : std::vector<std::uint64_t>{};
-  const std::vector<std::uint64_t> present = keys_of(now.paths);
-  std::vector<std::uint64_t> both;
-  std::ranges::set_intersection(old, present, std::back_inserter(both));
-  counters.born += present.size() - both.size();
-  counters.died += old.size() - both.size();
 }
 
 }  // namespace dcem::detail

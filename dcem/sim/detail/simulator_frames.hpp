@@ -50,8 +50,8 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   result.links = std::move(solved.links);
   if (change_) note_places();
   if (finds_lifetimes()) find_lifetimes(result.links, transmitters);
-  result.work = solved.work;
-  result.cache += solved.cache;
+  result.work = solved.spent.work;
+  result.cache += solved.spent.cache;
   note_rays(result.work);
   result.solve_time_s = solve_watch.seconds();
   return result;

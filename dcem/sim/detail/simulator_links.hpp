@@ -38,7 +38,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const Device> receivers,
                                                               WorkCounters* work) const {
   Solved solved = solve_all(receivers, transmitter_ends(scene_.transmitters(), receivers.size()), {}, false);
-  if (work != nullptr) *work += solved.work;
+  if (work != nullptr) *work += solved.spent.work;
   return std::move(solved.links);
 }
 
@@ -55,18 +55,38 @@ std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const De
     wanted[receiver].push_back(static_cast<std::uint32_t>(transmitter));
   }
   const TransmitterEnds ends = transmitter_ends(transmitters, receivers.size());
-  std::vector<Solved> by_receiver(receivers.size());
-  std::vector<ReceiverRoom> rooms = receiver_rooms();
-  pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
+  for (std::size_t index = 0; index < receivers.size(); ++index) {
     std::vector<std::uint32_t>& of_one = wanted[index];
+    const bool is_there = state_of(receivers[index]).present;
+    std::erase_if(of_one, [&](std::uint32_t transmitter) { return !is_there || !ends.link[transmitter]; });
     std::sort(of_one.begin(), of_one.end());
     of_one.erase(std::unique(of_one.begin(), of_one.end()), of_one.end());
-    by_receiver[index] = solve_receiver(receivers[index], index, ends.only(std::move(of_one)), nullptr,
-                                        {rooms.empty() ? nullptr : &rooms[worker]});
+  }
+  detail::FrameLinks links(wanted, {}, *pool_);
+  std::vector<Spent> spent(receivers.size());
+  std::vector<ReceiverRoom> rooms = receiver_rooms();
+  pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
+    spent[index] = solve_receiver(receivers[index], index, ends.only(wanted[index]), nullptr,
+                                  {rooms.empty() ? nullptr : &rooms[worker]}, links.of(index));
   });
-  Solved solved = detail::sum_of(by_receiver, ends.work, *pool_);
-  if (work != nullptr) *work += solved.work;
+  Solved solved = detail::solved(std::move(links), spent, ends.work);
+  if (work != nullptr) *work += solved.spent.work;
   return std::move(solved.links);
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+typename BasicSimulator<Surface, Index>::LinkListsOfAll BasicSimulator<Surface, Index>::all_links(
+    std::span<const Device> receivers, const TransmitterEnds& transmitters) const {
+  LinkListsOfAll lists(receivers.size());
+  pool_->for_each_quick(receivers.size(), [&](std::size_t index) {
+    if (!state_of(receivers[index]).present) return;
+    std::vector<std::optional<LinkEnd>> others;
+    const std::span<const std::optional<LinkEnd>> ends = ends_beside(receivers[index], transmitters, others);
+    for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
+      if (ends[transmitter]) lists[index].push_back(static_cast<std::uint32_t>(transmitter));
+    }
+  });
+  return lists;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -74,33 +94,49 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches,
     bool is_of_frame) const {
   const bool takes_all = !is_of_frame || choice_.takes_all();
-  std::vector<Solved> by_receiver(receivers.size());
+  const LinkListsOfAll all = takes_all ? all_links(receivers, transmitters) : LinkListsOfAll{};
+  detail::FrameLinks links(takes_all ? all : chosen_, {}, *pool_);
+  std::vector<Spent> spent(receivers.size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
   pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
     PathCache* cache = caches.empty() ? nullptr : &caches[index];
     const Proposals proposals{rooms.empty() ? nullptr : &rooms[worker]};
+    const LinkSlots slots = links.of(index);
     if (takes_all) {
-      by_receiver[index] = solve_receiver(receivers[index], index, transmitters, cache, proposals);
+      spent[index] = solve_receiver(receivers[index], index, transmitters, cache, proposals, slots);
       return;
     }
     const std::size_t gone = cache != nullptr ? cache->select(chosen_[index]) : 0;
-    by_receiver[index] = solve_receiver(receivers[index], index, transmitters.only(chosen_[index]), cache, proposals);
-    by_receiver[index].cache.died += gone;
+    spent[index] = solve_receiver(receivers[index], index, transmitters.only(chosen_[index]), cache, proposals, slots);
+    spent[index].cache.died += gone;
   });
-  return detail::sum_of(by_receiver, transmitters.work, *pool_);
+  return detail::solved(std::move(links), spent, transmitters.work);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_receiver(
-    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, PathCache* cache,
-    const Proposals& proposals) const {
-  const DeviceState state = state_of(receiver);
+typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_alone(
+    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, const Proposals& proposals) const {
+  std::vector<std::optional<LinkEnd>> others;
+  const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
   Solved solved;
-  if (!state.present) {
-    if (cache != nullptr) solved.cache.died = cache->clear();
-    return solved;
+  if (state_of(receiver).present) {
+    for (const std::optional<LinkEnd>& end : ends) solved.links.resize(solved.links.size() + (end ? 1 : 0));
   }
-  if (transmitters.link.empty()) return solved;
+  solved.spent = solve_receiver(receiver, index, transmitters, nullptr, proposals, LinkSlots(solved.links));
+  return solved;
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+typename BasicSimulator<Surface, Index>::Spent BasicSimulator<Surface, Index>::solve_receiver(
+    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, PathCache* cache,
+    const Proposals& proposals, const LinkSlots& links) const {
+  const DeviceState state = state_of(receiver);
+  Spent spent;
+  if (!state.present) {
+    if (cache != nullptr) spent.cache.died = cache->clear();
+    return spent;
+  }
+  if (transmitters.link.empty()) return spent;
   SearchCounters counters;
   const LinkEnd end = link_end(state, counters.solver.traversal);
   const ReceiverSearch search(*this, receiver, end, transmitters, proposals);
@@ -115,17 +151,16 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   for (std::size_t transmitter = 0; transmitter < search.transmitter_ends.size(); ++transmitter) {
     if (search.transmitter_ends[transmitter]) present.push_back(transmitter);
   }
-  if (proposals.spent != nullptr) solved.links = std::exchange(*proposals.spent, {});
-  solved.links.resize(present.size());
-  std::vector<WorkCounters> spent(present.size());
+  DCEM_ASSERT(links.size() == present.size());
+  std::vector<WorkCounters> of_link(present.size());
   const auto solve_link = [&](std::size_t place, unsigned) {
     const std::size_t transmitter = present[place];
-    WorkCounters& work = spent[place];
+    WorkCounters& work = of_link[place];
     LinkPaths paths = goes_apart ? search.find_apart(transmitter, work) : std::move(found[transmitter]);
     DiffusePower diffuse = diffuse_power(receiver, {end, to}, view.get(), transmitters, transmitter, work);
-    LinkResult& link = solved.links[place];
+    LinkResult& link = links[place];
     link = make_link(std::move(paths), std::move(diffuse), transmitters.number(transmitter),
-                     {*search.transmitter_ends[transmitter], transmitters.radio[transmitter]}, {end, to}, field,
+                     {*search.transmitter_ends[transmitter], transmitters.radio_of(transmitter)}, {end, to}, field,
                      std::move(link.paths));
     link.receiver = index;
     link.complete = !samples || search.search.max_interactions == 0;
@@ -134,12 +169,15 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   if (goes_apart || settings_.propagation.diffuse.enabled) {
     pool_->for_each(present.size(), solve_link);  // threads that have nothing else to do help
   } else {
-    for (std::size_t place = 0; place < present.size(); ++place) solve_link(place, 0);  // 2 µs each
+    for (std::size_t place = 0; place < present.size(); ++place) {
+      links.fetch_after(place);
+      solve_link(place, 0);  // 2 µs each
+    }
   }
-  for (const WorkCounters& one : spent) solved.work += one;
-  detail::add_search_work(counters, solved.work);
-  solved.cache = counters.cache;
-  return solved;
+  for (const WorkCounters& one : of_link) spent.work += one;
+  detail::add_search_work(counters, spent.work);
+  spent.cache = counters.cache;
+  return spent;
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -164,7 +202,7 @@ DiffusePower BasicSimulator<Surface, Index>::diffuse_power(const Device& receive
                                                         propagation.max_transmissions);
   const DiffuseKey key{propagation.seed, transmitters.device(transmitter).id, receiver.id};
   DiffusePower power = integral.evaluate(
-      {*transmitters.link[transmitter], transmitters.radio[transmitter], *transmitters.surfaces[transmitter]},
+      {*transmitters.link[transmitter], transmitters.radio_of(transmitter), *transmitters.surfaces[transmitter]},
       {end.link, end.radio, *view}, key);
   detail::add_diffuse_work(power, work);
   return power;

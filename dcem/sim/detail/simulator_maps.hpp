@@ -158,12 +158,12 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
     if (share && group.size() > 1) joined = share->join(*this, points_m, worker, spent[number]);
     for (std::size_t at = 0; at < group.size(); ++at) {
       const std::size_t point = group[at];
-      const Solved solved = solve_receiver(
-          order.receiver(point), point, transmitters, nullptr,
+      const Solved solved = solve_alone(
+          order.receiver(point), point, transmitters,
           {rooms.empty() ? nullptr : &rooms[worker], joined.empty() ? std::span<const SequenceList>{} : joined[at]});
       for (const LinkResult& link : solved.links)
         maps[link.transmitter].points[point] = detail::map_point(link, points_m[at]);
-      spent[number] += solved.work;
+      spent[number] += solved.spent.work;
     }
     told.add(group.size());
   });

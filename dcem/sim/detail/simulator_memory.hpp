@@ -6,7 +6,7 @@
 
 #include "dcem/paths/memory/standing_link.hpp"
 #include "dcem/sim/basic_simulator.hpp"
-#include "dcem/sim/detail/gather_links.hpp"
+#include "dcem/sim/detail/frame_links.hpp"
 #include "dcem/sim/detail/link_work.hpp"
 #include "dcem/sim/verify/same_bits.hpp"
 
@@ -60,7 +60,7 @@ struct BasicSimulator<Surface, Index>::FollowedLink {
   std::optional<PathContribution> solve(const Sequence& sequence) {
     std::optional<Path> path = solver.solve(from(), of.end, sequence);
     if (!path) return std::nullopt;
-    return of.field.evaluate(std::move(*path), of.transmitters.radio[transmitter], of.radio);
+    return of.field.evaluate(std::move(*path), of.transmitters.radio_of(transmitter), of.radio);
   }
 
   const Following& of;
@@ -78,35 +78,40 @@ template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::follow_all(
     const TransmitterEnds& transmitters) {
   const std::span<const Device> receivers = scene_.receivers();
-  std::vector<Solved> by_receiver(receivers.size());
-  spent_.resize(receivers.size());
+  const bool takes_all = choice_.takes_all();
+  const LinkListsOfAll all = takes_all ? all_links(receivers, transmitters) : LinkListsOfAll{};
+  const LinkListsOfAll& lists = takes_all ? all : chosen_;
+  detail::FrameLinks links(lists, std::move(room_), *pool_);
+  std::vector<Spent> spent(receivers.size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
-  const std::vector<std::size_t> order = detail::busiest_first(receivers.size(), chosen_);
+  const std::vector<std::size_t> order = detail::busiest_first(lists);
   pool_->for_each(receivers.size(), [&](std::size_t place, unsigned worker) {
     const std::size_t index = order[place];
     ReceiverRoom* const room = rooms.empty() ? nullptr : &rooms[worker];
-    by_receiver[index] = choice_.takes_all()
-                             ? follow_receiver(receivers[index], index, transmitters, room)
-                             : follow_receiver(receivers[index], index, transmitters.only(chosen_[index]), room);
+    const Device& receiver = receivers[index];
+    spent[index] = takes_all
+                       ? follow_receiver(receiver, index, transmitters, room, links.of(index))
+                       : follow_receiver(receiver, index, transmitters.only(chosen_[index]), room, links.of(index));
   });
-  return detail::sum_of(by_receiver, transmitters.work, *pool_, std::move(room_), spent_);
+  return detail::solved(std::move(links), spent, transmitters.work);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::follow_receiver(
-    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room) {
+typename BasicSimulator<Surface, Index>::Spent BasicSimulator<Surface, Index>::follow_receiver(
+    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room,
+    const LinkSlots& links) {
   detail::ReceiverMemory& memory = receivers_[index];
   const DeviceState state = state_of(receiver);
-  Solved solved;
+  Spent spent;
   if (!state.present) {
-    solved.cache.died += detail::path_count(memory.links);
+    spent.cache.died += detail::path_count(memory.links);
     memory.forget();
-    return solved;
+    return spent;
   }
   TraversalCounters traversal;
   const LinkEnd end = link_end(state, traversal);
   if (memory.end && memory.end->ignored_body != end.ignored_body) {
-    solved.cache.died += detail::path_count(memory.links);
+    spent.cache.died += detail::path_count(memory.links);
     memory.links.clear();
   }
   const bool is_kept = is_remembered_[index] != 0;
@@ -114,7 +119,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const bool stands = detail::same_bits(memory.end, end), is_same = detail::same_bits(memory.state, state);
   memory.end = end;
   memory.state = state;
-  solved.cache.died += memory.select(transmitters.numbers, transmitters.link.size());
+  spent.cache.died += memory.select(transmitters.numbers, transmitters.link.size());
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
   const RadioEnd radio = detail::radio_end(receiver, state);
@@ -127,21 +132,15 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     all_stay = all_stay && stays(transmitter);
   }
   if (plan_.joined == 0 && !all_stay) {
-    Solved again = solve_again(receiver, index, transmitters, room);
-    again.cache += solved.cache;
-    return again;
+    spent += solve_again(receiver, index, transmitters, room, links);
+    return spent;
   }
   std::vector<LinkToFollow> to_follow;
-  solved.links = std::exchange(spent_[index], {});
   std::size_t count = 0;
-  const auto next_link = [&]() -> LinkResult& {
-    if (count == solved.links.size()) solved.links.emplace_back();
-    return solved.links[count++];
-  };
   for (std::size_t transmitter = 0; transmitter < ends.size(); ++transmitter) {
     detail::LinkMemory& link = memory.links[transmitter];
     if (!ends[transmitter]) {
-      solved.cache.died += detail::path_count({&link, 1});
+      spent.cache.died += link.path_count();
       link.forget();
       continue;
     }
@@ -149,14 +148,14 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     const bool rests = is_kept && stands && link.result && transmitter_rests_[number] != 0;
     if (transmitter_rests_[number] == 0) link.pooled.reset();
     if (stays(transmitter)) {
-      solved.cache.taken_over += link.result->paths.size();
-      next_link() = *link.result;
+      spent.cache.taken_over += link.result->paths.size();
+      links[count++] = *link.result;
     } else {
       to_follow.push_back({transmitter, count, rests, rests && is_same && transmitter_is_same_[number] != 0});
-      next_link().receiver = index;
+      links[count++].receiver = index;
     }
   }
-  solved.links.resize(count);
+  DCEM_ASSERT(count == links.size());
   if (!to_follow.empty()) {
     Following following(*this, transmitters, receiver, end, radio);
     if (is_kept) {
@@ -167,49 +166,45 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     following.surfaces = surfaces_seen_from(receiver, end, transmitters, room);
     SearchCounters counters;
     counters.solver.traversal += traversal;
-    detail::add_search_work(counters, solved.work);
-    follow_links(following, memory, to_follow, solved);
+    detail::add_search_work(counters, spent.work);
+    spent += follow_links(following, memory, to_follow, links);
   } else if (change_->any_moved()) {
     memory.half.forget_bodies();
   }
-  for (const LinkResult& link : solved.links) solved.work.paths += link.paths.size();
+  for (std::size_t link = 0; link < count; ++link) spent.work.paths += links[link].paths.size();
 #if !defined(NDEBUG)
-  check_some(receiver, index, transmitters, solved.links, room);
+  check_some(receiver, index, transmitters, room, links);
 #endif
-  return solved;
+  return spent;
 }
 
 /// Solves links of a receiver, from what is known of each; threads that have nothing else to do help.
 template <SurfaceModel Surface, SpatialIndex Index>
-void BasicSimulator<Surface, Index>::follow_links(const Following& following, detail::ReceiverMemory& memory,
-                                                  std::span<const LinkToFollow> links, Solved& solved) const {
+typename BasicSimulator<Surface, Index>::Spent BasicSimulator<Surface, Index>::follow_links(
+    const Following& following, detail::ReceiverMemory& memory, std::span<const LinkToFollow> wanted,
+    const LinkSlots& links) const {
   // What the links share is only read from here on.
   if (following.half == &memory.half.half() &&
-      std::ranges::any_of(links, [&](const LinkToFollow& link) { return joins_anew(following, memory, link); })) {
+      std::ranges::any_of(wanted, [&](const LinkToFollow& link) { return joins_anew(following, memory, link); })) {
     memory.half.lay_out_images(scene_, *outlines_);
   }
-  struct Spent {
-    WorkCounters work;
-    CacheCounters cache;
-  };
-  std::vector<Spent> spent(links.size());
-  pool_->for_each(links.size(), [&](std::size_t number, unsigned) {
-    const LinkToFollow& wanted = links[number];
-    FollowedLink link(following, memory.links[wanted.transmitter], wanted.transmitter, wanted.rests);
-    LinkResult& result = solved.links[wanted.place];
+  std::vector<Spent> by_link(wanted.size());
+  pool_->for_each(wanted.size(), [&](std::size_t number, unsigned) {
+    const LinkToFollow& one = wanted[number];
+    FollowedLink link(following, memory.links[one.transmitter], one.transmitter, one.rests);
+    LinkResult& result = links[one.place];
     const std::size_t receiver = result.receiver;
-    result = follow_link(link, memory.half, wanted.fields_stay);
+    result = follow_link(link, memory.half, one.fields_stay);
     result.receiver = receiver;
-    detail::count_births(link.memory.result, result, link.cache);
-    link.memory.result = result;
+    link.memory.count_births(result, link.cache);
+    link.memory.keep(result);
     link.counters.solver += link.solver.counters();
     detail::add_search_work(link.counters, link.work);
-    spent[number] = {link.work, link.cache};
+    by_link[number] = {link.work, link.cache};
   });
-  for (const Spent& one : spent) {
-    solved.work += one.work;
-    solved.cache += one.cache;
-  }
+  Spent spent;
+  for (const Spent& one : by_link) spent += one;
+  return spent;
 }
 
 /// One link, from what is known of it.
@@ -224,7 +219,7 @@ LinkResult BasicSimulator<Surface, Index>::follow_link(FollowedLink& link, const
   DiffusePower diffuse =
       diffuse_power(link.of.receiver, to, link.of.surfaces.get(), transmitters, link.transmitter, link.work);
   LinkResult result = finish_link(std::move(paths), std::move(diffuse), transmitters.number(link.transmitter),
-                                  {link.from(), transmitters.radio[link.transmitter]}, to, link.of.field);
+                                  {link.from(), transmitters.radio_of(link.transmitter)}, to, link.of.field);
   result.complete = true;
   return result;
 }
@@ -232,38 +227,44 @@ LinkResult BasicSimulator<Surface, Index>::follow_link(FollowedLink& link, const
 /// One in a hundred pairs of link and frame, chosen at random, is solved from scratch: in builds that are not for use.
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::check_some(const Device& receiver, std::size_t index,
-                                                const TransmitterEnds& transmitters, std::span<const LinkResult> links,
-                                                ReceiverRoom* room) const {
+                                                const TransmitterEnds& transmitters, ReceiverRoom* room,
+                                                const LinkSlots& links) const {
   const auto is_chosen = [&](const LinkResult& link) {
     return hash_values(frame_.index, index, link.transmitter) % 100 == 0;
   };
-  if (std::none_of(links.begin(), links.end(), is_chosen)) return;
-  const Solved expected = solve_receiver(receiver, index, transmitters, nullptr, {room});
+  bool any = false;
+  for (std::size_t link = 0; link < links.size(); ++link) any = any || is_chosen(links[link]);
+  if (!any) return;
+  const Solved expected = solve_alone(receiver, index, transmitters, {room});
   for (std::size_t link = 0; link < links.size(); ++link) {
     DCEM_ASSERT(!is_chosen(links[link]) || detail::same_bits(links[link], expected.links[link]));
   }
 }
 
-/// All links of a receiver from scratch, where sequences are not joined from halves. What is remembered of each is
-/// written over: where links are very many, memory costs more than they.
+/// All links of a receiver from scratch, where sequences are not joined from halves. Of direct paths alone, 2 µs each,
+/// no more is remembered than which there are as long as bodies change from frame to frame: where links are very many,
+/// memory costs more than they. The first frame without change solves and keeps them.
 template <SurfaceModel Surface, SpatialIndex Index>
-typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::solve_again(
-    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room) {
-  Solved solved = solve_receiver(receiver, index, transmitters, nullptr, {room, {}, &spent_[index]});
-  std::vector<detail::LinkMemory>& links = receivers_[index].links;
-  auto found = solved.links.cbegin();
-  for (std::size_t transmitter = 0; transmitter < links.size(); ++transmitter) {
-    detail::LinkMemory& memory = links[transmitter];
-    if (found == solved.links.cend() || found->transmitter != transmitters.number(transmitter)) {
-      solved.cache.died += detail::path_count({&memory, 1});
+typename BasicSimulator<Surface, Index>::Spent BasicSimulator<Surface, Index>::solve_again(
+    const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room,
+    const LinkSlots& links) {
+  Spent spent = solve_receiver(receiver, index, transmitters, nullptr, {room}, links);
+  std::vector<detail::LinkMemory>& known = receivers_[index].links;
+  const bool keeps_paths_alone = change_->any() && interaction_order(settings_.propagation) == 0;
+  std::size_t found = 0;
+  for (std::size_t transmitter = 0; transmitter < known.size(); ++transmitter) {
+    detail::LinkMemory& memory = known[transmitter];
+    if (found == links.size() || links[found].transmitter != transmitters.number(transmitter)) {
+      spent.cache.died += memory.path_count();
       memory.forget();
       continue;
     }
-    detail::count_births(memory.result, *found, solved.cache);
-    memory.result = *found++;
+    const LinkResult& link = links[found++];
+    memory.count_births(link, spent.cache);
+    keeps_paths_alone ? memory.keep_paths(link) : memory.keep(link);
   }
-  DCEM_ASSERT(found == solved.links.cend());
-  return solved;
+  DCEM_ASSERT(found == links.size());
+  return spent;
 }
 
 }  // namespace dcem

@@ -46,7 +46,7 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_of_standing(
       ++link.cache.taken_over;
       if (!fields_stay) {
         entry.outcome = following.field.evaluate(std::move(entry.outcome->path),
-                                                 following.transmitters.radio[link.transmitter], following.radio);
+                                                 following.transmitters.radio_of(link.transmitter), following.radio);
       }
     }
   }

@@ -24,7 +24,7 @@ namespace dcem::detail {
 struct TransmitterEnds {
   std::span<const Device> devices;  ///< all of them
   std::vector<std::optional<LinkEnd>> link;
-  std::vector<RadioEnd> radio;
+  std::vector<RadioEnd> radio;        ///< of all devices; of some that were chosen see `radio_of`
   std::vector<ReachedEdges> reached;  ///< the edges within reach; empty lists where no diffraction is wanted
   std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
   HalfRefs halves;                    ///< none where the plan has none
@@ -41,6 +41,7 @@ struct TransmitterEnds {
   /// The number among all devices.
   std::size_t number(std::size_t index) const { return numbers.empty() ? index : numbers[index]; }
   const Device& device(std::size_t index) const { return devices[number(index)]; }
+  const RadioEnd& radio_of(std::size_t index) const { return (all != nullptr ? all->radio : radio)[number(index)]; }
   /// Some of them, for a receiver that has no links with the others. These must outlive the result.
   TransmitterEnds only(std::vector<std::uint32_t> chosen) const;
 
@@ -65,11 +66,9 @@ inline TransmitterEnds TransmitterEnds::only(std::vector<std::uint32_t> chosen) 
   TransmitterEnds some;
   some.devices = devices;
   some.link.reserve(chosen.size());
-  some.radio.reserve(chosen.size());
   some.reached.reserve(chosen.size());
   for (const std::uint32_t index : chosen) {
     some.link.push_back(link[index]);
-    some.radio.push_back(radio[index]);
     some.reached.push_back(reached[index]);
     if (!halves.empty()) some.halves.add(halves[index]);
     if (!surfaces.empty()) some.surfaces.push_back(surfaces[index]);

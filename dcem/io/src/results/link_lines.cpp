@@ -9,6 +9,16 @@
 #include "dcem/io/src/text/number_text.hpp"
 
 namespace dcem::io {
+namespace {
+
+/// What all lines of a frame begin with.
+std::string beginning(const FrameResult& frame) {
+  std::string fields;
+  CsvLine(fields).count(frame.index).number(frame.time_s);
+  return fields;
+}
+
+}  // namespace
 
 LinkLines::LinkLines(const Scene& scene, std::span<const Device> receivers) {
   for (const Device& device : scene.transmitters()) transmitters_.push_back(csv_field(device.id));
@@ -17,9 +27,10 @@ LinkLines::LinkLines(const Scene& scene, std::span<const Device> receivers) {
 
 LinePieces LinkLines::pieces(const FrameResult& frame, ThreadPool& pool) const {
   auto lines = std::make_shared<std::vector<std::string>>();
+  const std::string begun = beginning(frame);
   const auto make = [&](std::span<const LinkResult> links) {
     std::string text;
-    for_each_link(links, [&](const LinkResult& link) { append(text, frame, link); });
+    for_each_link(links, [&](const LinkResult& link) { append(text, begun, link); });
     return text;
   };
   in_pieces<std::string>(pool, frame.links, make, [&](std::vector<std::string>&& texts) {
@@ -29,10 +40,13 @@ LinePieces LinkLines::pieces(const FrameResult& frame, ThreadPool& pool) const {
 }
 
 void LinkLines::append(std::string& text, const FrameResult& frame, const LinkResult& link) const {
+  append(text, beginning(frame), link);
+}
+
+void LinkLines::append(std::string& text, std::string_view begun, const LinkResult& link) const {
   const LinkStatistics& values = link.statistics;
   const std::vector<PowerSample> samples = power_samples(link.paths, link.diffuse);
-  CsvLine line(text);
-  line.count(frame.index).number(frame.time_s);
+  CsvLine line(text, begun);
   line.prepared(transmitter(link)).prepared(receiver(link));
   line.flag(values.line_of_sight).count(values.path_count).flag(link.complete);
   line.number(link.valid_until_m);

@@ -164,7 +164,7 @@ void RunJournal::add(const FrameResult& frame) {
 
 void RunJournal::add(const FrameFigures& figures, std::span<const LinkResult> links, const LinePieces& lines) {
   std::vector<LinkRequest> of_lines(links.size());
-  pool().for_each_quick(links.size(), [&](std::size_t index) {
+  pool().for_each_tiny(links.size(), [&](std::size_t index) {
     of_lines[index] = {links[index].transmitter, links[index].receiver};
   });
   std::vector<std::string> heads(lines->size());

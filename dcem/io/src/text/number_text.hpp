@@ -4,21 +4,38 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace dcem::io {
 
-/// Appends `value` with the fewest digits that read back as the same double, "0" also for −0. Appends nothing where
-/// the value is not finite; returns whether it did append.
+/// The text of a number, where it stands without asking for memory.
+class NumberText {
+ public:
+  /// The fewest digits that read back as the same double, "0" also for −0; nothing where the value is not finite.
+  explicit NumberText(double value) : value_(value) {
+    if (!std::isfinite(value)) return;
+    // Adding +0 turns −0 into +0 and leaves every other number as it is.
+    size_ = static_cast<std::size_t>(std::to_chars(digits_.data(), digits_.data() + digits_.size(), value + 0.0).ptr -
+                                     digits_.data());
+  }
+
+  double value() const { return value_; }
+  std::string_view text() const { return {digits_.data(), size_}; }
+
+ private:
+  double value_;
+  std::size_t size_ = 0;
+  std::array<char, 32> digits_{};
+};
+
+/// Appends `value` as `NumberText` has it; returns whether there was anything to append.
 inline bool append_number(std::string& text, double value) {
-  if (!std::isfinite(value)) return false;
-  std::array<char, 32> digits{};
-  // Adding +0 turns −0 into +0 and leaves every other number as it is.
-  const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value + 0.0);
-  text.append(digits.data(), written.ptr);
-  return true;
+  const NumberText number(value);
+  text += number.text();
+  return !number.text().empty();
 }
 
 template <std::integral Integer>
@@ -43,10 +60,14 @@ class CsvLine {
  public:
   /// Appends to `text`.
   explicit CsvLine(std::string& text) : text_(text) {}
+  /// Appends to a line that has begun; `begun` holds its first fields.
+  CsvLine(std::string& text, std::string_view begun) : text_(text), first_(false) { text_ += begun; }
 
+  /// Of one direct path power and delay stand in several columns: the same number is not worked out again.
   CsvLine& number(double value) {
     separate();
-    append_number(text_, value);
+    if (!(value == last_.value())) last_ = NumberText(value);  // what is not a number is not itself
+    text_ += last_.text();
     return *this;
   }
   CsvLine& number(const std::optional<double>& value) { return value ? number(*value) : empty(); }
@@ -77,6 +98,7 @@ class CsvLine {
 
   std::string& text_;
   bool first_ = true;
+  NumberText last_{0.0};
 };
 
 }  // namespace dcem::io
