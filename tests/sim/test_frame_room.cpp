@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dcem/sim/detail/frame_links.hpp"
+#include "dcem/sim/detail/receiver_memory.hpp"
 #include "dcem/sim/simulator.hpp"
 #include "tests/support/memory_trial.hpp"
 
@@ -107,27 +108,36 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "direct paths alone: the first frame in which nothing has changed solves them, those after it take them over") {
-  const Scene scene = crowd(12);
-  Simulator simulator(scene, direct_paths(2));
-  Simulator expected(scene, with_cache(direct_paths(1), CacheMode::off));
-  REQUIRE(simulator.cache() == CacheMode::exact);
-  const auto step = [&](double time_s, std::size_t index) {
-    FrameResult result = simulator.advance_to(time_s, index);
-    CHECK((bits(scene, result.links) == bits(scene, expected.advance_to(time_s, index).links)));
-    return result;
-  };
-  CHECK(step(0.0, 0).work.legs > 0);
-  CHECK(step(0.0, 1).work.legs == 0);  // nothing was known of a frame before the first: it was kept
-  CHECK(step(0.1, 2).work.legs > 0);
-  CHECK(step(0.2, 3).work.legs > 0);
-  const FrameResult solved = step(0.2, 4);
-  CHECK(solved.work.legs > 0);
-  CHECK(solved.cache.born + solved.cache.died == 0);
-  const FrameResult taken_over = step(0.2, 5);
-  CHECK(taken_over.work.legs == 0);
-  CHECK(taken_over.cache.taken_over == taken_over.work.paths);
-  CHECK(step(0.3, 6).work.legs > 0);
+    "a frame in which nothing has changed takes direct paths over from the one before; of very many transmitters from "
+    "the "
+    "second such frame on") {
+  for (const std::size_t devices : {std::size_t{12}, detail::very_many_transmitters}) {
+    const bool are_very_many = devices > 12;
+    CAPTURE(devices);
+    const Scene scene = crowd(devices);
+    SimulationSettings settings = direct_paths(2);
+    settings.links.range_m = 30.0;
+    Simulator simulator(scene, settings);
+    Simulator expected(scene, with_cache(settings, CacheMode::off));
+    REQUIRE(simulator.cache() == CacheMode::exact);
+    const auto step = [&](double time_s, std::size_t index) {
+      FrameResult result = simulator.advance_to(time_s, index);
+      CHECK((bits(scene, result.links) == bits(scene, expected.advance_to(time_s, index).links)));
+      return result;
+    };
+    CHECK(step(0.0, 0).work.legs > 0);
+    CHECK(step(0.0, 1).work.legs == 0);
+    CHECK(step(0.1, 2).work.legs > 0);
+    const FrameResult moved = step(0.2, 3);
+    CHECK(moved.work.legs > 0);
+    const FrameResult still = step(0.2, 4);
+    CHECK(still.work.legs == (are_very_many ? moved.work.legs : 0));
+    CHECK(still.cache.born + still.cache.died == 0);
+    const FrameResult still_again = step(0.2, 5);
+    CHECK(still_again.work.legs == 0);
+    CHECK(still_again.cache.taken_over == still_again.work.paths);
+    CHECK(step(0.3, 6).work.legs > 0);
+  }
 }
 
 TEST_CASE("each receiver is taken once, those with most links first") {

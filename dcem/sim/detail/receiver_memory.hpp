@@ -39,6 +39,10 @@ inline constexpr double remembered_receiver_bytes = 5e6, remembered_link_bytes =
 /// two seconds lie five for each of them.
 inline constexpr std::size_t known_places_per_receiver = 6;
 
+/// Of so many transmitters direct paths, 2 µs each, are not kept from one frame in which bodies change to the next: the
+/// first frame in which none does solves them once more, and keeps them.
+inline constexpr std::size_t very_many_transmitters = 512;
+
 /// One link in the frame before.
 struct LinkMemory {
   std::unique_ptr<LinkResult> result;       ///< none: the link was not there, or only `paths` are remembered of it

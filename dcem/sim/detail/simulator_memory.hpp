@@ -241,16 +241,16 @@ void BasicSimulator<Surface, Index>::check_some(const Device& receiver, std::siz
   }
 }
 
-/// All links of a receiver from scratch, where sequences are not joined from halves. Of direct paths alone, 2 µs each,
-/// no more is remembered than which there are as long as bodies change from frame to frame: where links are very many,
-/// memory costs more than they. The first frame without change solves and keeps them.
+/// All links of a receiver from scratch, where sequences are not joined from halves. Of direct paths alone, where links
+/// are very many, no more is remembered than which there are as long as bodies change: memory costs more than they do.
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::Spent BasicSimulator<Surface, Index>::solve_again(
     const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room,
     const LinkSlots& links) {
   Spent spent = solve_receiver(receiver, index, transmitters, nullptr, {room}, links);
   std::vector<detail::LinkMemory>& known = receivers_[index].links;
-  const bool keeps_paths_alone = change_->any() && interaction_order(settings_.propagation) == 0;
+  const bool keeps_paths_alone = change_->any() && interaction_order(settings_.propagation) == 0 &&
+                                 scene_.transmitters().size() >= detail::very_many_transmitters;
   std::size_t found = 0;
   for (std::size_t transmitter = 0; transmitter < known.size(); ++transmitter) {
     detail::LinkMemory& memory = known[transmitter];
