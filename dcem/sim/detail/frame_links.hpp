@@ -2,6 +2,7 @@
 /// The links of a frame: in which order threads take them, and in which they stand.
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,7 @@ class LinkSlots {
   /// One after the other.
   explicit LinkSlots(std::span<LinkResult> links) : links_(links) {}
   /// `places`: where they stand in `links`.
-  LinkSlots(std::span<LinkResult> links, std::span<const std::size_t> places) : links_(links), places_(places) {}
+  LinkSlots(std::span<LinkResult> links, std::span<const std::uint32_t> places) : links_(links), places_(places) {}
 
   std::size_t size() const { return places_.empty() ? links_.size() : places_.size(); }
   LinkResult& operator[](std::size_t index) const { return links_[places_.empty() ? index : places_[index]]; }
@@ -36,7 +37,7 @@ class LinkSlots {
 
  private:
   std::span<LinkResult> links_;
-  std::span<const std::size_t> places_;
+  std::span<const std::uint32_t> places_;
 };
 
 /// All links of a frame, by transmitter, then receiver. Each is solved where it stays.
@@ -50,8 +51,8 @@ class FrameLinks {
 
  private:
   std::vector<LinkResult> links_;
-  std::vector<std::size_t> first_;   ///< of each receiver in `places_`, and the end
-  std::vector<std::size_t> places_;  ///< by receiver, then transmitter
+  std::vector<std::size_t> first_;           ///< of each receiver in `places_`, and the end
+  std::unique_ptr<std::uint32_t[]> places_;  ///< by receiver, then transmitter
 };
 
 /// So many paths of a link that nobody needs any more are kept as room for others. Those of a frame with more, which

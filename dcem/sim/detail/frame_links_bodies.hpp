@@ -104,13 +104,13 @@ DCEM_INLINE FrameLinks::FrameLinks(LinkLists transmitters_of, std::vector<LinkRe
   ThreadPool& threads = count < many_links ? alone : pool;
   make_room(links_, count, threads);
   links_.resize(count);
-  places_.resize(count);
+  places_ = std::make_unique_for_overwrite<std::uint32_t[]>(count);
   RunsOfReceivers runs(transmitters_of, threads);
   threads.for_each(runs.size(), [&](std::size_t run, unsigned) {
     for (std::size_t receiver = runs.first_receiver(run); receiver < runs.first_receiver(run + 1); ++receiver) {
       std::size_t next = first_[receiver];
       for (const std::uint32_t transmitter : transmitters_of[receiver]) {
-        places_[next++] = runs.next_place(run, transmitter);
+        places_[next++] = static_cast<std::uint32_t>(runs.next_place(run, transmitter));
       }
     }
   });
@@ -119,7 +119,7 @@ DCEM_INLINE FrameLinks::FrameLinks(LinkLists transmitters_of, std::vector<LinkRe
 DCEM_INLINE LinkSlots FrameLinks::of(std::size_t receiver) {
   const std::size_t first = first_[receiver], count = first_[receiver + 1] - first;
   if (count == 0) return LinkSlots(std::span<LinkResult>());
-  return {links_, std::span(places_).subspan(first, count)};
+  return {links_, std::span(places_.get() + first, count)};
 }
 
 DCEM_INLINE std::vector<LinkResult> room_of(std::vector<LinkResult>&& links, ThreadPool& pool) {

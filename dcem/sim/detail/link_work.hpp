@@ -34,10 +34,11 @@ struct Solved {
   Spent spent;
 };
 
-/// Those of a frame; `by_receiver`: what each receiver took, `of_transmitters` beside.
-inline Solved solved(FrameLinks&& links, std::span<const Spent> by_receiver, const WorkCounters& of_transmitters) {
+/// Those of a frame; `by_worker`: what the receivers took that each thread has solved, `of_transmitters` beside. Sums
+/// of counts, and the largest of a figure, do not depend on which those are.
+inline Solved solved(FrameLinks&& links, std::span<const Spent> by_worker, const WorkCounters& of_transmitters) {
   Solved all{std::move(links).take(), {of_transmitters, {}}};
-  for (const Spent& one : by_receiver) all.spent += one;
+  for (const Spent& one : by_worker) all.spent += one;
   return all;
 }
 

@@ -63,11 +63,11 @@ std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const De
     of_one.erase(std::unique(of_one.begin(), of_one.end()), of_one.end());
   }
   detail::FrameLinks links(wanted, {}, *pool_);
-  std::vector<Spent> spent(receivers.size());
+  std::vector<Spent> spent(pool_->size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
   pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
-    spent[index] = solve_receiver(receivers[index], index, ends.only(wanted[index]), nullptr,
-                                  {rooms.empty() ? nullptr : &rooms[worker]}, links.of(index));
+    spent[worker] += solve_receiver(receivers[index], index, ends.only(wanted[index]), nullptr,
+                                    {rooms.empty() ? nullptr : &rooms[worker]}, links.of(index));
   });
   Solved solved = detail::solved(std::move(links), spent, ends.work);
   if (work != nullptr) *work += solved.spent.work;
@@ -96,19 +96,19 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const bool takes_all = !is_of_frame || choice_.takes_all();
   const LinkListsOfAll all = takes_all ? all_links(receivers, transmitters) : LinkListsOfAll{};
   detail::FrameLinks links(takes_all ? all : chosen_, {}, *pool_);
-  std::vector<Spent> spent(receivers.size());
+  std::vector<Spent> spent(pool_->size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
   pool_->for_each(receivers.size(), [&](std::size_t index, unsigned worker) {
     PathCache* cache = caches.empty() ? nullptr : &caches[index];
     const Proposals proposals{rooms.empty() ? nullptr : &rooms[worker]};
     const LinkSlots slots = links.of(index);
     if (takes_all) {
-      spent[index] = solve_receiver(receivers[index], index, transmitters, cache, proposals, slots);
+      spent[worker] += solve_receiver(receivers[index], index, transmitters, cache, proposals, slots);
       return;
     }
-    const std::size_t gone = cache != nullptr ? cache->select(chosen_[index]) : 0;
-    spent[index] = solve_receiver(receivers[index], index, transmitters.only(chosen_[index]), cache, proposals, slots);
-    spent[index].cache.died += gone;
+    if (cache != nullptr) spent[worker].cache.died += cache->select(chosen_[index]);
+    spent[worker] +=
+        solve_receiver(receivers[index], index, transmitters.only(chosen_[index]), cache, proposals, slots);
   });
   return detail::solved(std::move(links), spent, transmitters.work);
 }

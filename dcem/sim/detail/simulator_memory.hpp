@@ -82,16 +82,16 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const LinkListsOfAll all = takes_all ? all_links(receivers, transmitters) : LinkListsOfAll{};
   const LinkListsOfAll& lists = takes_all ? all : chosen_;
   detail::FrameLinks links(lists, std::move(room_), *pool_);
-  std::vector<Spent> spent(receivers.size());
+  std::vector<Spent> spent(pool_->size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
   const std::vector<std::size_t> order = detail::busiest_first(lists);
   pool_->for_each(receivers.size(), [&](std::size_t place, unsigned worker) {
     const std::size_t index = order[place];
     ReceiverRoom* const room = rooms.empty() ? nullptr : &rooms[worker];
     const Device& receiver = receivers[index];
-    spent[index] = takes_all
-                       ? follow_receiver(receiver, index, transmitters, room, links.of(index))
-                       : follow_receiver(receiver, index, transmitters.only(chosen_[index]), room, links.of(index));
+    spent[worker] += takes_all
+                         ? follow_receiver(receiver, index, transmitters, room, links.of(index))
+                         : follow_receiver(receiver, index, transmitters.only(chosen_[index]), room, links.of(index));
   });
   return detail::solved(std::move(links), spent, transmitters.work);
 }
