@@ -147,19 +147,12 @@ inline void ThreadPool::wake(std::size_t calls) {
 inline void ThreadPool::close(Loop& loop) {
   std::unique_lock lock(mutex_);
   std::erase(open_, &loop);
-  if (loop.helpers == 0) return;
-  const double begun_s = thread_time_s();
-  double helped_s = 0.0;
   while (loop.helpers > 0) {
     caller_may_help_ = caller_may_help_ || !is_within();
     done_.wait(lock, [&] { return loop.helpers == 0 || (!is_within() && !open_.empty()); });
-    if (loop.helpers > 0) helped_s += help(lock, loop.owner).busy_s;
+    if (loop.helpers > 0) detail::asked_work.own_s += help(lock, loop.owner).busy_s;
   }
   if (!is_within()) caller_may_help_ = false;
-  // To fall asleep and wake up is time of the loop: others are still at work, and nobody waits for it.
-  const double waited_s = thread_time_s() - begun_s;
-  detail::asked_work.own_s += waited_s;
-  detail::asked_work.all_s += waited_s - helped_s;
 }
 
 inline void ThreadPool::start(std::size_t workers) {

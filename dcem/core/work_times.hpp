@@ -11,7 +11,7 @@ namespace dcem {
 /// Work of one thread and of all that helped it, since it began.
 struct WorkTimes {
   double serial_s = 0.0;         ///< processor time of the thread outside of loops
-  double parallel_s = 0.0;       ///< processor time of all threads within its loops, waiting for the last one included
+  double parallel_s = 0.0;       ///< processor time of all threads within its loops
   double beside_s = 0.0;         ///< processor time of threads that read and wrote beside it
   double longest_tasks_s = 0.0;  ///< processor time of the longest iteration of each loop: no loop ends before it
 

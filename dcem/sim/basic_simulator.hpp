@@ -198,6 +198,7 @@ class BasicSimulator {
   LinkResult follow_link(FollowedLink& link, const KeptHalf& half, bool fields_stay) const;
   void check_some(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room,
                   const LinkSlots& links) const;
+  bool has_plain_links() const;
   Spent solve_again(const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, ReceiverRoom* room,
                     const LinkSlots& links);
   void look_from_receiver(Following& following, detail::ReceiverMemory& memory, ReceiverRoom& room, bool stands) const;

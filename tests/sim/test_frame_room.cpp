@@ -109,8 +109,7 @@ TEST_CASE(
 
 TEST_CASE(
     "a frame in which nothing has changed takes direct paths over from the one before; of very many transmitters from "
-    "the "
-    "second such frame on") {
+    "the second such frame on") {
   for (const std::size_t devices : {std::size_t{12}, detail::very_many_transmitters}) {
     const bool are_very_many = devices > 12;
     CAPTURE(devices);

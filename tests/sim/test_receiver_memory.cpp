@@ -80,6 +80,21 @@ TEST_CASE("births and deaths are the same, whether links are remembered or their
   }
 }
 
+TEST_CASE("a direct path that a pane comes before, or leaves, is the same path") {
+  LinkResult open = link_over(1), through_pane = link_over(1);
+  through_pane.paths[0].path.interactions.push_back({InteractionKind::transmission, FacetId(3)});
+  for (const bool whole : {false, true}) {
+    for (const bool comes : {false, true}) {
+      const LinkResult& before = comes ? open : through_pane;
+      detail::LinkMemory memory;
+      whole ? memory.keep(before) : memory.keep_paths(before);
+      CacheCounters counters;
+      memory.count_births(comes ? through_pane : open, counters);
+      CHECK(counters.born + counters.died == 0);
+    }
+  }
+}
+
 TEST_CASE("where bodies are many, only who stays in a place for long is followed through places") {
   CHECK(detail::longest_pooled_step_m(0) == 2.0);
   CHECK(detail::longest_pooled_step_m(20) >= 1.4);    // a street with some cars, at 50 km/h

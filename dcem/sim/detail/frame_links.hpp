@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dcem/core/thread_pool.hpp"
@@ -25,19 +26,21 @@ std::vector<std::size_t> busiest_first(LinkLists transmitters_of);
 class LinkSlots {
  public:
   /// One after the other.
-  explicit LinkSlots(std::span<LinkResult> links) : links_(links) {}
-  /// `places`: where they stand in `links`.
-  LinkSlots(std::span<LinkResult> links, std::span<const std::uint32_t> places) : links_(links), places_(places) {}
+  explicit LinkSlots(std::span<LinkResult> links) : links_(links.data()), size_(links.size()) {}
+  /// So many in a list, at `places`.
+  LinkSlots(LinkResult* links, const std::uint32_t* places, std::size_t size)
+      : links_(links), places_(places), size_(size) {}
 
-  std::size_t size() const { return places_.empty() ? links_.size() : places_.size(); }
-  LinkResult& operator[](std::size_t index) const { return links_[places_.empty() ? index : places_[index]]; }
+  std::size_t size() const { return size_; }
+  LinkResult& operator[](std::size_t index) const { return links_[places_ == nullptr ? index : places_[index]]; }
   /// Says that links soon after this one will be written, first they and then the paths that they hold: of many
   /// vehicles they are far from each other, and long out of every cache.
   void fetch_after(std::size_t index) const;
 
  private:
-  std::span<LinkResult> links_;
-  std::span<const std::uint32_t> places_;
+  LinkResult* links_;
+  const std::uint32_t* places_ = nullptr;
+  std::size_t size_;
 };
 
 /// All links of a frame, by transmitter, then receiver. Each is solved where it stays.

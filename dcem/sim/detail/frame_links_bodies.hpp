@@ -117,17 +117,18 @@ DCEM_INLINE FrameLinks::FrameLinks(LinkLists transmitters_of, std::vector<LinkRe
 }
 
 DCEM_INLINE LinkSlots FrameLinks::of(std::size_t receiver) {
-  const std::size_t first = first_[receiver], count = first_[receiver + 1] - first;
-  if (count == 0) return LinkSlots(std::span<LinkResult>());
-  return {links_, std::span(places_.get() + first, count)};
+  const std::size_t first = first_[receiver];
+  return {links_.data(), places_.get() + first, first_[receiver + 1] - first};
 }
 
 DCEM_INLINE std::vector<LinkResult> room_of(std::vector<LinkResult>&& links, ThreadPool& pool) {
   if (links.size() < many_links) return {};
-  pool.for_each_tiny(links.size(), [&](std::size_t link) {
+  constexpr std::size_t at_once = 512;  // of some nothing is asked but how much they hold; others are given up
+  const auto look = [&](std::size_t link) {
     const LinkResult& spent = links[link];
     if (spent.paths.capacity() > paths_kept_as_room || !spent.diffuse.tiles.empty()) links[link] = {};
-  });
+  };
+  pool.for_each_quick(links.size(), look, at_once);
   return std::move(links);
 }
 

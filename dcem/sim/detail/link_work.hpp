@@ -36,7 +36,7 @@ struct Solved {
 
 /// Those of a frame; `by_worker`: what the receivers took that each thread has solved, `of_transmitters` beside. Sums
 /// of counts, and the largest of a figure, do not depend on which those are.
-inline Solved solved(FrameLinks&& links, std::span<const Spent> by_worker, const WorkCounters& of_transmitters) {
+inline Solved sum_up(FrameLinks&& links, std::span<const Spent> by_worker, const WorkCounters& of_transmitters) {
   Solved all{std::move(links).take(), {of_transmitters, {}}};
   for (const Spent& one : by_worker) all.spent += one;
   return all;

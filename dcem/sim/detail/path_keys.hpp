@@ -10,7 +10,8 @@
 
 namespace dcem::detail {
 
-/// Sequences by their hashes; the direct path, which most links of a fleet have and no other, needs none.
+/// Sequences by their hashes; the direct path, through sheets or not, which most links of a fleet have and no other,
+/// needs none.
 class PathKeys {
  public:
   PathKeys() = default;

@@ -12,10 +12,11 @@ namespace dcem::detail {
 DCEM_INLINE void PathKeys::assign(std::span<const PathContribution> paths) {
   clear();
   for (const PathContribution& path : paths) {
-    if (path.path.interactions.empty()) {
+    const Sequence sequence = sequence_of(path.path);  // transmissions are no part of it
+    if (sequence.empty()) {
       has_direct_ = true;
     } else {
-      others_.push_back(SequenceHash()(sequence_of(path.path)));
+      others_.push_back(SequenceHash()(sequence));
     }
   }
   std::ranges::sort(others_);

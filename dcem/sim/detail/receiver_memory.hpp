@@ -9,7 +9,6 @@
 
 #include "dcem/field/path_contribution.hpp"
 #include "dcem/paths/discover/cache_counters.hpp"
-#include "dcem/paths/discover/path_cache.hpp"
 #include "dcem/paths/halves/kept_half.hpp"
 #include "dcem/paths/memory/pooled_link.hpp"
 #include "dcem/paths/memory/standing_link.hpp"

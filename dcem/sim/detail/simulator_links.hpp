@@ -55,13 +55,13 @@ std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const De
     wanted[receiver].push_back(static_cast<std::uint32_t>(transmitter));
   }
   const TransmitterEnds ends = transmitter_ends(transmitters, receivers.size());
-  for (std::size_t index = 0; index < receivers.size(); ++index) {
+  pool_->for_each_quick(receivers.size(), [&](std::size_t index) {
     std::vector<std::uint32_t>& of_one = wanted[index];
     const bool is_there = state_of(receivers[index]).present;
     std::erase_if(of_one, [&](std::uint32_t transmitter) { return !is_there || !ends.link[transmitter]; });
     std::sort(of_one.begin(), of_one.end());
     of_one.erase(std::unique(of_one.begin(), of_one.end()), of_one.end());
-  }
+  });
   detail::FrameLinks links(wanted, {}, *pool_);
   std::vector<Spent> spent(pool_->size());
   std::vector<ReceiverRoom> rooms = receiver_rooms();
@@ -69,7 +69,7 @@ std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const De
     spent[worker] += solve_receiver(receivers[index], index, ends.only(wanted[index]), nullptr,
                                     {rooms.empty() ? nullptr : &rooms[worker]}, links.of(index));
   });
-  Solved solved = detail::solved(std::move(links), spent, ends.work);
+  Solved solved = detail::sum_up(std::move(links), spent, ends.work);
   if (work != nullptr) *work += solved.spent.work;
   return std::move(solved.links);
 }
@@ -110,7 +110,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     spent[worker] +=
         solve_receiver(receivers[index], index, transmitters.only(chosen_[index]), cache, proposals, slots);
   });
-  return detail::solved(std::move(links), spent, transmitters.work);
+  return detail::sum_up(std::move(links), spent, transmitters.work);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -118,9 +118,10 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
     const Device& receiver, std::size_t index, const TransmitterEnds& transmitters, const Proposals& proposals) const {
   std::vector<std::optional<LinkEnd>> others;
   const std::span<const std::optional<LinkEnd>> ends = ends_beside(receiver, transmitters, others);
+  const auto is_there = [](const std::optional<LinkEnd>& end) { return end.has_value(); };
   Solved solved;
   if (state_of(receiver).present) {
-    for (const std::optional<LinkEnd>& end : ends) solved.links.resize(solved.links.size() + (end ? 1 : 0));
+    solved.links.resize(static_cast<std::size_t>(std::ranges::count_if(ends, is_there)));
   }
   solved.spent = solve_receiver(receiver, index, transmitters, nullptr, proposals, LinkSlots(solved.links));
   return solved;

@@ -93,7 +93,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
                          ? follow_receiver(receiver, index, transmitters, room, links.of(index))
                          : follow_receiver(receiver, index, transmitters.only(chosen_[index]), room, links.of(index));
   });
-  return detail::solved(std::move(links), spent, transmitters.work);
+  return detail::sum_up(std::move(links), spent, transmitters.work);
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -149,9 +149,11 @@ typename BasicSimulator<Surface, Index>::Spent BasicSimulator<Surface, Index>::f
     if (transmitter_rests_[number] == 0) link.pooled.reset();
     if (stays(transmitter)) {
       spent.cache.taken_over += link.result->paths.size();
+      DCEM_ASSERT(count < links.size());
       links[count++] = *link.result;
     } else {
       to_follow.push_back({transmitter, count, rests, rests && is_same && transmitter_is_same_[number] != 0});
+      DCEM_ASSERT(count < links.size());
       links[count++].receiver = index;
     }
   }
@@ -241,6 +243,15 @@ void BasicSimulator<Surface, Index>::check_some(const Device& receiver, std::siz
   }
 }
 
+/// Whether links are direct paths and nothing else, and so many that to remember them costs more than to solve them.
+template <SurfaceModel Surface, SpatialIndex Index>
+bool BasicSimulator<Surface, Index>::has_plain_links() const {
+  const PropagationSettings& propagation = settings_.propagation;
+  return interaction_order(propagation) == 0 && !propagation.diffuse.enabled &&
+         propagation.antenna_array != ArrayChannel::exact &&
+         scene_.transmitters().size() >= detail::very_many_transmitters;
+}
+
 /// All links of a receiver from scratch, where sequences are not joined from halves. Of direct paths alone, where links
 /// are very many, no more is remembered than which there are as long as bodies change: memory costs more than they do.
 template <SurfaceModel Surface, SpatialIndex Index>
@@ -249,8 +260,7 @@ typename BasicSimulator<Surface, Index>::Spent BasicSimulator<Surface, Index>::s
     const LinkSlots& links) {
   Spent spent = solve_receiver(receiver, index, transmitters, nullptr, {room}, links);
   std::vector<detail::LinkMemory>& known = receivers_[index].links;
-  const bool keeps_paths_alone = change_->any() && interaction_order(settings_.propagation) == 0 &&
-                                 scene_.transmitters().size() >= detail::very_many_transmitters;
+  const bool keeps_paths_alone = change_->any() && has_plain_links();
   std::size_t found = 0;
   for (std::size_t transmitter = 0; transmitter < known.size(); ++transmitter) {
     detail::LinkMemory& memory = known[transmitter];

@@ -66,7 +66,7 @@ class CsvLine {
   /// Of one direct path power and delay stand in several columns: the same number is not worked out again.
   CsvLine& number(double value) {
     separate();
-    if (!(value == last_.value())) last_ = NumberText(value);  // what is not a number is not itself
+    if (value != last_.value()) last_ = NumberText(value);
     text_ += last_.text();
     return *this;
   }
