@@ -44,11 +44,6 @@ class ThreadPool {
   /// is to take some ten microseconds: shorter ones cost more than they bring where threads are many.
   template <typename Body>
   void for_each_quick(std::size_t count, Body&& body, std::size_t block = 64);
-  /// The same for iterations of a few nanoseconds.
-  template <typename Body>
-  void for_each_tiny(std::size_t count, Body&& body) {
-    for_each_quick(count, body, 2048);
-  }
 
  private:
   using Loop = detail::PoolLoop;

@@ -123,7 +123,7 @@ DCEM_INLINE LinkSlots FrameLinks::of(std::size_t receiver) {
 
 DCEM_INLINE std::vector<LinkResult> room_of(std::vector<LinkResult>&& links, ThreadPool& pool) {
   if (links.size() < many_links) return {};
-  constexpr std::size_t at_once = 512;  // of some nothing is asked but how much they hold; others are given up
+  constexpr std::size_t at_once = 512;  // most are asked how much they hold, and no more
   const auto look = [&](std::size_t link) {
     const LinkResult& spent = links[link];
     if (spent.paths.capacity() > paths_kept_as_room || !spent.diffuse.tiles.empty()) links[link] = {};

@@ -164,9 +164,9 @@ void RunJournal::add(const FrameResult& frame) {
 
 void RunJournal::add(const FrameFigures& figures, std::span<const LinkResult> links, const LinePieces& lines) {
   std::vector<LinkRequest> of_lines(links.size());
-  pool().for_each_tiny(links.size(), [&](std::size_t index) {
-    of_lines[index] = {links[index].transmitter, links[index].receiver};
-  });
+  constexpr std::size_t at_once = 2048;
+  const auto note = [&](std::size_t index) { of_lines[index] = {links[index].transmitter, links[index].receiver}; };
+  pool().for_each_quick(links.size(), note, at_once);
   std::vector<std::string> heads(lines->size());
   pool().for_each(heads.size(),
                   [&](std::size_t index, unsigned) { heads[index] = piece_head(lines_piece, (*lines)[index]); });
