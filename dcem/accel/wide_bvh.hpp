@@ -25,6 +25,7 @@
 #include "dcem/accel/wide/arrays.hpp"
 #include "dcem/accel/wide/trace/kernels.hpp"
 #include "dcem/accel/wide/update/degradation.hpp"
+#include "dcem/accel/wide/update/loose_nodes.hpp"
 #include "dcem/accel/wide/validate.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/ray.hpp"
@@ -192,12 +193,12 @@ class WideBvh {
   bool are_plain(std::span<const std::uint32_t> moved, Boxes boxes, ThreadPool& pool);
   void write_dirty_leaves(std::span<const Vec3> from_m, WideRefitReport& report);
   void write_dirty_leaves(std::span<const Vec3> from_m, WideRefitReport& report, ThreadPool& pool);
-  void take_leaf(std::uint32_t leaf, const Aabb<float>& box, WideRefitReport& report);
+  void take_leaf(std::uint32_t leaf, const Aabb<float>& box);
   void mark_dirty(std::span<const std::uint32_t> moved);
   void note_moved_object(std::uint32_t object);
   bool reinsert(std::uint32_t object);
   std::size_t reinsert_together(std::span<const std::uint32_t> objects, ThreadPool* pool);
-  void detach(NodeLane place);
+  std::uint32_t detach(NodeLane place);
   /// A node where something might be inserted, and what the nodes down to it would grow by.
   struct Branch {
     double cost_m2;
@@ -256,6 +257,7 @@ class WideBvh {
   std::vector<std::uint32_t> first_quad_;  ///< one more entry than objects
   double sah_at_build_ = 0.0;
 
+  detail::LooseNodes loose_nodes_;
   std::vector<std::uint32_t> dirty_leaves_;
   std::vector<char> leaf_is_dirty_, is_there_now_;
   // Where threads share the work:

@@ -124,9 +124,10 @@ DCEM_INLINE std::size_t WideBvh::reinsert_together(std::span<const std::uint32_t
     const NodeLane place = arrays_.place_of(arrays_.object_root[object]);
     const Aabb<float> box = arrays_.box_at(place);
     if (box.empty()) continue;
-    detach(place);
+    loose_nodes_.add(detach(place));
     loose.push_back({object, box});
   }
+  loose_nodes_.tighten_all(arrays_);
   const std::size_t count = loose.size();
   while (!loose.empty()) {
     find_spots(loose, pool);
@@ -159,7 +160,7 @@ DCEM_INLINE bool WideBvh::reinsert(std::uint32_t object) {
   const NodeLane place = arrays_.place_of(root);
   const Aabb<float> box = arrays_.box_at(place);
   if (box.empty()) return false;
-  detach(place);
+  arrays_.tighten_above(detach(place));
   insert(object, box, cheapest_spot(box, branches_));
   return true;
 }
@@ -170,14 +171,14 @@ DCEM_INLINE void WideBvh::insert(std::uint32_t object, const Aabb<float>& box, c
   area_when_inserted_m2_[object] = arrays_.nodes[arrays_.place_of(root).node()].box().half_area();
 }
 
-/// Empties a lane. A node that is left with one entry gives its place to that entry.
-DCEM_INLINE void WideBvh::detach(NodeLane place) {
+/// Empties a lane. A node that is left with one entry gives its place to that entry. Returns the node above which boxes
+/// are to be made tight.
+DCEM_INLINE std::uint32_t WideBvh::detach(NodeLane place) {
   arrays_.attach({}, place, {});
   const std::uint32_t node = place.node();
   if (node == 0 || arrays_.nodes[node].child_count() > 1) {
-    arrays_.tighten_above(node);
     degradation_.touch(node);
-    return;
+    return node;
   }
   const NodeLane above = arrays_.lane_of_node[node];
   std::uint32_t lane = 0;
@@ -188,8 +189,8 @@ DCEM_INLINE void WideBvh::detach(NodeLane place) {
   arrays_.attach(left, above, box);
   arrays_.lane_of_node[node] = {};
   arrays_.free_nodes.push_back(node);
-  arrays_.tighten_above(above.node());
   degradation_.touch(above.node());
+  return above.node();
 }
 
 /// Offers the lanes of one node: a free one, or an entry that is not divided further, to be joined under a new node, as

@@ -42,8 +42,9 @@ DCEM_INLINE void WideBvh::write_dirty_leaves(std::span<const Vec3> from_m, WideR
     }
     const std::uint32_t leaf = dirty_leaves_[index];
     arrays_.copy_vertices(leaf, from_m);
-    take_leaf(leaf, arrays_.write_leaf(leaf), report);
+    take_leaf(leaf, arrays_.write_leaf(leaf));
   }
+  report.nodes_visited += loose_nodes_.tighten_all(arrays_);
 }
 
 /// Vertices first: leaves may have some in common.
@@ -55,18 +56,19 @@ DCEM_INLINE void WideBvh::write_dirty_leaves(std::span<const Vec3> from_m, WideR
                       [&](std::size_t index) { dirty_boxes_[index] = arrays_.write_leaf(dirty_leaves_[index]); });
   for (std::size_t index = 0; index < dirty_leaves_.size(); ++index) {
     if (settings_.fetch_ahead && index + 2 < dirty_leaves_.size()) arrays_.fetch_node_of(dirty_leaves_[index + 2]);
-    take_leaf(dirty_leaves_[index], dirty_boxes_[index], report);
+    take_leaf(dirty_leaves_[index], dirty_boxes_[index]);
   }
+  report.nodes_visited += loose_nodes_.tighten_all(arrays_);
 }
 
-/// Hangs a leaf that has been written into the tree.
-DCEM_INLINE void WideBvh::take_leaf(std::uint32_t leaf, const Aabb<float>& box, WideRefitReport& report) {
+/// Hangs a leaf that has been written into the tree; what is above it is tightened later, with all of them.
+DCEM_INLINE void WideBvh::take_leaf(std::uint32_t leaf, const Aabb<float>& box) {
   leaf_is_dirty_[leaf] = 0;
   const NodeLane place = arrays_.lane_of_leaf[leaf];
   arrays_.note_extent(box);
   if (box != arrays_.box_at(place)) {
     arrays_.set_box(place, box);
-    report.nodes_visited += arrays_.tighten_above(place.node());
+    loose_nodes_.add(place.node());
     degradation_.touch(place.node());
   }
   note_moved_object(arrays_.leaves[leaf].object);

@@ -50,14 +50,14 @@ DCEM_INLINE void WideBvh::carry_out(const detail::WideRotation& rotation, std::u
     remember_inserted(other);
   } else if (rotation.kind == Kind::up) {
     arrays_.attach(entry, own, entry_box);
-    detach(from);
+    arrays_.tighten_above(detach(from));
   } else {
     const std::uint32_t taker = other.index();
     std::uint32_t lane = 0;
     while (!arrays_.nodes[taker].child[lane].is_none()) ++lane;
     arrays_.attach(entry, NodeLane::at(taker, lane), entry_box);
     arrays_.tighten_above(taker);
-    detach(from);
+    arrays_.tighten_above(detach(from));
     degradation_.touch(taker);
   }
   remember_inserted(entry);

@@ -21,12 +21,12 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
   ends.by_id = are_of_scene ? numbers_ : std::make_shared<const detail::DeviceNumbers>(detail::numbers_by_id(devices));
   ends.embedded = std::move(embedded);
   ends.link.resize(devices.size());
-  ends.radio.assign(devices.size(), RadioEnd{});  // its axes are worked out once, not for each
+  ends.radio.resize(devices.size());
   pool_->for_each_quick(devices.size(), [&](std::size_t index) {
     const DeviceState state = state_of(devices[index]);
     TraversalCounters counters;
     if (state.present) ends.link[index] = link_end(state, counters);
-    ends.radio[index] = detail::radio_end(devices[index], state);
+    ends.radio[index].emplace(detail::radio_end(devices[index], state));
   });
   ends.reached.resize(ends.link.size());
   const PathSearchSettings search = search_settings(ends.embedded);

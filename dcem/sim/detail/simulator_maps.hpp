@@ -120,12 +120,12 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
       transmitter_ends(scene_.transmitters(), size, {}, {},
                        looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
   // Maps hold no channel between elements, and their powers are those of one: none is computed.
-  for (RadioEnd& end : transmitters.radio) end.antenna.array = {};
+  for (std::optional<RadioEnd>& end : transmitters.radio) end->antenna.array = {};
   const Tracer tracer(scene_, index_);
   std::vector<Vec3> transmitters_m;
   std::vector<RadioMap> maps;
   for (std::size_t index = 0; index < transmitters.radio.size(); ++index) {
-    if (transmitters.link[index]) transmitters_m.push_back(transmitters.radio[index].position_m);
+    if (transmitters.link[index]) transmitters_m.push_back(transmitters.radio_of(index).position_m);
     maps.push_back({order.places, scene_.transmitters()[index].id, std::vector<RadioMapPoint>(size)});
   }
   const ObstructionTest<Index> obstruction(tracer, index_, transmitters_m);

@@ -24,12 +24,12 @@ namespace dcem::detail {
 struct TransmitterEnds {
   std::span<const Device> devices;  ///< all of them
   std::vector<std::optional<LinkEnd>> link;
-  std::vector<RadioEnd> radio;        ///< of all devices; of some that were chosen see `radio_of`
-  std::vector<ReachedEdges> reached;  ///< the edges within reach; empty lists where no diffraction is wanted
-  std::vector<EdgeReach> own_reach;   ///< holds them where nothing is remembered
-  HalfRefs halves;                    ///< none where the plan has none
-  std::vector<KeptHalf> own_halves;   ///< holds them where nothing is kept
-  std::vector<char> embedded;         ///< edges that no path can use; empty where nobody has looked
+  std::vector<std::optional<RadioEnd>> radio;  ///< of all devices; of some that were chosen see `radio_of`
+  std::vector<ReachedEdges> reached;           ///< the edges within reach; empty lists where no diffraction is wanted
+  std::vector<EdgeReach> own_reach;            ///< holds them where nothing is remembered
+  HalfRefs halves;                             ///< none where the plan has none
+  std::vector<KeptHalf> own_halves;            ///< holds them where nothing is kept
+  std::vector<char> embedded;                  ///< edges that no path can use; empty where nobody has looked
   /// What each sees of surfaces, where diffuse power is asked for; none of those that are away.
   std::vector<std::shared_ptr<LitSurfaces>> surfaces;
   std::shared_ptr<const ScatteringLimits> limits;  ///< of the scene's materials, where diffuse power is asked for
@@ -41,7 +41,7 @@ struct TransmitterEnds {
   /// The number among all devices.
   std::size_t number(std::size_t index) const { return numbers.empty() ? index : numbers[index]; }
   const Device& device(std::size_t index) const { return devices[number(index)]; }
-  const RadioEnd& radio_of(std::size_t index) const { return (all != nullptr ? all->radio : radio)[number(index)]; }
+  const RadioEnd& radio_of(std::size_t index) const { return *(all != nullptr ? all->radio : radio)[number(index)]; }
   /// Some of them, for a receiver that has no links with the others. These must outlive the result.
   TransmitterEnds only(std::vector<std::uint32_t> chosen) const;
 

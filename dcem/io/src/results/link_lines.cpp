@@ -26,15 +26,13 @@ LinkLines::LinkLines(const Scene& scene, std::span<const Device> receivers) {
 }
 
 LinePieces LinkLines::pieces(const FrameResult& frame, ThreadPool& pool) const {
-  auto lines = std::make_shared<std::vector<std::string>>();
   const std::string begun = beginning(frame);
-  const auto make = [&](std::span<const LinkResult> links) {
-    std::string text;
-    for_each_link(links, [&](const LinkResult& link) { append(text, begun, link); });
-    return text;
-  };
-  in_pieces<std::string>(pool, frame.links, make, [&](std::vector<std::string>&& texts) {
-    std::ranges::move(texts, std::back_inserter(*lines));
+  const std::vector<std::span<const LinkResult>> pieces = link_pieces(frame.links);
+  auto lines = std::make_shared<std::vector<std::string>>(pieces.size());
+  pool.for_each(pieces.size(), [&](std::size_t piece, unsigned) {
+    std::string text;  // moved when it is whole: what several threads write to should not lie side by side
+    for_each_link(pieces[piece], [&](const LinkResult& link) { append(text, begun, link); });
+    (*lines)[piece] = std::move(text);
   });
   return lines;
 }

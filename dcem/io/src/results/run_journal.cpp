@@ -164,12 +164,12 @@ void RunJournal::add(const FrameResult& frame) {
 
 void RunJournal::add(const FrameFigures& figures, std::span<const LinkResult> links, const LinePieces& lines) {
   std::vector<LinkRequest> of_lines(links.size());
-  constexpr std::size_t at_once = 2048;
-  const auto note = [&](std::size_t index) { of_lines[index] = {links[index].transmitter, links[index].receiver}; };
-  pool().for_each_quick(links.size(), note, at_once);
   std::vector<std::string> heads(lines->size());
-  pool().for_each(heads.size(),
-                  [&](std::size_t index, unsigned) { heads[index] = piece_head(lines_piece, (*lines)[index]); });
+  pool().for_each(heads.size(), [&](std::size_t index, unsigned) {
+    heads[index] = piece_head(lines_piece, (*lines)[index]);
+    const std::size_t first = links.size() * index / heads.size(), last = links.size() * (index + 1) / heads.size();
+    for (std::size_t at = first; at < last; ++at) of_lines[at] = {links[at].transmitter, links[at].receiver};
+  });
   writing_->start([this, figures, of_lines = std::move(of_lines), heads = std::move(heads), lines] {
     write(first_piece(figures, of_lines, 0, heads.size()));
     for (std::size_t index = 0; index < heads.size(); ++index) {
