@@ -17,13 +17,20 @@ using TriangleCorners = std::array<Vec3, 3>;
 /// A ray prepared for the watertight test of Woop, Benthin and Wald (Journal of Computer Graphics Techniques 2(1),
 /// 2013): space is sheared so that the ray runs along one axis, and the same three products decide for both triangles
 /// of a shared edge. A ray through an edge or a corner meets at least one of the triangles there, never none; here it
-/// meets all of them (edges belong to the triangle). Needs a*b − c*d evaluated without contraction.
+/// meets all of them (edges belong to the triangle). The same goes for triangles that have no corner in common, but
+/// sides on one vertical line with the same x and y, where the ray is no steeper than `steepest`: sheared along x or y,
+/// all corners on the line have one and the same coordinate, and its sign decides. Needs a*b − c*d evaluated without
+/// contraction.
 class WatertightRay {
  public:
+  /// Space is sheared along z where the ray's direction has so many times as much of z as of x and of y.
+  static constexpr double steepest = 4.0;
+
   /// Precondition: the direction's length is at least 1e-150.
   explicit WatertightRay(const Ray<double>& ray) : origin_(ray.origin) {
     const Vec3 size = glm::abs(ray.direction);
-    z_ = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const double level = std::max(size.x, size.y);
+    z_ = size.z > steepest * level ? 2 : size.x >= size.y ? 0 : 1;
     x_ = (z_ + 1) % 3;
     y_ = (z_ + 2) % 3;
     shear_ = {ray.direction[x_] / ray.direction[z_], ray.direction[y_] / ray.direction[z_], 1.0 / ray.direction[z_]};

@@ -19,7 +19,7 @@ class Crowd {
  public:
   static constexpr std::size_t most_points = 2 * simd_lanes;
 
-  explicit Crowd(int map_pixels = 256) : sight_(map_pixels) {}
+  explicit Crowd(int map_pixels = 384) : sight_(map_pixels) {}
 
   /// Looks from 1 to `most_points` points, which touch nothing and ride on nothing.
   void look_from(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes,

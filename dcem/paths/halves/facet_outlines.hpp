@@ -13,10 +13,18 @@
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/paths/halves/cone.hpp"
+#include "dcem/paths/halves/facet_joints.hpp"
 #include "dcem/paths/halves/hull_sides.hpp"
 #include "dcem/scene/scene.hpp"
 
 namespace dcem {
+
+namespace detail {
+
+/// Facets that stray no farther from their plane are flat: 2 µm from 13 cm away are 0.002 of a pixel.
+inline constexpr double flat_facet_m = 2e-6;
+
+}  // namespace detail
 
 /// A facet as the exact search sees it. Its plane is that of the `WorldFacet`.
 struct FacetOutline {
@@ -24,8 +32,15 @@ struct FacetOutline {
   double stray_m = 0.0;     ///< how far its triangles leave its plane
   double lift_m = 0.0;      ///< what is no farther from its plane does not hide it: legs ignore it there
   bool fills_hull = false;  ///< its triangles are its convex hull, without holes or dents
+  bool is_joined = false;   ///< and without gaps where they stray from its plane
   std::uint32_t first_side = 0, side_count = 0;
 };
+
+/// Whether a facet hides what its hull does, moved in by what it strays.
+inline bool hides_as_hull(const FacetOutline& outline) {
+  constexpr double most_stray_m = 1e-3;
+  return outline.fills_hull && outline.is_joined && outline.stray_m <= most_stray_m;
+}
 
 /// The outlines of all facets, and a binary tree of boxes over those of the standing scenery; each other body has one
 /// box.
@@ -56,6 +71,9 @@ class FacetOutlines {
   std::span<const HullSide> sides(FacetId facet) const {
     return std::span(sides_).subspan(outlines_[facet.value].first_side, outlines_[facet.value].side_count);
   }
+
+  /// Those that meet a facet along a vertical line and have a higher number.
+  std::span<const FacetJoint> joints(FacetId facet) const { return joints_.of(facet); }
 
   /// Whether a point of a facet's plane is over its hull, or no farther from it than `margin_m`.
   bool is_over(FacetId facet, const Vec3& point_m, double margin_m) const {
@@ -178,6 +196,7 @@ class FacetOutlines {
   std::vector<BodyFacets> bodies_;
   std::vector<BodyId> bodies_there_;  ///< those that are not absent …
   ConeClusters body_clusters_;        ///< … and their boxes
+  FacetJoints joints_;
   Vec3 middle_m_{0.0};
   std::vector<std::pair<double, std::uint32_t>> places_;  ///< of items along an axis, while the tree grows
 };

@@ -35,6 +35,7 @@ DCEM_INLINE FacetOutlines::FacetOutlines(const Scene& scene) : outlines_(scene.f
     middle_m_ = glm::round(nodes_.front().box.center());
     lay_out_planes(scene);
   }
+  joints_.find(scene, scenery, [&](FacetId id) { return scene.facet(id).present && hides_as_hull(of(id)); });
   for (std::uint32_t body = 1; body < scene.bodies().size(); ++body) {
     const std::uint32_t first = end_of_body(scene, body - 1);
     bodies_.push_back({{}, first, end_of_body(scene, body) - first});
@@ -104,6 +105,7 @@ DCEM_INLINE void FacetOutlines::measure(const Scene& scene, std::uint32_t index)
     }
   }
   outline.fills_hull = fills_hull(triangles_m, hull_m);
+  outline.is_joined = outline.stray_m <= detail::flat_facet_m || are_joined(triangles_m, hull_m, facet.plane.normal);
   // A leg ignores what lies along its mirror within the weld tolerance, and the mirror's own triangles wherever they
   // are.
   outline.lift_m = 2.0 * scene.settings().weld_tolerance_m + 1.01 * outline.stray_m;

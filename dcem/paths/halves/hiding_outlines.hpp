@@ -10,9 +10,6 @@
 
 namespace dcem::detail {
 
-/// Triangles that leave their facet's plane by more hide as they are, not as the facet's hull. 2 µm from 13 cm away
-/// are 0.002 of a pixel.
-inline constexpr double flat_facet_m = 2e-6;
 /// A triangle by itself hides from no closer.
 inline constexpr double hiding_triangle_m = 0.01;
 

@@ -36,7 +36,45 @@ inline double doubled_overlap_m2(const std::array<Vec3, 3>& one, const std::arra
   return doubled_area_m2(shared.corners());
 }
 
+/// Whether both ends of an edge lie at one side of a convex outline.
+inline bool is_at_rim(const std::array<Vec3, 2>& edge_m, std::span<const Vec3> hull_m, const Vec3& normal) {
+  constexpr double at_m = 5e-6;  // less than what sides are moved in by at least
+  for (std::size_t corner = 0; corner < hull_m.size(); ++corner) {
+    const Vec3 &from = hull_m[corner], &to = hull_m[(corner + 1) % hull_m.size()];
+    const Vec3 across = glm::cross(normal, to - from);
+    const double reach_m2 = at_m * glm::length(across);
+    const auto is_at = [&](const Vec3& end_m) { return std::abs(glm::dot(across, end_m - from)) <= reach_m2; };
+    if (is_at(edge_m[0]) && is_at(edge_m[1])) return true;
+  }
+  return false;
+}
+
 }  // namespace detail
+
+/// Whether triangles that fill a hull have no gap between them, however far they stray from its plane: each of their
+/// edges is one of two triangles, with the same numbers, or lies at the rim.
+inline bool are_joined(std::span<const std::array<Vec3, 3>> triangles_m, std::span<const Vec3> hull_m,
+                       const Vec3& normal) {
+  using Numbers = std::array<double, 6>;
+  std::vector<Numbers> edges;
+  for (const std::array<Vec3, 3>& corners_m : triangles_m) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Vec3 &one = corners_m[corner], &other = corners_m[(corner + 1) % 3];
+      const std::array<double, 3> a{one.x, one.y, one.z}, b{other.x, other.y, other.z};
+      const auto& [first, last] = std::minmax(a, b);
+      edges.push_back({first[0], first[1], first[2], last[0], last[1], last[2]});
+    }
+  }
+  std::ranges::sort(edges);
+  for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
+    for (last = first + 1; last < edges.size() && edges[last] == edges[first];) ++last;
+    if (last - first == 2) continue;
+    const Numbers& edge = edges[first];
+    const std::array<Vec3, 2> ends_m{Vec3(edge[0], edge[1], edge[2]), Vec3(edge[3], edge[4], edge[5])};
+    if (last - first > 2 || !detail::is_at_rim(ends_m, hull_m, normal)) return false;
+  }
+  return true;
+}
 
 /// Whether triangles in a plane, all corners of which lie in a convex hull, cover all of it: together they are as
 /// large, and none lies on another one. Areas agree to rounding: a slit of a micrometre would not.

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "dcem/geometry/plane.hpp"
 
@@ -56,6 +55,15 @@ struct InsetOutline {
   }
 };
 
+/// The normals of planes through a point, of two outlines at most. No memory is shared with others who look.
+struct MovedSides {
+  std::array<Vec3, 2 * InsetOutline::capacity> normals;
+  std::size_t count = 0;
+
+  std::span<Vec3> all() { return {normals.data(), count}; }
+  std::span<const Vec3> all() const { return {normals.data(), count}; }
+};
+
 }  // namespace detail
 
 /// The sides of a convex polygon as half spaces through a point P = from_m, each moved inwards so far that what is
@@ -66,34 +74,48 @@ struct InsetOutline {
 /// the plane through P and the side has the normal N = m + (β/d) n, β being the distance of P's foot outside the side.
 /// P + δ sees a point X that lies e behind the plane inside the side if N·(X − P) ≥ e (−N·δ)/(d + n·δ). As e is less
 /// than −n·(X − P), it is enough that (N + κ n)·(X − P) ≥ 0 with κ = max(0, −N·δ/(d + n·δ)).
+/// What is said of the polygon holds of any surface over it, too, that is nowhere farther in front of the plane than
+/// `stray_m`, and not behind it: N is that of the plane or of one so much nearer, whichever turns inwards more.
+/// `left_out`: the number of a side that is not asked for.
 inline bool sides_moved_in(std::span<const Vec3> corners_m, const Plane& plane, const Vec3& from_m,
-                           std::span<const Vec3> offsets_m, std::vector<Vec3>& normals) {
+                           std::span<const Vec3> offsets_m, detail::MovedSides& result, double stray_m = 0.0,
+                           std::size_t left_out = detail::InsetOutline::capacity) {
   constexpr double hair_m = 1e-5;  // corners may be off the plane by some micrometres
-  const double height_m = signed_distance_m(plane, from_m), distance_m = std::abs(height_m);
+  const double height_m = signed_distance_m(plane, from_m), farthest_m = std::abs(height_m);
+  const double nearest_m = farthest_m - stray_m;
   const Vec3 towards = height_m > 0.0 ? plane.normal : -plane.normal;
   double reach_m = 0.0;
   for (const Vec3& offset_m : offsets_m) reach_m = std::max(reach_m, std::abs(glm::dot(towards, offset_m)));
-  if (!(distance_m > 1.001 * reach_m + hair_m) || corners_m.size() > detail::InsetOutline::capacity) return false;
+  if (!(nearest_m > 1.001 * reach_m + hair_m) || corners_m.size() > detail::InsetOutline::capacity) return false;
   Vec3 centre_m(0.0);
   for (const Vec3& corner : corners_m) centre_m += corner / static_cast<double>(corners_m.size());
-  const std::size_t first = normals.size();
+  const std::size_t first = result.count;
+  if (first + corners_m.size() > result.normals.size()) return false;
+  std::array<double, detail::InsetOutline::capacity> turned{};  // how far towards the points, at most
+  std::array<double, detail::InsetOutline::capacity> outside_m;
   for (std::size_t index = 0; index < corners_m.size(); ++index) {
     const Vec3 &from = corners_m[index], &to = corners_m[index + 1 == corners_m.size() ? 0 : index + 1];
     Vec3 inward = glm::cross(plane.normal, to - from);
     const double length = glm::length(inward);
-    if (!(length > 1e-9)) continue;  // its neighbours move the corner by as much
+    if (!(length > 1e-9) || index == left_out) continue;  // its neighbours move the corner by as much
     inward *= (glm::dot(inward, centre_m - from) < 0.0 ? -1.0 : 1.0) / length;
-    normals.push_back(inward + glm::dot(inward, from - from_m) / distance_m * towards);
+    const std::size_t side = result.count - first;
+    outside_m[side] = glm::dot(inward, from - from_m);
+    turned[side] = std::max(outside_m[side] / farthest_m, outside_m[side] / nearest_m);
+    result.normals[result.count++] = inward;
   }
-  const std::span<Vec3> sides = std::span(normals).subspan(first);
-  std::array<double, detail::InsetOutline::capacity> moved{};
-  for (const Vec3& offset_m : offsets_m) {
-    const Vec3 back = offset_m / -(distance_m + glm::dot(towards, offset_m));
-    for (std::size_t side = 0; side < sides.size(); ++side) {
-      moved[side] = std::max(moved[side], glm::dot(sides[side], back));
+  const std::span<Vec3> sides = result.all().subspan(first);
+  for (const double distance_m : {farthest_m, nearest_m}) {
+    for (const Vec3& offset_m : offsets_m) {
+      const double ahead_m = glm::dot(towards, offset_m), share = -1.0 / (distance_m + ahead_m);
+      for (std::size_t side = 0; side < sides.size(); ++side) {
+        const double own = outside_m[side] / distance_m;
+        turned[side] = std::max(turned[side], own + share * (glm::dot(sides[side], offset_m) + own * ahead_m));
+      }
     }
+    if (stray_m == 0.0) break;
   }
-  for (std::size_t side = 0; side < sides.size(); ++side) sides[side] += (moved[side] + hair_m / distance_m) * towards;
+  for (std::size_t side = 0; side < sides.size(); ++side) sides[side] += (turned[side] + hair_m / nearest_m) * towards;
   return true;
 }
 

@@ -74,6 +74,12 @@ class MirrorBeam {
   bool cut_to_occluder(detail::InsetOutline& outline) const {
     return outline.keep(sides_[0].normal, sides_[0].offset_m + hides_beyond_m_);
   }
+  /// Whether all of an outline is so far beyond the mirror, and `more_m`.
+  bool is_occluder(std::span<const Vec3> corners_m, double more_m) const {
+    const double least_m = sides_[0].offset_m + hides_beyond_m_ + more_m;
+    return std::ranges::all_of(corners_m,
+                               [&](const Vec3& corner_m) { return glm::dot(sides_[0].normal, corner_m) >= least_m; });
+  }
 
  private:
   /// normal·x ≥ offset inside.

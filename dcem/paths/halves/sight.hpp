@@ -190,6 +190,20 @@ class Sight {
                  std::span<const FacetId> seen, ViewMap& map);
   void cover(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings, ViewMap& map,
              const FaceSpan& faces = {}) const;
+  void cover_as_whole(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings,
+                      ViewMap& map, const FaceSpan& faces) const;
+  /// The plane of a facet where it is farthest.
+  Plane farthest_plane(const WorldFacet& facet, const FacetOutline& outline) const;
+  /// Whether its hull hides all behind it: it is opaque, no end that touches it looks past it, and where a mirror is
+  /// looked through it is beyond that.
+  bool hides_as_whole(const Scene& scene, const FacetOutlines& outlines, FacetId id,
+                      const HalfSettings& settings) const {
+    const WorldFacet& facet = scene.facet(id);
+    const FacetOutline& outline = outlines.of(id);
+    if (!hides_as_hull(outline) || (facet.transmits && settings.sheets > 0)) return false;
+    if (least_distance_m(facet.plane) <= 2.0 * outline.lift_m) return false;
+    return !beam_ || beam_->is_occluder(scene.hull_m(facet), outline.stray_m);
+  }
   static void count_sheets(const Scene& scene, const HalfSettings& settings, ViewMap& map);
   /// `sheet`: its plane, where it is a sheet that a path may cross; null: nothing passes.
   void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet, ViewMap& map,

@@ -24,18 +24,39 @@ DCEM_INLINE void Sight::cover_beyond(std::span<const Vec3> corners_m, const Plan
 
 DCEM_INLINE void Sight::cover(const Scene& scene, const FacetOutlines& outlines, FacetId id,
                               const HalfSettings& settings, ViewMap& map, const FaceSpan& faces) const {
+  if (hides_as_whole(scene, outlines, id, settings)) return cover_as_whole(scene, outlines, id, settings, map, faces);
   const WorldFacet& facet = scene.facet(id);
   const FacetOutline& outline = outlines.of(id);
   const Plane* const sheet = facet.transmits && settings.sheets > 0 ? &facet.plane : nullptr;
   if (sheet != nullptr && settings.sheets > detail::SheetLayers::most_crossed) return;
   if (least_distance_m(facet.plane) <= 2.0 * outline.lift_m) return;  // an end that touches it looks past it
-  const double side = signed_distance_m(facet.plane, position_m());
-  Plane plane = facet.plane;
-  plane.point_m -= (side > 0.0 ? 1.0 : -1.0) * outline.stray_m * plane.normal;  // where it is farthest
+  const Plane plane = farthest_plane(facet, outline);
   detail::for_each_hiding_outline(scene, outlines, id, [&](std::span<const Vec3> corners_m, const Plane* own) {
     if (own != nullptr && least_distance_m(*own) <= detail::hiding_triangle_m) return;
     cover_beyond(corners_m, own != nullptr ? *own : plane, sheet, map, faces);
   });
+}
+
+DCEM_INLINE Plane Sight::farthest_plane(const WorldFacet& facet, const FacetOutline& outline) const {
+  const double side = signed_distance_m(facet.plane, position_m()) > 0.0 ? 1.0 : -1.0;
+  return {facet.plane.point_m - side * outline.stray_m * facet.plane.normal, facet.plane.normal};
+}
+
+/// By itself, and together with those that it meets.
+DCEM_INLINE void Sight::cover_as_whole(const Scene& scene, const FacetOutlines& outlines, FacetId id,
+                                       const HalfSettings& settings, ViewMap& map, const FaceSpan& faces) const {
+  const auto joined = [&](FacetId one, std::size_t side) -> JoinedOutline {
+    const WorldFacet& facet = scene.facet(one);
+    const FacetOutline& outline = outlines.of(one);
+    return {scene.hull_m(facet), farthest_plane(facet, outline), side, 2.0 * outline.stray_m};
+  };
+  const JoinedOutline alone = joined(id, 0);
+  const bool is_flat = outlines.of(id).stray_m <= detail::flat_facet_m && points_m_.size() == 1;
+  map.cover(alone.corners_m, alone.plane, faces, is_flat ? 0.0 : alone.stray_m);
+  for (const FacetJoint& joint : outlines.joints(id)) {
+    if (!hides_as_whole(scene, outlines, joint.other, settings)) continue;
+    map.cover_between(joined(id, joint.own_side), joined(joint.other, joint.other_side), faces);
+  }
 }
 
 /// A leg takes parallel sheets for one that lie within the weld tolerance of each other, or stray as far as facets may.

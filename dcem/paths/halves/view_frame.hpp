@@ -80,7 +80,7 @@ struct FaceSpan {
 class ViewFaces {
  public:
   ViewFaces() = default;
-  explicit ViewFaces(const WindowFrame& window) : count_(1), window_(window) {}
+  explicit ViewFaces(const WindowFrame& window) : count_(1), window_(window), steepness_(steepness_of(window)) {}
   /// The faces of the cube on which something may be seen that is inside half spaces around the point that looks, all
   /// of their normals pointing inwards: faces clearly outside one of them are left out.
   explicit ViewFaces(std::span<const Vec3> inwards) : count_(0) {
@@ -92,6 +92,12 @@ class ViewFaces {
   }
 
   int count() const { return count_; }
+  /// What is seen on a face, and a fiftieth over its rim, rises by no more than so many times as much as it is away
+  /// along x or y.
+  double steepness(int face) const {
+    if (window_) return steepness_;
+    return cube_[static_cast<std::size_t>(face)] / 2 < 2 ? 1.03 : std::numeric_limits<double>::infinity();
+  }
   /// Those of a span that are there.
   FaceSpan in(const FaceSpan& faces) const { return {faces.first, std::min(faces.last, count_)}; }
   FacePoint point(int face, const Vec3& offset_m) const {
@@ -123,6 +129,23 @@ class ViewFaces {
   }
 
  private:
+  /// The height of a way over its length ahead is largest in a corner; of that length it has 0.7 along x or y.
+  static double steepness_of(const WindowFrame& window) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double level = std::hypot(window.depth.x, window.depth.y);
+    if (!(level > 1e-6)) return infinity;
+    const Vec3 ahead(window.depth.x / level, window.depth.y / level, 0.0);
+    double steepest = 0.0;
+    for (const double aside : {-1.02, 1.02}) {
+      for (const double up : {-1.02, 1.02}) {
+        const Vec3 way = window.depth + aside * window.across_of_normal + up * window.along_of_normal;
+        const double length = glm::dot(way, ahead);
+        steepest = std::max(steepest, length > 1e-6 ? std::abs(way.z) / length : infinity);
+      }
+    }
+    return 1.42 * steepest;
+  }
+
   /// Whether all directions over a face of the cube are clearly against a normal.
   static bool looks_away(int face, const Vec3& normal) {
     constexpr double clearly = 0.1;
@@ -134,6 +157,7 @@ class ViewFaces {
   std::array<int, 6> cube_{0, 1, 2, 3, 4, 5};
   int count_ = 6;
   std::optional<WindowFrame> window_;
+  double steepness_ = 0.0;  ///< of what is seen through the window
 };
 
 }  // namespace dcem::detail

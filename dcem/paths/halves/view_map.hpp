@@ -18,8 +18,10 @@
 #include "dcem/core/raw_vector.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/plane.hpp"
+#include "dcem/paths/halves/extreme_points.hpp"
 #include "dcem/paths/halves/face_outline.hpp"
 #include "dcem/paths/halves/inset.hpp"
+#include "dcem/paths/halves/joined_outlines.hpp"
 #include "dcem/paths/halves/sheet_layers.hpp"
 #include "dcem/paths/halves/view_frame.hpp"
 
@@ -45,7 +47,7 @@ class ViewMap {
   /// `point_m + offsets_m[i]`, too, seen from `point_m`: outlines hide only what they hide from all of them.
   void look_from(const Vec3& point_m, std::span<const Vec3> offsets_m = {}) {
     from_m_ = point_m;
-    offsets_m_.assign(offsets_m.begin(), offsets_m.end());
+    take_extreme_points(offsets_m, offsets_m_);
     faces_ = {};
     clear(cube_pixels_);
   }
@@ -57,7 +59,7 @@ class ViewMap {
   void look_through(const Vec3& point_m, std::span<const Vec3> window_m, double room_m, std::span<const Vec3> inwards,
                     std::span<const Vec3> offsets_m = {}) {
     from_m_ = point_m;
-    offsets_m_.assign(offsets_m.begin(), offsets_m.end());
+    take_extreme_points(offsets_m, offsets_m_);
     const int pixels = offsets_m_.empty() ? window_pixels : crowd_window_pixels;
     const auto frame = detail::frame_of_window(point_m, {window_m, room_m, least_pixel_m, pixels, offsets_m_});
     faces_ = frame ? detail::ViewFaces(*frame) : detail::ViewFaces(inwards);
@@ -67,7 +69,7 @@ class ViewMap {
   /// there is nothing else to be seen.
   void look_into(const Vec3& point_m, std::span<const Vec3> cell_m, std::span<const Vec3> offsets_m = {}) {
     from_m_ = point_m;
-    offsets_m_.assign(offsets_m.begin(), offsets_m.end());
+    take_extreme_points(offsets_m, offsets_m_);
     faces_ = detail::ViewFaces(detail::frame_of_window(point_m, {cell_m, 0.0, 0.0, cube_pixels_}).value());
     clear(cube_pixels_);
   }
@@ -83,8 +85,11 @@ class ViewMap {
     for (detail::SheetLayers& sheets : sheets_) sheets.count(crossed, pile_m);
   }
 
-  /// Notes a convex polygon, corners in order around it, that nothing passes. Of several points one thread does.
-  void cover(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on = {});
+  /// Notes a convex polygon, corners in order around it, that nothing passes; with `stray_m` a surface over it that is
+  /// nowhere farther in front of it.
+  void cover(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on = {}, double stray_m = 0.0);
+  /// Notes what two such polygons hide together, around the line on which they meet. The planes are all but vertical.
+  void cover_between(const JoinedOutline& one, const JoinedOutline& other, const FaceSpan& on = {});
   /// Notes a convex polygon of a sheet with a plane of its own. Sheets that a leg might count as one are one.
   void cover_sheet(std::span<const Vec3> corners_m, const Plane& plane, const Plane& sheet, const FaceSpan& on = {});
   /// Nothing more is covered.
@@ -151,11 +156,17 @@ class ViewMap {
   }
   bool shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, double nearer) const;
   bool box_is_hidden(int face, const detail::FaceRows& rows, float nearness) const;
+  bool is_over_upright_face(std::span<const Vec3> corners_m, const FaceSpan& on) const;
   template <typename Fill>
-  void cover_with(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on, Fill&& fill);
+  void cover_with(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on, double stray_m, Fill&& fill);
   template <typename Fill>
   void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, const FaceSpan& on,
                       Fill&& fill);
+  /// The least nearness in the pixels of a row: what it is in the first, and what a pixel more brings.
+  struct RowNearness {
+    float base, step;
+  };
+  RowNearness least_in_row(const Nearness& nearness, int number) const;
   /// Calls `fill(face, row, begin, end, base, step)` for runs of pixels that an outline fills: of the row that begins
   /// at the pixel `row` of the face, where the nearness in a column is base + step · column.
   template <typename Fill>
@@ -199,7 +210,6 @@ class ViewMap {
   mutable std::vector<float> tile_nearness_;   ///< no more than the smallest of 8 × 8 pixels …
   mutable std::vector<char> tile_is_old_;      ///< … and whether it may be less
   std::array<detail::SheetLayers, 6> sheets_;  ///< by face, while surfaces are covered
-  std::vector<Vec3> normals_;                  ///< room for sides that have been moved
 };
 
 }  // namespace dcem

@@ -23,8 +23,9 @@ DCEM_INLINE void ViewMap::look_from(const Vec3& point_m, ThreadPool& pool) {
   });
 }
 
-DCEM_INLINE void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on) {
-  cover_with(corners_m, plane, on, [&](int face, std::size_t row, int begin, int end, float base, float step) {
+DCEM_INLINE void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on,
+                                double stray_m) {
+  cover_with(corners_m, plane, on, stray_m, [&](int face, std::size_t row, int begin, int end, float base, float step) {
     float* const pixel = pixels_of(face) + row;
     for (int column = begin; column < end; ++column) {
       const float here = base + step * static_cast<float>(column);
@@ -40,7 +41,7 @@ DCEM_INLINE void ViewMap::cover_sheet(std::span<const Vec3> corners_m, const Pla
   for (const Vec3& corner_m : corners_m) farthest_m = std::max(farthest_m, glm::distance(corner_m, from_m_));
   const auto pixels = static_cast<std::size_t>(pixels_ * pixels_);
   int taken = -1;  // the last face whose sheets this is one of
-  cover_with(corners_m, plane, on, [&](int face, std::size_t row, int begin, int end, float base, float step) {
+  cover_with(corners_m, plane, on, 0.0, [&](int face, std::size_t row, int begin, int end, float base, float step) {
     detail::SheetLayers& sheets = sheets_[static_cast<std::size_t>(face)];
     if (face != taken) {
       sheets.take(sheet.normal, signed_distance_m(sheet, from_m_), farthest_m + around_m, pixels);
@@ -55,15 +56,56 @@ DCEM_INLINE void ViewMap::cover_sheet(std::span<const Vec3> corners_m, const Pla
   });
 }
 
+DCEM_INLINE void ViewMap::cover_between(const JoinedOutline& one, const JoinedOutline& other, const FaceSpan& on) {
+  constexpr double upright = 0.01;
+  if (std::abs(one.plane.normal.z) > upright || std::abs(other.plane.normal.z) > upright) return;
+  const detail::PointsAround points(from_m_, offsets_m_);
+  detail::InsetOutline both;
+  const double three_pixels = 6.0 / pixels_;
+  if (!slit_around(one, other, points, three_pixels, both) || !is_over_upright_face(both.corners(), on)) return;
+  if (opens(one, other, points) || !keep_inside(one, other, points, both)) return;
+  const double away_m = least_away_m(one, other, from_m_, both);
+  const double one_m = -signed_distance_m(one.plane, from_m_), other_m = -signed_distance_m(other.plane, from_m_);
+  const FaceSpan faces = faces_.in(on);
+  for (int face = faces.first; face < faces.last; ++face) {
+    detail::FaceOutline outline;
+    if (!points.are_level_before(away_m, faces_.steepness(face))) continue;
+    if (!outline_on(face, both.corners(), 1.02, outline) || outline.size() < 3) continue;
+    const Nearness beyond = nearness_of(face, other.plane.normal, other_m);
+    const auto fill = [&](int, std::size_t row, int begin, int end, float base, float step) {
+      const RowNearness second = least_in_row(beyond, static_cast<int>(row) / pixels_);
+      float* const pixel = pixels_of(face) + row;
+      for (int column = begin; column < end; ++column) {
+        const float here = base + step * static_cast<float>(column);
+        const float there = second.base + second.step * static_cast<float>(column);
+        const float farther = here < there ? here : there;
+        pixel[column] = pixel[column] < farther ? farther : pixel[column];
+      }
+    };
+    cover_on(face, outline, nearness_of(face, one.plane.normal, one_m), fill);
+  }
+}
+
+/// Whether some of a polygon is seen on a face on which not all may be too steep.
+DCEM_INLINE bool ViewMap::is_over_upright_face(std::span<const Vec3> corners_m, const FaceSpan& on) const {
+  const FaceSpan faces = faces_.in(on);
+  for (int face = faces.first; face < faces.last; ++face) {
+    detail::FaceOutline outline;
+    if (faces_.steepness(face) < WatertightRay::steepest && outline_on(face, corners_m, 1.02, outline)) return true;
+  }
+  return false;
+}
+
 template <typename Fill>
-void ViewMap::cover_with(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on, Fill&& fill) {
+void ViewMap::cover_with(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on, double stray_m,
+                         Fill&& fill) {
   const double distance_m = -signed_distance_m(plane, from_m_);
   if (corners_m.size() > detail::FaceOutline::most_corners || distance_m == 0.0) return;
-  if (offsets_m_.empty()) return cover_as_it_is(corners_m, plane, distance_m, on, fill);
-  normals_.clear();
+  if (offsets_m_.empty() && stray_m == 0.0) return cover_as_it_is(corners_m, plane, distance_m, on, fill);
+  detail::MovedSides sides;
   detail::InsetOutline smaller;
-  if (!sides_moved_in(corners_m, plane, from_m_, offsets_m_, normals_)) return;
-  if (!inset_outline(corners_m, from_m_, normals_, smaller)) return;
+  if (!sides_moved_in(corners_m, plane, from_m_, offsets_m_, sides, stray_m)) return;
+  if (!inset_outline(corners_m, from_m_, sides.all(), smaller)) return;
   if (smaller.count > detail::FaceOutline::most_corners) return;
   cover_as_it_is(smaller.corners(), plane, distance_m, on, fill);
 }
@@ -81,6 +123,13 @@ void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane
   }
 }
 
+inline ViewMap::RowNearness ViewMap::least_in_row(const Nearness& nearness, int number) const {
+  const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
+  const double middle = nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column;
+  return {static_cast<float>((middle - pad) * (1.0 - rounding)),
+          static_cast<float>(nearness.by_column * (1.0 - rounding))};
+}
+
 template <typename Fill>
 void ViewMap::cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, Fill&& fill) {
   detail::FaceRows rows;
@@ -88,8 +137,6 @@ void ViewMap::cover_on(int face, const detail::FaceOutline& outline, const Nearn
   if (rows.high()[0] - rows.low()[0] < 1.0 || rows.high()[1] - rows.low()[1] < 1.0) return;  // it fills no pixel
   rows.find_crossed();
   constexpr float hair = 2e-3F;  // of a pixel
-  const auto step = static_cast<float>(nearness.by_column * (1.0 - rounding));
-  const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
   int first_column = pixels_, last_column = -1;
   for (int number = rows.first(); number <= rows.last(); ++number) {
     if (rows.to(number) < -1e8F || rows.to(number + 1) < -1e8F) continue;
@@ -98,9 +145,8 @@ void ViewMap::cover_on(int face, const detail::FaceOutline& outline, const Nearn
     const int begin = std::max(0, static_cast<int>(std::ceil(from)));
     const int end = std::min(pixels_, static_cast<int>(std::floor(to)));
     if (begin >= end) continue;
-    const auto base = static_cast<float>(
-        (nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column - pad) * (1.0 - rounding));
-    fill(face, static_cast<std::size_t>(number * pixels_), begin, end, base, step);
+    const RowNearness least = least_in_row(nearness, number);
+    fill(face, static_cast<std::size_t>(number * pixels_), begin, end, least.base, least.step);
     first_column = std::min(first_column, begin);
     last_column = std::max(last_column, end - 1);
   }

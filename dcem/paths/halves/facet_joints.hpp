@@ -1,0 +1,121 @@
+#pragma once
+/// Façades that meet along a vertical line, with the same numbers: nothing passes between them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dcem/scene/scene.hpp"
+
+namespace dcem {
+
+/// A side of a facet's hull, from the corner of this number to the next, on which another one lies.
+struct FacetJoint {
+  FacetId other;
+  std::uint32_t own_side, other_side;
+};
+
+/// Which facets of a scenery meet so.
+class FacetJoints {
+ public:
+  /// `takes(facet)`: those that are their flat hull.
+  template <typename Takes>
+  void find(const Scene& scene, std::uint32_t facets, Takes&& takes);
+
+  std::span<const FacetJoint> of(FacetId facet) const {
+    if (facet.value + std::size_t{1} >= first_.size()) return {};
+    return std::span(joints_).subspan(first_[facet.value], first_[facet.value + 1] - first_[facet.value]);
+  }
+
+ private:
+  /// A vertical side of a hull.
+  struct Side {
+    double x_m, y_m, low_m, high_m;
+    std::uint32_t facet, side;
+
+    bool is_on_line_of(const Side& side_of_other) const { return x_m == side_of_other.x_m && y_m == side_of_other.y_m; }
+  };
+  static constexpr double least_length_m = 0.1, close_m = 2.5e-3;
+
+  /// Whether all corners of a facet that lie at a side's line lie on it.
+  static bool is_straight(const Scene& scene, const WorldFacet& facet, const Side& side);
+  static Vec3 nearest_corner_m(const Scene& scene, const WorldFacet& facet, const Vec3& point_m);
+  static void add_sides(const Scene& scene, std::uint32_t facet, std::vector<Side>& sides);
+
+  std::vector<std::size_t> first_;
+  std::vector<FacetJoint> joints_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+inline bool FacetJoints::is_straight(const Scene& scene, const WorldFacet& facet, const Side& side) {
+  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
+    for (const Vec3& corner_m : scene.corners_m(facet.first_triangle + triangle)) {
+      if (corner_m.x == side.x_m && corner_m.y == side.y_m) continue;
+      if (std::hypot(corner_m.x - side.x_m, corner_m.y - side.y_m) < close_m) return false;
+    }
+  }
+  return true;
+}
+
+/// Corners of hulls are rounded: the numbers are those of the mesh.
+inline Vec3 FacetJoints::nearest_corner_m(const Scene& scene, const WorldFacet& facet, const Vec3& point_m) {
+  Vec3 nearest_m = scene.corners_m(facet.first_triangle)[0];
+  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
+    for (const Vec3& corner_m : scene.corners_m(facet.first_triangle + triangle)) {
+      if (glm::distance(corner_m, point_m) < glm::distance(nearest_m, point_m)) nearest_m = corner_m;
+    }
+  }
+  return nearest_m;
+}
+
+inline void FacetJoints::add_sides(const Scene& scene, std::uint32_t facet, std::vector<Side>& sides) {
+  const WorldFacet& held = scene.facets()[facet];
+  const std::span<const Vec3> hull_m = scene.hull_m(held);
+  for (std::uint32_t at = 0; at < hull_m.size(); ++at) {
+    const Vec3 &hull_from = hull_m[at], &hull_to = hull_m[(at + 1) % hull_m.size()];
+    if (std::hypot(hull_from.x - hull_to.x, hull_from.y - hull_to.y) > 2.0 * close_m) continue;
+    const Vec3 from = nearest_corner_m(scene, held, hull_from), to = nearest_corner_m(scene, held, hull_to);
+    if (from.x != to.x || from.y != to.y || std::abs(from.z - to.z) < least_length_m) continue;
+    const Side side{from.x, from.y, std::min(from.z, to.z), std::max(from.z, to.z), facet, at};
+    if (is_straight(scene, held, side)) sides.push_back(side);
+  }
+}
+
+template <typename Takes>
+void FacetJoints::find(const Scene& scene, std::uint32_t facets, Takes&& takes) {
+  std::vector<Side> sides;
+  for (std::uint32_t facet = 0; facet < facets; ++facet) {
+    if (takes(FacetId(facet))) add_sides(scene, facet, sides);
+  }
+  const auto line = [](const Side& side) { return std::array{side.x_m, side.y_m}; };
+  std::ranges::stable_sort(sides, {}, line);
+  struct Found {
+    std::uint32_t facet;
+    FacetJoint joint;
+  };
+  std::vector<Found> found;
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    for (last = first + 1; last < sides.size() && sides[last].is_on_line_of(sides[first]);) ++last;
+    for (std::size_t one = first; one < last; ++one) {
+      for (std::size_t other = first; other < last; ++other) {
+        const Side &own = sides[one], &beside = sides[other];
+        if (own.facet >= beside.facet) continue;
+        if (std::min(own.high_m, beside.high_m) - std::max(own.low_m, beside.low_m) < least_length_m) continue;
+        found.push_back({own.facet, {FacetId(beside.facet), own.side, beside.side}});
+      }
+    }
+  }
+  std::ranges::stable_sort(found, {}, &Found::facet);
+  first_.assign(facets + std::size_t{1}, 0);
+  for (const Found& one : found) {
+    ++first_[one.facet + std::size_t{1}];
+    joints_.push_back(one.joint);
+  }
+  for (std::size_t facet = 1; facet < first_.size(); ++facet) first_[facet] += first_[facet - 1];
+}
+
+}  // namespace dcem
