@@ -21,7 +21,7 @@ struct FacetJoint {
 /// Which facets of a scenery meet so.
 class FacetJoints {
  public:
-  /// `takes(facet)`: those that are their flat hull.
+  /// `takes(facet)`: those that hide what their hull does. Where very many meet on one line, none of them is noted.
   template <typename Takes>
   void find(const Scene& scene, std::uint32_t facets, Takes&& takes);
 
@@ -36,9 +36,10 @@ class FacetJoints {
     double x_m, y_m, low_m, high_m;
     std::uint32_t facet, side;
 
-    bool is_on_line_of(const Side& side_of_other) const { return x_m == side_of_other.x_m && y_m == side_of_other.y_m; }
+    bool is_on_line_of(const Side& beside) const { return x_m == beside.x_m && y_m == beside.y_m; }
   };
   static constexpr double least_length_m = 0.1, close_m = 2.5e-3;
+  static constexpr std::size_t most_on_line = 64;  ///< a fan of thousands would have millions of pairs
 
   /// Whether all corners of a facet that lie at a side's line lie on it.
   static bool is_straight(const Scene& scene, const WorldFacet& facet, const Side& side);
@@ -100,7 +101,7 @@ void FacetJoints::find(const Scene& scene, std::uint32_t facets, Takes&& takes) 
   std::vector<Found> found;
   for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
     for (last = first + 1; last < sides.size() && sides[last].is_on_line_of(sides[first]);) ++last;
-    for (std::size_t one = first; one < last; ++one) {
+    for (std::size_t one = first; one < last && last - first <= most_on_line; ++one) {
       for (std::size_t other = first; other < last; ++other) {
         const Side &own = sides[one], &beside = sides[other];
         if (own.facet >= beside.facet) continue;

@@ -24,7 +24,7 @@ namespace dcem::detail {
 struct TransmitterEnds {
   std::span<const Device> devices;  ///< all of them
   std::vector<std::optional<LinkEnd>> link;
-  std::vector<std::optional<RadioEnd>> radio;  ///< of all devices; of some that were chosen see `radio_of`
+  std::vector<std::optional<RadioEnd>> radio;  ///< of all devices, each made by the thread that has it; see `radio_of`
   std::vector<ReachedEdges> reached;           ///< the edges within reach; empty lists where no diffraction is wanted
   std::vector<EdgeReach> own_reach;            ///< holds them where nothing is remembered
   HalfRefs halves;                             ///< none where the plan has none

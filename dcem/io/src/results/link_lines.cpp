@@ -1,7 +1,9 @@
 #include "dcem/io/link_lines.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "dcem/channel/coherence.hpp"
 #include "dcem/core/thread_pool.hpp"
