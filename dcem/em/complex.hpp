@@ -16,6 +16,19 @@ inline bool is_finite(const Complex& value) {
   return std::isfinite(value.real()) && std::isfinite(value.imag());
 }
 
+/// dividend/divisor by Smith's algorithm (Communications of the ACM 5(8), 1962, p. 435). A compiler's own division is a
+/// call that guards against numbers near the ends of the range of double, too; here the larger part of the divisor is
+/// to be between 1e-150 and 1e300, and no quotient beyond 1e150.
+inline Complex quotient(const Complex& dividend, const Complex& divisor) {
+  const double a = dividend.real(), b = dividend.imag(), c = divisor.real(), d = divisor.imag();
+  if (std::abs(c) < std::abs(d)) {
+    const double ratio = c / d, size = c * ratio + d;
+    return {(a * ratio + b) / size, (b * ratio - a) / size};
+  }
+  const double ratio = d / c, size = d * ratio + c;
+  return {(b * ratio + a) / size, (b - a * ratio) / size};
+}
+
 /// exp(jφ) for a phase in radians.
 inline Complex unit_phasor(double phase_rad) {
   return {std::cos(phase_rad), std::sin(phase_rad)};

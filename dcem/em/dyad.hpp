@@ -29,24 +29,43 @@ inline Vec3 reflected_direction(const Vec3& propagation, const Vec3& normal) {
   return propagation - 2.0 * glm::dot(propagation, normal) * normal;
 }
 
+/// e⊥, e∥ and e∥r of a ray and a surface.
+struct IncidenceBasis {
+  Vec3 perpendicular, parallel, parallel_after;
+};
+
+/// `propagation` and `normal` are of unit length, the normal of either sign.
+inline IncidenceBasis incidence_basis(const Vec3& propagation, const Vec3& normal) {
+  const Vec3 perpendicular = detail::perpendicular_direction(propagation, normal);
+  return {perpendicular, glm::cross(perpendicular, propagation),
+          glm::cross(perpendicular, reflected_direction(propagation, normal))};
+}
+
+/// Field just after reflection, from the field before in the basis of its ray and the surface.
+inline ComplexVector3 reflect(const ComplexVector3& field, const IncidenceBasis& basis,
+                              const PolarizedCoefficients& reflection) {
+  return scaled(basis.perpendicular, reflection.te * dot(field, basis.perpendicular)) +
+         scaled(basis.parallel_after, reflection.tm * dot(field, basis.parallel));
+}
+
+/// Field just after crossing a thin sheet; the direction stays.
+inline ComplexVector3 transmit(const ComplexVector3& field, const IncidenceBasis& basis,
+                               const PolarizedCoefficients& transmission) {
+  return scaled(basis.perpendicular, transmission.te * dot(field, basis.perpendicular)) +
+         scaled(basis.parallel, transmission.tm * dot(field, basis.parallel));
+}
+
 /// Field just after reflection. `field` is transverse to the unit vector `propagation` of the incident ray, `normal` is
 /// of unit length and either sign.
 inline ComplexVector3 reflect(const ComplexVector3& field, const Vec3& propagation, const Vec3& normal,
                               const PolarizedCoefficients& reflection) {
-  const Vec3 perpendicular = detail::perpendicular_direction(propagation, normal);
-  const Vec3 parallel = glm::cross(perpendicular, propagation);
-  const Vec3 parallel_after = glm::cross(perpendicular, reflected_direction(propagation, normal));
-  return scaled(perpendicular, reflection.te * dot(field, perpendicular)) +
-         scaled(parallel_after, reflection.tm * dot(field, parallel));
+  return reflect(field, incidence_basis(propagation, normal), reflection);
 }
 
-/// Field just after crossing a thin sheet; the direction stays. Arguments as for reflect().
+/// Field just after crossing a thin sheet. Arguments as for reflect().
 inline ComplexVector3 transmit(const ComplexVector3& field, const Vec3& propagation, const Vec3& normal,
                                const PolarizedCoefficients& transmission) {
-  const Vec3 perpendicular = detail::perpendicular_direction(propagation, normal);
-  const Vec3 parallel = glm::cross(perpendicular, propagation);
-  return scaled(perpendicular, transmission.te * dot(field, perpendicular)) +
-         scaled(parallel, transmission.tm * dot(field, parallel));
+  return transmit(field, incidence_basis(propagation, normal), transmission);
 }
 
 }  // namespace dcem

@@ -134,10 +134,9 @@ class DiffractionChain {
   ComplexMatrix2 arrival_at(const EdgeBases& here, std::size_t place) const {
     const std::size_t first = places_[edges_.size() - 1] + 1;
     const EdgeBases& before = edges_.back().bases;
-    const ComplexVector2 beta =
-        incident_components(here, carrier_.carry(ComplexVector3(before.diffracted_beta), first, place));
-    const ComplexVector2 phi =
-        incident_components(here, carrier_.carry(ComplexVector3(before.diffracted_phi), first, place));
+    const auto carried = carrier_.carry(
+        std::array{ComplexVector3(before.diffracted_beta), ComplexVector3(before.diffracted_phi)}, first, place);
+    const ComplexVector2 beta = incident_components(here, carried[0]), phi = incident_components(here, carried[1]);
     return {{{{beta[0], phi[0]}, {beta[1], phi[1]}}}};
   }
 
@@ -157,10 +156,11 @@ class DiffractionChain {
 
   /// From the transmitter's unit vectors to the basis in which the first edge is met.
   ComplexMatrix2 arriving(const std::array<Vec3, 2>& sent) const {
+    const auto carried =
+        carrier_.carry(std::array{ComplexVector3(sent[0]), ComplexVector3(sent[1])}, 0, places_.front());
     ComplexMatrix2 matrix;
     for (std::size_t in = 0; in < 2; ++in) {
-      const ComplexVector2 components =
-          incident_components(edges_.front().bases, carrier_.carry(ComplexVector3(sent[in]), 0, places_.front()));
+      const ComplexVector2 components = incident_components(edges_.front().bases, carried[in]);
       for (std::size_t row = 0; row < 2; ++row) matrix(row, in) = components[row];
     }
     return matrix;
@@ -169,12 +169,12 @@ class DiffractionChain {
   /// From the basis that leaves the last edge to the receiver's unit vectors.
   ComplexMatrix2 leaving(const std::array<Vec3, 2>& received) const {
     const EdgeBases& bases = edges_.back().bases;
-    const std::array<Vec3, 2> basis{bases.diffracted_beta, bases.diffracted_phi};
+    const auto carried =
+        carrier_.carry(std::array{ComplexVector3(bases.diffracted_beta), ComplexVector3(bases.diffracted_phi)},
+                       places_.back() + 1, path_.interactions.size());
     ComplexMatrix2 matrix;
     for (std::size_t column = 0; column < 2; ++column) {
-      const ComplexVector3 field =
-          carrier_.carry(ComplexVector3(basis[column]), places_.back() + 1, path_.interactions.size());
-      for (std::size_t out = 0; out < 2; ++out) matrix(out, column) = dot(field, received[out]);
+      for (std::size_t out = 0; out < 2; ++out) matrix(out, column) = dot(carried[column], received[out]);
     }
     return matrix;
   }

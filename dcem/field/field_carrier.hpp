@@ -1,6 +1,7 @@
 #pragma once
 /// What reflections and transmissions along a path do to a field.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -20,19 +21,24 @@ class FieldCarrier {
   FieldCarrier(const Scene& scene, const Surface& surface, const Path& path, const std::vector<Vec3>& directions)
       : scene_(scene), surface_(surface), path_(path), directions_(directions) {}
 
-  /// The field after the interactions first … last−1, which are reflections and transmissions.
-  ComplexVector3 carry(ComplexVector3 field, std::size_t first, std::size_t last) const {
+  /// The fields after the interactions first … last−1, which are reflections and transmissions.
+  template <std::size_t count>
+  std::array<ComplexVector3, count> carry(std::array<ComplexVector3, count> fields, std::size_t first,
+                                          std::size_t last) const {
     for (std::size_t index = first; index < last; ++index) {
       const Interaction& interaction = path_.interactions[index];
       const WorldFacet& facet = scene_.facet(interaction.facet);
       const Vec3& direction = directions_[index];
       const double cos_incidence = std::min(1.0, std::abs(glm::dot(direction, facet.plane.normal)));
       const SurfaceResponse response = surface_.response(facet.material, cos_incidence);
-      field = interaction.kind == InteractionKind::reflection
-                  ? reflect(field, direction, facet.plane.normal, response.reflection)
-                  : transmit(field, direction, facet.plane.normal, response.transmission);
+      const IncidenceBasis basis = incidence_basis(direction, facet.plane.normal);
+      const bool is_reflected = interaction.kind == InteractionKind::reflection;
+      for (ComplexVector3& field : fields) {
+        field =
+            is_reflected ? reflect(field, basis, response.reflection) : transmit(field, basis, response.transmission);
+      }
     }
-    return field;
+    return fields;
   }
 
   /// A direction across the ray, turned by the mirrors on the way as a picture would be.

@@ -139,11 +139,12 @@ ComplexMatrix2 FieldEvaluator<Surface, Loss>::spread(const Path& path, const std
         .transfer(sent, received);
   }
   const FieldCarrier<Surface> carrier(scene_, surface_, path, directions);
+  const auto carried =
+      carrier.carry(std::array{ComplexVector3(sent[0]), ComplexVector3(sent[1])}, 0, path.interactions.size());
   ComplexMatrix2 matrix;
   for (std::size_t in = 0; in < 2; ++in) {
-    const ComplexVector3 field = carrier.carry(ComplexVector3(sent[in]), 0, path.interactions.size());
     for (std::size_t out = 0; out < 2; ++out)
-      matrix(out, in) = Complex(1.0 / path.length_m) * dot(field, received[out]);
+      matrix(out, in) = Complex(1.0 / path.length_m) * dot(carried[in], received[out]);
   }
   return matrix;
 }

@@ -34,6 +34,20 @@ TEST_CASE("decayed exponentials are zero, never NaN") {
   CHECK(decaying_exponential(0.0) == Complex(1.0));
 }
 
+TEST_CASE("a quotient times its divisor is the dividend, whichever part of the divisor is larger") {
+  for (const double size : {1e-100, 1e-3, 1.0, 1e7, 1e100}) {
+    for (const Complex& direction :
+         {Complex(1, 0), Complex(0, 1), Complex(-3, 2), Complex(1e-9, -1), Complex(5, 1e-12)})
+      for (const Complex& dividend : {Complex(1, 0), Complex(0, -2), Complex(0.3, 7), Complex(-4, 1e-15)}) {
+        const Complex divisor = size * direction;
+        // Smith's algorithm is off by a few roundings of the modulus.
+        CHECK(std::abs(quotient(dividend, divisor) * divisor - dividend) <= 4.0 * rounding * std::abs(dividend));
+      }
+  }
+  CHECK(quotient(Complex(1, 3), Complex(2, 0)) == Complex(0.5, 1.5));
+  CHECK(quotient(Complex(1, 3), Complex(0, 2)) == Complex(1.5, -0.5));
+}
+
 TEST_CASE("a product of matrices acts as one after the other, and transposes in reverse order") {
   const ComplexMatrix2 a{{{{Complex(1, 2), Complex(0, -1)}, {Complex(3, 0), Complex(-2, 1)}}}};
   const ComplexMatrix2 b{{{{Complex(0, 1), Complex(4, 0)}, {Complex(-1, 1), Complex(2, 2)}}}};

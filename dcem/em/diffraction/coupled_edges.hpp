@@ -57,6 +57,13 @@ struct CascadeTerms {
   std::array<Complex, 4> transitions;  ///< F(x)/√x at each
 };
 
+/// D1…D4 of an edge from the whole ways to both ends.
+inline std::array<Complex, 4> cascade_coefficients(const WedgeAngles& angles, double wave_number_rad_per_m,
+                                                   double before_m, double after_m) {
+  const double distance_m = cascade_distance_parameter_m(before_m, after_m, angles.edge_angle_rad);
+  return utd_terms(angles, wave_number_rad_per_m, equal_distances(distance_m)).in_order();
+}
+
 inline CascadeTerms cascade_terms(const WedgeAngles& angles, double wave_number_rad_per_m, double before_m,
                                   double after_m) {
   const double distance_m = cascade_distance_parameter_m(before_m, after_m, angles.edge_angle_rad);

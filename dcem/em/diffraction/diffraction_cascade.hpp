@@ -78,7 +78,23 @@ double way_m(double first_leg_m, std::span<const CascadeEdge<Transfer>> edges) {
   return sum;
 }
 
-/// The terms of all edges, and what an edge makes of each field that leaves the one before.
+/// What an edge makes of each field that leaves the one before, term by term.
+template <typename Transfer>
+std::array<Transfer, 4> cascade_steps(const CascadeEdge<Transfer>& edge, const std::array<Complex, 4>& coefficients) {
+  std::array<Transfer, 4> steps;
+  for (std::size_t p = 0; p < 4; ++p) steps[p] = coefficients[p] * (edge.factors[p] * edge.arrival);
+  return steps;
+}
+
+/// One edge has nothing in common with another: its coefficients are all that is needed.
+template <typename Transfer>
+Transfer single_edge(double wave_number_rad_per_m, double first_leg_m, const CascadeEdge<Transfer>& edge) {
+  const auto steps =
+      cascade_steps(edge, cascade_coefficients(edge.angles, wave_number_rad_per_m, first_leg_m, edge.leg_m));
+  return steps[0] + steps[1] + steps[2] + steps[3];
+}
+
+/// The terms of two or three edges, and what each makes of the fields that leave the one before.
 template <typename Transfer>
 struct CascadeSums {
   std::vector<CascadeTerms> terms;
@@ -89,16 +105,12 @@ struct CascadeSums {
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const double before_m = way_m(first_leg_m, edges.first(i)), after_m = way_m(0.0, edges.subspan(i));
       terms.push_back(cascade_terms(edges[i].angles, wave_number_rad_per_m, before_m, after_m));
-      steps.emplace_back();
-      for (std::size_t p = 0; p < 4; ++p)
-        steps[i][p] = terms[i].coefficients[p] * (edges[i].factors[p] * edges[i].arrival);
+      steps.push_back(cascade_steps(edges[i], terms[i].coefficients));
       if (i == 0) continue;
       const double leg_m = edges[i - 1].leg_m;
       couplings.push_back(edge_coupling(way_m(first_leg_m, edges.first(i - 1)), leg_m, after_m, edges[i].alignment));
     }
   }
-
-  Transfer one() const { return steps[0][0] + steps[0][1] + steps[0][2] + steps[0][3]; }
 
   Transfer two() const {
     const PairFactors factors = pair_factors(terms[0], terms[1], couplings[0]);
@@ -134,9 +146,10 @@ template <typename Transfer>
 Transfer cascade_transfer(double wave_number_rad_per_m, double first_leg_m,
                           std::span<const CascadeEdge<Transfer>> edges) {
   DCEM_ASSERT(!edges.empty() && edges.size() <= 3);
+  const Complex spreading(cascade_spreading(first_leg_m, edges));
+  if (edges.size() == 1) return spreading * detail::single_edge(wave_number_rad_per_m, first_leg_m, edges.front());
   const detail::CascadeSums<Transfer> sums(wave_number_rad_per_m, first_leg_m, edges);
-  const Transfer field = edges.size() == 1 ? sums.one() : edges.size() == 2 ? sums.two() : sums.three();
-  return Complex(cascade_spreading(first_leg_m, edges)) * field;
+  return spreading * (edges.size() == 2 ? sums.two() : sums.three());
 }
 
 }  // namespace dcem

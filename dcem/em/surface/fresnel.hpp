@@ -72,15 +72,15 @@ inline IncidenceTerms incidence_terms(const Complex& permittivity, double cos_in
   // η − sin²θ written with the contrast: equal to cos²θ without rounding for η = 1.
   const Complex q = decaying_square_root(contrast + cosine * cosine);
   const Complex tm_difference =
-      (contrast / permittivity) * (((permittivity + 1.0) * (cosine * cosine) - 1.0) / permittivity);
-  return {q, {cosine, q, -contrast}, {cosine, q / permittivity, tm_difference}};
+      quotient(contrast, permittivity) * quotient((permittivity + 1.0) * (cosine * cosine) - 1.0, permittivity);
+  return {q, {cosine, q, -contrast}, {cosine, quotient(q, permittivity), tm_difference}};
 }
 
 inline Complex boundary_reflection(const WaveAlongNormal& wave) {
   const Complex sum = wave.outer + wave.inner;
   // Only η = 1 at exact grazing: there is no surface, so nothing comes back.
   if (sum == 0.0) return 0.0;
-  return (wave.difference_of_squares / sum) / sum;
+  return quotient(quotient(wave.difference_of_squares, sum), sum);
 }
 
 }  // namespace detail

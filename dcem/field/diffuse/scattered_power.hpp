@@ -6,6 +6,7 @@
 /// receiving antenna's gain applies to it, its polarization does not; a sheet on its way lets the mean of both
 /// polarizations pass. A dual-polarized receiver gets no more than one port's gain, as the power is that in both.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -157,8 +158,8 @@ class ScatteredPower {
     double power = 0.0;
     for (std::size_t port = 0; port < transmitter.antenna.port_count(); ++port) {
       const JonesVector jones = transmitter.antenna.port_jones(geometry.incident, port, transmitter.rotation);
-      const ComplexVector3 arriving = carrier.carry(scaled(theta, jones[0]) + scaled(phi, jones[1]), 0, place);
-      power += norm_squared(reflect(arriving, geometry.incident, facet.plane.normal, gamma));
+      const auto arriving = carrier.carry(std::array{scaled(theta, jones[0]) + scaled(phi, jones[1])}, 0, place);
+      power += norm_squared(reflect(arriving[0], geometry.incident, facet.plane.normal, gamma));
     }
     return power / static_cast<double>(transmitter.antenna.port_count());
   }
