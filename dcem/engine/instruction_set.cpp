@@ -56,6 +56,10 @@ const KellerKernels& keller_kernels() {
   return chosen_kernels().load(std::memory_order_relaxed)->keller;
 }
 
+const ViewKernels& view_kernels() {
+  return chosen_kernels().load(std::memory_order_relaxed)->view;
+}
+
 }  // namespace detail
 
 InstructionSet instruction_set() {

@@ -1,9 +1,10 @@
 #pragma once
-/// The walks through the wide tree, those of cones, of candidates and of edges' images, compiled several times in one
-/// library.
+/// The walks through the wide tree, those of cones, of candidates, of edges' images and of views, compiled several
+/// times in one library.
 #include "dcem/accel/wide/trace/kernels.hpp"
 #include "dcem/paths/halves/cone_kernels.hpp"
 #include "dcem/paths/halves/keller_kernels.hpp"
+#include "dcem/paths/halves/view_kernels.hpp"
 #include "dcem/paths/memory/candidate_kernels.hpp"
 
 namespace dcem::detail {
@@ -14,6 +15,7 @@ struct EngineKernels {
   ConeKernels cone;
   CandidateKernels candidates;
   KellerKernels keller;
+  ViewKernels view;
 };
 
 const EngineKernels& engine_kernels_baseline();

@@ -1,12 +1,13 @@
-// The walks through the wide tree, those of cones, of candidates and of edges' images, compiled for whatever the
-// compiler assumes.
+// The walks through the wide tree, those of cones, of candidates, of edges' images and of views, compiled for whatever
+// the compiler assumes.
 #include "dcem/accel/wide/trace/kernel_table.hpp"
 #include "dcem/engine/kernels.hpp"
 
 namespace dcem::detail {
 
 const EngineKernels& engine_kernels_baseline() {
-  static constexpr EngineKernels kernels{kernel_table, cone_kernel_table, candidate_kernel_table, keller_kernel_table};
+  static constexpr EngineKernels kernels{kernel_table, cone_kernel_table, candidate_kernel_table, keller_kernel_table,
+                                         view_kernel_table};
   return kernels;
 }
 

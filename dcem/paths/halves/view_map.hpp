@@ -24,6 +24,7 @@
 #include "dcem/paths/halves/joined_outlines.hpp"
 #include "dcem/paths/halves/sheet_layers.hpp"
 #include "dcem/paths/halves/view_frame.hpp"
+#include "dcem/paths/halves/view_kernels.hpp"
 
 namespace dcem {
 
@@ -112,17 +113,12 @@ class ViewMap {
   void settle(const FaceSpan& on = {});
 
  private:
-  static constexpr int tile_pixels = 8;
+  static constexpr int tile_pixels = detail::FacePixels::tile_pixels;
   /// Through a window, of a pixel where the window is: what strays by 2 µm strays by less than the margin of a pixel.
   static constexpr double least_pixel_m = 1e-3;
   static constexpr int window_pixels = 32;  ///< by measurement: with more of them views take longer than they save
   static constexpr int crowd_window_pixels = 64;  ///< of several points, which see more through it
-  static constexpr double rounding = 1e-5;  ///< relative, of nearness in single precision: 80 units of the last place
-
-  /// 1/depth of a plane over a face: by_column·x + by_row·y + at_origin, in pixels.
-  struct Nearness {
-    double by_column, by_row, at_origin;
-  };
+  using Nearness = detail::FaceNearness;
 
   void clear(int pixels) {
     make_room(pixels);
@@ -154,51 +150,29 @@ class ViewMap {
     outline.clip(reach);
     return outline.size() > 0;
   }
-  bool shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, double nearer) const;
-  bool box_is_hidden(int face, const detail::FaceRows& rows, float nearness) const;
   bool is_over_upright_face(std::span<const Vec3> corners_m, const FaceSpan& on) const;
   template <typename Fill>
   void cover_with(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on, double stray_m, Fill&& fill);
   template <typename Fill>
   void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, const FaceSpan& on,
                       Fill&& fill);
-  /// The least nearness in the pixels of a row: what it is in the first, and what a pixel more brings.
-  struct RowNearness {
-    float base, step;
-  };
-  RowNearness least_in_row(const Nearness& nearness, int number) const;
-  /// Calls `fill(face, row, begin, end, base, step)` for runs of pixels that an outline fills: of the row that begins
-  /// at the pixel `row` of the face, where the nearness in a column is base + step · column.
-  template <typename Fill>
-  void cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, Fill&& fill);
   /// From the first to the last.
   struct PixelRange {
     int first, last;
   };
   bool pixels_hide(int face, const PixelRange& rows, const PixelRange& columns, float nearness) const;
   bool tiles_hide(int face, const PixelRange& rows, const PixelRange& columns, float nearness) const;
-  void age_tiles(int face, int first_row, int last_row, int first_column, int last_column);
-  void renew_tile(int face, int tile_row, int column) const;
-  /// Whether all of a tile is filled by what is nearer.
-  bool tile_hides(int face, int tile_row, int column, float nearness) const {
-    const auto tile = static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column);
-    if (nearness <= tile_nearness_[tile]) return true;
-    if (tile_is_old_[tile] == 0) return false;
-    renew_tile(face, tile_row, column);
-    return nearness <= tile_nearness_[tile];
-  }
   static bool is_beside(const detail::FacePoint& low, const detail::FacePoint& high) {
     const double far = high.depth;
     return far <= 0.0 || low.across > far || -high.across > far || low.along > far || -high.along > far;
   }
-  bool hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high, double nearer) const;
-  /// What single precision may add to or take from a nearness that is summed over a row.
-  static double slack_of(const Nearness& nearness, int pixels) {
-    return 4e-7 * ((std::abs(nearness.by_column) + std::abs(nearness.by_row)) * pixels + std::abs(nearness.at_origin));
-  }
   float* pixels_of(int face) { return nearness_.data() + static_cast<std::size_t>(face * pixels_ * pixels_); }
   const float* row(int face, int number) const {
     return nearness_.data() + static_cast<std::size_t>((face * pixels_ + number) * pixels_);
+  }
+  detail::FacePixels view_of(int face) const {
+    const auto first_tile = static_cast<std::ptrdiff_t>(face) * tiles_ * tiles_;
+    return {row(face, 0), tile_nearness_.data() + first_tile, tile_is_old_.data() + first_tile, pixels_, tiles_};
   }
 
   int cube_pixels_, pixels_ = 0, tiles_ = 0;

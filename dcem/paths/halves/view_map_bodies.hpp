@@ -25,13 +25,10 @@ DCEM_INLINE void ViewMap::look_from(const Vec3& point_m, ThreadPool& pool) {
 
 DCEM_INLINE void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on,
                                 double stray_m) {
-  cover_with(corners_m, plane, on, stray_m, [&](int face, std::size_t row, int begin, int end, float base, float step) {
-    float* const pixel = pixels_of(face) + row;
-    for (int column = begin; column < end; ++column) {
-      const float here = base + step * static_cast<float>(column);
-      pixel[column] = pixel[column] < here ? here : pixel[column];
-    }
-  });
+  cover_with(corners_m, plane, on, stray_m,
+             [&](int face, const detail::FaceOutline& outline, const Nearness& nearness) {
+               detail::view_kernels().cover(view_of(face), pixels_of(face), outline, nearness);
+             });
 }
 
 DCEM_INLINE void ViewMap::cover_sheet(std::span<const Vec3> corners_m, const Plane& plane, const Plane& sheet,
@@ -41,18 +38,20 @@ DCEM_INLINE void ViewMap::cover_sheet(std::span<const Vec3> corners_m, const Pla
   for (const Vec3& corner_m : corners_m) farthest_m = std::max(farthest_m, glm::distance(corner_m, from_m_));
   const auto pixels = static_cast<std::size_t>(pixels_ * pixels_);
   int taken = -1;  // the last face whose sheets this is one of
-  cover_with(corners_m, plane, on, 0.0, [&](int face, std::size_t row, int begin, int end, float base, float step) {
+  cover_with(corners_m, plane, on, 0.0, [&](int face, const detail::FaceOutline& outline, const Nearness& all) {
     detail::SheetLayers& sheets = sheets_[static_cast<std::size_t>(face)];
     if (face != taken) {
       sheets.take(sheet.normal, signed_distance_m(sheet, from_m_), farthest_m + around_m, pixels);
       taken = face;
     }
     float* const nearness = pixels_of(face);
-    for (int column = begin; column < end; ++column) {
-      const std::size_t pixel = row + static_cast<std::size_t>(column);
-      const float here = base + step * static_cast<float>(column);
-      if (here > nearness[pixel]) nearness[pixel] = std::max(nearness[pixel], sheets.add(pixel, here));
-    }
+    detail::for_each_filled(view_of(face), outline, all, [&](int row, int begin, int end, const auto& least) {
+      for (int column = begin; column < end; ++column) {
+        const auto pixel = static_cast<std::size_t>(row * pixels_ + column);
+        const float here = least.base + least.step * static_cast<float>(column);
+        if (here > nearness[pixel]) nearness[pixel] = std::max(nearness[pixel], sheets.add(pixel, here));
+      }
+    });
   });
 }
 
@@ -71,18 +70,9 @@ DCEM_INLINE void ViewMap::cover_between(const JoinedOutline& one, const JoinedOu
     detail::FaceOutline outline;
     if (!points.are_level_before(away_m, faces_.steepness(face))) continue;
     if (!outline_on(face, both.corners(), 1.02, outline) || outline.size() < 3) continue;
-    const Nearness beyond = nearness_of(face, other.plane.normal, other_m);
-    const auto fill = [&](int, std::size_t row, int begin, int end, float base, float step) {
-      const RowNearness second = least_in_row(beyond, static_cast<int>(row) / pixels_);
-      float* const pixel = pixels_of(face) + row;
-      for (int column = begin; column < end; ++column) {
-        const float here = base + step * static_cast<float>(column);
-        const float there = second.base + second.step * static_cast<float>(column);
-        const float farther = here < there ? here : there;
-        pixel[column] = pixel[column] < farther ? farther : pixel[column];
-      }
-    };
-    cover_on(face, outline, nearness_of(face, one.plane.normal, one_m), fill);
+    detail::view_kernels().cover_both(view_of(face), pixels_of(face), outline,
+                                      nearness_of(face, one.plane.normal, one_m),
+                                      nearness_of(face, other.plane.normal, other_m));
   }
 }
 
@@ -118,58 +108,9 @@ void ViewMap::cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane
     detail::FaceOutline outline;
     // Over the rim, so that pixels at the rim are filled, too.
     if (outline_on(face, corners_m, 1.02, outline) && outline.size() >= 3) {
-      cover_on(face, outline, nearness_of(face, plane.normal, distance_m), fill);
+      fill(face, outline, nearness_of(face, plane.normal, distance_m));
     }
   }
-}
-
-inline ViewMap::RowNearness ViewMap::least_in_row(const Nearness& nearness, int number) const {
-  const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
-  const double middle = nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column;
-  return {static_cast<float>((middle - pad) * (1.0 - rounding)),
-          static_cast<float>(nearness.by_column * (1.0 - rounding))};
-}
-
-template <typename Fill>
-void ViewMap::cover_on(int face, const detail::FaceOutline& outline, const Nearness& nearness, Fill&& fill) {
-  detail::FaceRows rows;
-  if (!rows.take(outline, pixels_)) return;
-  if (rows.high()[0] - rows.low()[0] < 1.0 || rows.high()[1] - rows.low()[1] < 1.0) return;  // it fills no pixel
-  rows.find_crossed();
-  constexpr float hair = 2e-3F;  // of a pixel
-  int first_column = pixels_, last_column = -1;
-  for (int number = rows.first(); number <= rows.last(); ++number) {
-    if (rows.to(number) < -1e8F || rows.to(number + 1) < -1e8F) continue;
-    const float from = std::max(rows.from(number), rows.from(number + 1)) + hair;
-    const float to = std::min(rows.to(number), rows.to(number + 1)) - hair;
-    const int begin = std::max(0, static_cast<int>(std::ceil(from)));
-    const int end = std::min(pixels_, static_cast<int>(std::floor(to)));
-    if (begin >= end) continue;
-    const RowNearness least = least_in_row(nearness, number);
-    fill(face, static_cast<std::size_t>(number * pixels_), begin, end, least.base, least.step);
-    first_column = std::min(first_column, begin);
-    last_column = std::max(last_column, end - 1);
-  }
-  if (last_column >= first_column) age_tiles(face, rows.first(), rows.last(), first_column, last_column);
-}
-
-DCEM_INLINE void ViewMap::age_tiles(int face, int first_row, int last_row, int first_column, int last_column) {
-  for (int tile_row = first_row / tile_pixels; tile_row <= last_row / tile_pixels; ++tile_row) {
-    char* const tile = tile_is_old_.data() + (face * tiles_ + tile_row) * tiles_;
-    std::fill(tile + first_column / tile_pixels, tile + last_column / tile_pixels + 1, char{1});
-  }
-}
-
-DCEM_INLINE void ViewMap::renew_tile(int face, int tile_row, int column) const {
-  std::array<float, tile_pixels> least;
-  least.fill(std::numeric_limits<float>::infinity());
-  for (int line = 0; line < tile_pixels; ++line) {
-    const float* const pixel = row(face, tile_row * tile_pixels + line) + column * tile_pixels;
-    for (std::size_t at = 0; at < tile_pixels; ++at) least[at] = pixel[at] < least[at] ? pixel[at] : least[at];
-  }
-  const auto tile = static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column);
-  tile_nearness_[tile] = *std::min_element(least.begin(), least.end());
-  tile_is_old_[tile] = 0;
 }
 
 DCEM_INLINE void ViewMap::settle(const FaceSpan& on) {
@@ -178,7 +119,7 @@ DCEM_INLINE void ViewMap::settle(const FaceSpan& on) {
     for (int tile_row = 0; tile_row < tiles_; ++tile_row) {
       for (int column = 0; column < tiles_; ++column) {
         if (tile_is_old_[static_cast<std::size_t>((face * tiles_ + tile_row) * tiles_ + column)] == 0) continue;
-        renew_tile(face, tile_row, column);
+        detail::renew_tile(view_of(face), tile_row, column);
       }
     }
   }

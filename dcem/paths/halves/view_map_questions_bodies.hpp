@@ -20,7 +20,7 @@ DCEM_INLINE bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& pl
   for (int face = faces.first; face < faces.last; ++face) {
     detail::FaceOutline outline;
     if (outline_on(face, corners_m, 1.0 + 1e-6, outline) &&
-        shows_on(face, outline, nearness_of(face, plane.normal, distance_m), nearer)) {
+        detail::view_kernels().shows(view_of(face), outline, nearness_of(face, plane.normal, distance_m), nearer)) {
       return true;
     }
   }
@@ -47,60 +47,10 @@ DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nea
       part.add(at(piece));
       part.add(at(piece + 1));
       const double nearest = 1.0 / std::min(part[0].depth, part[1].depth);
-      if (shows_on(face, part, {0.0, 0.0, nearest}, nearer)) return true;
+      if (detail::view_kernels().shows(view_of(face), part, {0.0, 0.0, nearest}, nearer)) return true;
     }
   }
   return false;
-}
-
-DCEM_INLINE bool ViewMap::shows_on(int face, const detail::FaceOutline& outline, const Nearness& nearness,
-                                   double nearer) const {
-  detail::FaceRows rows;
-  if (!rows.take(outline, pixels_)) return false;
-  const auto grown = static_cast<float>(nearer * (1.0 + rounding));
-  const auto top = static_cast<float>(rows.nearest());
-  if (box_is_hidden(face, rows, top * grown)) return false;
-  rows.find_touched();
-  constexpr float hair = 1e-3F;  // of a pixel
-  const auto step = static_cast<float>(nearness.by_column);
-  const double pad = 0.5 * (std::abs(nearness.by_column) + std::abs(nearness.by_row)) + slack_of(nearness, pixels_);
-  for (int number = rows.first(); number <= rows.last(); ++number) {
-    const int begin = std::max(0, static_cast<int>(std::floor(rows.from(number) - hair)));
-    const int end = std::min(pixels_ - 1, static_cast<int>(std::floor(rows.to(number) + hair)));
-    const auto base =
-        static_cast<float>(nearness.by_row * (number + 0.5) + nearness.at_origin + 0.5 * nearness.by_column + pad);
-    const float* const pixel = row(face, number);
-    int seen = 0;
-    for (int column = begin; column <= end; ++column) {
-      const float plane = base + step * static_cast<float>(column);
-      seen |= static_cast<int>((plane < top ? plane : top) * grown > pixel[column]);
-    }
-    if (seen != 0) return true;
-  }
-  return false;
-}
-
-/// Whether all that is in the box around an outline is nearer than its nearest corner: pixel by pixel where the box is
-/// small, by tiles otherwise. Cheaper than to ask row by row, and most that is asked about is hidden.
-DCEM_INLINE bool ViewMap::box_is_hidden(int face, const detail::FaceRows& rows, float nearness) const {
-  constexpr double hair = 1e-3;  // of a pixel
-  const int first = std::max(0, static_cast<int>(std::floor(rows.low()[0] - hair)));
-  const int last = std::min(pixels_ - 1, static_cast<int>(std::floor(rows.high()[0] + hair)));
-  if (last - first < tile_pixels) {
-    for (int number = rows.first(); number <= rows.last(); ++number) {
-      const float* const pixel = row(face, number);
-      for (int column = first; column <= last; ++column) {
-        if (nearness > pixel[column]) return false;
-      }
-    }
-    return true;
-  }
-  for (int tile_row = rows.first() / tile_pixels; tile_row <= rows.last() / tile_pixels; ++tile_row) {
-    for (int column = first / tile_pixels; column <= last / tile_pixels; ++column) {
-      if (!tile_hides(face, tile_row, column, nearness)) return false;
-    }
-  }
-  return true;
 }
 
 DCEM_INLINE bool ViewMap::hides(const Vec3& point_m, double nearer, double beside_m) const {
@@ -117,7 +67,7 @@ DCEM_INLINE bool ViewMap::hides(const Vec3& point_m, double nearer, double besid
     return std::clamp(static_cast<int>((place + 1.0) * 0.5 * pixels_), 0, pixels_ - 1);
   };
   const int face = 2 * axis + (offset_m[axis] < 0.0 ? 1 : 0);
-  const auto nearness = static_cast<float>(nearer * (1.0 + rounding) / (depth - beside_m));
+  const auto nearness = static_cast<float>(nearer * (1.0 + detail::nearness_rounding) / (depth - beside_m));
   const PixelRange rows{pixel(along - blur), pixel(along + blur)}, columns{pixel(across - blur), pixel(across + blur)};
   const bool is_small = rows.last - rows.first < tile_pixels && columns.last - columns.first < tile_pixels;
   return is_small ? pixels_hide(face, rows, columns, nearness) : tiles_hide(face, rows, columns, nearness);
@@ -158,31 +108,8 @@ DCEM_INLINE bool ViewMap::hides(const Aabb<double>& box, double nearer, const Fa
   const FaceSpan faces = faces_.in(on);
   for (int face = faces.first; face < faces.last; ++face) {
     const auto [low, high] = faces_.box(face, {low_m, high_m});
-    if (!hides_on(face, low, high, nearer)) return false;
-  }
-  return true;
-}
-
-DCEM_INLINE bool ViewMap::hides_on(int face, const detail::FacePoint& low, const detail::FacePoint& high,
-                                   double nearer) const {
-  if (is_beside(low, high)) return true;
-  const double far = high.depth;
-  // No nearer than where the face's pyramid is wide enough to hold any of the box.
-  const double depth = std::max({low.depth, 0.0, low.across, -high.across, low.along, -high.along});
-  if (depth < 1e-3) return false;
-  const auto first = [&](double bound) {
-    const double seen = bound / (bound >= 0.0 ? far : depth);
-    return std::max(0, static_cast<int>(std::floor((seen + 1.0) * 0.5 * tiles_ - 1e-6)));
-  };
-  const auto last = [&](double bound) {
-    const double seen = bound / (bound >= 0.0 ? depth : far);
-    return std::min(tiles_ - 1, static_cast<int>(std::floor(std::min(seen + 1.0, 3.0) * 0.5 * tiles_ + 1e-6)));
-  };
-  const auto nearness = static_cast<float>(nearer * (1.0 + rounding) / depth);
-  for (int tile_row = first(low.along); tile_row <= last(high.along); ++tile_row) {
-    for (int column = first(low.across); column <= last(high.across); ++column) {
-      if (!tile_hides(face, tile_row, column, nearness)) return false;
-    }
+    if (is_beside(low, high)) continue;
+    if (!detail::view_kernels().hides_box(view_of(face), low, high, nearer)) return false;
   }
   return true;
 }
