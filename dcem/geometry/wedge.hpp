@@ -41,6 +41,11 @@ inline double edge_length_m(const Wedge& wedge) {
   return glm::distance(wedge.start_m, wedge.end_m);
 }
 
+/// How far along an edge from its start the foot of a point is.
+inline double along_edge_m(const Wedge& wedge, const Vec3& point_m) {
+  return glm::dot(point_m - wedge.start_m, edge_direction(wedge));
+}
+
 /// Azimuth about the edge of a direction that points away from it, in [0, 2π): 0 along face 0, counted through the
 /// exterior, `exterior_angle_rad` along face n. `away` has any length; only its part across the edge counts. Along the
 /// edge itself there is no azimuth, and the result is 0.

@@ -135,12 +135,12 @@ class BasicSimulator {
   Solved solve_all(std::span<const Device> receivers, const TransmitterEnds& transmitters, std::span<PathCache> caches,
                    bool is_of_frame) const;
   /// Devices as so many receivers need them. With `reach`, which has an entry per transmitter, edges that were within
-  /// reach in frames before count, too. `embedded` as in `EdgeRules`. With `halves`, which has an entry per transmitter
+  /// reach in frames before count, too. `contacts`: what is known. With `halves`, which has an entry per transmitter
   /// too, what is kept of them is brought up to date; without, what is kept is used where it is that of the frame, and
   /// otherwise they are made, `fine` where very many receivers join them.
   TransmitterEnds transmitter_ends(std::span<const Device> devices, std::size_t receivers,
                                    std::span<EdgeReach> reach = {}, std::span<KeptHalf> halves = {},
-                                   std::vector<char> embedded = {}, bool fine = false) const;
+                                   SceneContacts contacts = {}, bool fine = false) const;
   void find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const;
   void find_transmitter_halves(TransmitterEnds& ends, std::size_t receivers, std::span<KeptHalf> halves,
                                bool fine) const;
@@ -156,7 +156,7 @@ class BasicSimulator {
     return Evaluator(scene_, surface_, propagation.path_loss, settings_.frequency_hz,
                      {propagation.diffraction.lossy_wedge, propagation.max_transmissions}, medium_);
   }
-  PathSearchSettings search_settings(std::span<const char> embedded_edges = {}) const;
+  PathSearchSettings search_settings(const KnownContacts& known = {}) const;
   std::span<const std::optional<LinkEnd>> ends_beside(const Device& receiver, const TransmitterEnds& transmitters,
                                                       std::vector<std::optional<LinkEnd>>& others) const;
   /// Where a receiver's sequences of few interactions come from, where the plan has halves: they are joined in a room,

@@ -55,6 +55,8 @@ DCEM_INLINE void BeamFinder::find_parts_of(std::span<const WedgeId> edges, int m
   for (const WedgeId id : edges) {
     const Wedge& edge = source_.scene.wedge(id).edge;
     EdgePart part = whole_edge(id.value, edge, source_.half.position_m());
+    cut_to_contact(part, contact_at(id, source_.settings.rules));
+    if (part.from > part.to) continue;
     const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
       return sight.shows(source_.scene, source_.outlines, id, from_m, to_m);
     };
@@ -96,6 +98,7 @@ DCEM_INLINE EdgePart BeamFinder::lit_part(WedgeId id, std::uint32_t mirror) cons
   const Wedge& edge = source_.scene.wedge(id).edge;
   const Vec3& origin_m = source_.lanes.origin_m();
   EdgePart part = whole_edge(mirror, edge, mirrors_[mirror].image_m + origin_m);
+  cut_to_contact(part, contact_at(id, source_.settings.rules));
   cut_to_cone(part, edge, origin_m, mirrors_[mirror].cone);
   return part;
 }

@@ -63,6 +63,9 @@ class BeamLists {
   void for_each_mirror_before(FacetId facet, std::span<const HalfSpace> cone, Visit&& visit) const {
     for (const BeamTable& table : tables_) table.for_each_mirror_before(facet, cone, visit);
   }
+  bool lights(FacetId facet) const {
+    return std::ranges::any_of(tables_, [&](const BeamTable& table) { return table.lights(facet); });
+  }
   /// … the parts of edges that the end may see …
   std::vector<EdgePart> parts() const {
     std::vector<EdgePart> all;
@@ -83,6 +86,9 @@ class BeamLists {
     for (const BeamTable& table : tables_) table.for_each_part_in(cone, apex, radius_m, visit);
   }
   /// … and those that mirrors may light.
+  bool lights(WedgeId edge) const {
+    return std::ranges::any_of(tables_, [&](const BeamTable& table) { return table.lights(edge); });
+  }
   template <typename Visit>
   void for_each_lit_part(WedgeId edge, const Vec3& point, float radius_m, Visit&& visit) const {
     for (const BeamTable& table : tables_) table.for_each_lit_part(edge, point, radius_m, visit);

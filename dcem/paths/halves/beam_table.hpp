@@ -52,6 +52,18 @@ class BeamTable {
   std::span<const ConeClusters::Box> boxes_of_parts() const {
     return body_boxes_.empty() ? part_clusters_.boxes() : std::span<const ConeClusters::Box>(body_boxes_);
   }
+  /// Whether the end may light a facet over a mirror or an edge.
+  bool lights(FacetId facet) const {
+    if (!mirrors_before(facet).empty()) return true;
+    if (facet.value >= listed_facets_) return !parts_.empty();
+    const RowIndex::Row row = before_part_rows_.row(facet.value);
+    return row.first != row.last;
+  }
+  /// Whether the end may light an edge, directly or over a mirror.
+  bool lights(WedgeId edge) const {
+    const RowIndex::Row lit = lit_rows_.row(edge.value);
+    return !parts_of(edge).empty() || lit.first != lit.last;
+  }
   /// Calls `visit(part)` for parts on which the point that diffracts between the end and an apex may lie in a cone, for
   /// the apex at `apex` or within `radius_m` of it.
   template <typename Visit>

@@ -25,13 +25,13 @@ template <typename Index>
 class CrowdGates {
  public:
   CrowdGates(const SceneTracer<Index>& tracer, const FacetOutlines& outlines, const LaneScene& lanes,
-             const Crowd& crowd, const BeamLists& mast, SolverCounters& counters)
+             const Crowd& crowd, const BeamLists& mast, Blockers& blockers, SolverCounters& counters)
       : scene_(tracer.scene()),
         outlines_(outlines),
         lanes_(lanes),
         crowd_(crowd),
         mast_(mast),
-        hints_(tracer, outlines, lanes, {mast.ignored_body(), std::nullopt}, counters),
+        hints_(tracer, outlines, lanes, {mast.ignored_body(), std::nullopt}, blockers, counters),
         reach_m_(glm::length(mast.position_m()) + crowd.radius_m() + glm::length(middle())) {
     for (std::size_t pack = 0; pack < crowd.packs(); ++pack) packs_.push_back(crowd.pack(pack));
   }

@@ -76,6 +76,7 @@ class CrowdJoiner {
   template <typename Visit>
   void over_mirrors(const SeenLayer& layer, bool edges, Visit& visit) {
     for (const FacetId facet : layer.mirrors) {
+      if (!mast().lights(facet)) continue;
       const Plane& plane = scene_.facet(facet).plane;
       images_.clear();
       for (std::size_t pack = 0; pack < gates_.packs().size(); ++pack) images_.push_back(crowd().images(pack, plane));

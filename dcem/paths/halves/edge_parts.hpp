@@ -9,6 +9,7 @@
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/wedge.hpp"
 #include "dcem/paths/halves/cone.hpp"
+#include "dcem/paths/solve/edge_rules.hpp"
 
 namespace dcem {
 
@@ -26,6 +27,12 @@ inline EdgePart whole_edge(std::uint32_t number, const Wedge& edge, const Vec3& 
   const double place_m = glm::dot(end_m - edge.start_m, direction);
   return {number, 0.0F, static_cast<float>(edge_length_m(edge)), static_cast<float>(place_m),
           static_cast<float>(glm::distance(end_m, edge.start_m + place_m * direction))};
+}
+
+/// Takes off the ends of a part on which no path is diffracted for sure.
+inline void cut_to_contact(EdgePart& part, const EdgeContact& contact) {
+  part.from = std::max(part.from, contact.touched_to_m);
+  part.to = std::min(part.to, contact.touched_from_m);
 }
 
 /// Cuts a part of an edge down to what is in a cone, which counts from `origin_m` and has room for rounding; where

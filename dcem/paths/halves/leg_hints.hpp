@@ -16,18 +16,41 @@
 
 namespace dcem {
 
+/// What stopped a leg last, by place in a table. Holds memory: one per thread.
+class Blockers {
+ public:
+  static constexpr std::uint32_t nothing = 0xffffffffU;
+
+  /// Forgets all of them. Of a table that has its size already it clears what was noted alone.
+  void forget(std::size_t size) {
+    for (const std::uint32_t place : noted_) triangles_[place] = nothing;
+    noted_.clear();
+    triangles_.resize(size, nothing);
+  }
+  std::uint32_t operator[](std::size_t place) const { return triangles_[place]; }
+  void note(std::size_t place, std::uint32_t triangle) {
+    if (triangles_[place] == nothing) noted_.push_back(static_cast<std::uint32_t>(place));
+    triangles_[place] = triangle;
+  }
+
+ private:
+  std::vector<std::uint32_t> triangles_, noted_;
+};
+
 /// Drops legs that are blocked for sure. Changes no result: the solver would refuse the same paths, one by one.
 template <typename Index>
 class LegHints {
  public:
   LegHints(const SceneTracer<Index>& tracer, const FacetOutlines& outlines, const LaneScene& lanes,
-           const IgnoredBodies& ignored, SolverCounters& counters)
+           const IgnoredBodies& ignored, Blockers& blockers, SolverCounters& counters)
       : tracer_(tracer),
         outlines_(outlines),
         lanes_(lanes),
         ignored_(ignored),
         counters_(counters),
-        hints_(2 * (scene().facets().size() + scene().wedges().size()), nothing) {}
+        blockers_(blockers) {
+    blockers_.forget(2 * (scene().facets().size() + scene().wedges().size()));
+  }
 
   /// Of legs from points on `first` to points on `last`, in the order from the transmitter, those that may be free.
   std::uint32_t free_between(SequenceElement first, const LaneGate& at_first, SequenceElement last,
@@ -45,14 +68,14 @@ class LegHints {
   /// Drops legs from points on `first` to points on `last` that what stopped others like them stops, too.
   std::uint32_t not_stopped_between(SequenceElement first, const LaneGate& at_first, SequenceElement last,
                                     const LaneGate& at_last, std::uint32_t lanes) {
-    const std::uint32_t hint = hints_[place_of(first, 0)];
+    const std::uint32_t hint = blockers_[place_of(first, 0)];
     if (hint == nothing) return lanes;
     const Legs legs{at_first.points, at_last.points, at_first.beside_m + at_last.beside_m, {first, last}, 2};
     return lanes & ~stopped(legs, hint, lanes);
   }
 
  private:
-  static constexpr std::uint32_t nothing = 0xffffffffU;
+  static constexpr std::uint32_t nothing = Blockers::nothing;
 
   struct Legs {
     const LanePoints &from, &to;
@@ -72,14 +95,16 @@ class LegHints {
   }
 
   std::uint32_t open_lanes(const Legs& legs, std::size_t place, std::uint32_t lanes) {
-    if (hints_[place] != nothing) lanes &= ~stopped(legs, hints_[place], lanes);
+    if (blockers_[place] != nothing) lanes &= ~stopped(legs, blockers_[place], lanes);
     std::uint32_t open = 0;
     while (lanes != 0) {
       const std::uint32_t lane = lanes & -lanes;
       lanes ^= lane;
       const std::uint32_t blocker = blocker_of(legs, static_cast<std::size_t>(std::countr_zero(lane)));
-      const std::uint32_t dead = blocker == nothing ? 0U : stopped(legs, blocker, lanes | lane);
-      if (dead != 0) hints_[place] = blocker;
+      // Beside a free leg most are free: to ask for each takes longer than it spares the solver.
+      if (blocker == nothing) return open | lane | lanes;
+      const std::uint32_t dead = stopped(legs, blocker, lanes | lane);
+      if (dead != 0) blockers_.note(place, blocker);
       if ((dead & lane) == 0) open |= lane;
       lanes &= ~dead;
     }
@@ -154,7 +179,7 @@ class LegHints {
   const LaneScene& lanes_;
   IgnoredBodies ignored_;
   SolverCounters& counters_;
-  std::vector<std::uint32_t> hints_;  ///< by element, for the leg before it and for the one after it
+  Blockers& blockers_;  ///< by element, for the leg before it and for the one after it
 };
 
 }  // namespace dcem

@@ -60,6 +60,7 @@ DCEM_INLINE void SharedBeams::find_lit_edges(const Scene& scene, const FacetOutl
     if (!may_light(scene, settings, mirror, id)) continue;
     const Wedge& edge = scene.wedge(id).edge;
     EdgePart part = whole_edge(id.value, edge, sight_.position_m());
+    cut_to_contact(part, contact_at(id, settings.rules));
     cut_to_cone(part, edge, origin_m, mirror.cone);
     if (part.from > part.to) continue;
     const Vec3 direction = edge_direction(edge);

@@ -33,7 +33,8 @@ struct HalfSettings {
   std::size_t closer_from = std::numeric_limits<std::size_t>::max();
   /// Nothing farther than this counts as seen, along the way over a mirror where one is looked through.
   double reach_m = std::numeric_limits<double>::infinity();
-  bool pairs = true;  ///< halves are joined over two elements and more: images need what they may see
+  bool pairs = true;                    ///< halves are joined over two elements and more: images need what they may see
+  std::span<const char> asked_edges{};  ///< by edge, 0 where nobody asks whether it is seen; empty: all are asked for
 };
 
 /// Bodies that are looked at.

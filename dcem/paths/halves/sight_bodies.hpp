@@ -229,6 +229,7 @@ DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines
                                SeenLayer& layer, ThreadPool* pool) const {
   const auto out_of_reach = [&](WedgeId id) {
     const WorldWedge& wedge = scene.wedge(id);
+    if (!settings.asked_edges.empty() && settings.asked_edges[id.value] == 0) return true;
     if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules) || is_inside(wedge.edge)) return true;
     const Vec3 &start_m = wedge.edge.start_m, &end_m = wedge.edge.end_m;
     if (is_beyond({glm::min(start_m, end_m), glm::max(start_m, end_m)})) return true;

@@ -50,8 +50,8 @@ class LegFilter {
             const IgnoredBodies& ignored)
       : scene_(&scene), leg_(leg), ends_{start, end}, ignored_(ignored) {
     const double reach_m = 1.01 * std::max(scene.settings().weld_tolerance_m, facet_reach_m(scene));
-    sure_from_ = near_start(reach_m);
-    sure_to_ = 1.0 - near_end(reach_m);
+    sure_from_ = share_within(start, leg.origin, reach_m);
+    sure_to_ = 1.0 - share_within(end, leg.origin + leg.direction, reach_m);
   }
 
   /// A ray that leaves a place, and does not meet what is at that very place.
@@ -100,25 +100,16 @@ class LegFilter {
     }
   }
 
-  /// From which t on the leg is farther than `reach_m` from all planes at its start; −∞ where there are none.
-  double near_start(double reach_m) const {
-    double share = -std::numeric_limits<double>::infinity();
-    for_each_plane(ends_[0],
-                   [&](const Plane& plane) { share = std::max(share, share_within(plane, leg_.origin, reach_m)); });
-    return share;
-  }
-  /// The same for its end, counted from there.
-  double near_end(double reach_m) const {
-    double share = -std::numeric_limits<double>::infinity();
-    for_each_plane(ends_[1], [&](const Plane& plane) {
-      share = std::max(share, share_within(plane, leg_.origin + leg_.direction, reach_m));
+  /// Which share of the leg, from one of its ends on, is not farther than `reach_m` from all planes there; −∞ where
+  /// there are none. Beyond it |distance + t · slope| > reach holds for each plane, as it does for one that is as far
+  /// and as steep as any; infinite along a plane.
+  double share_within(const LegEnd& end, const Vec3& from_m, double reach_m) const {
+    double farthest_m = -std::numeric_limits<double>::infinity(), least_slope = std::numeric_limits<double>::infinity();
+    for_each_plane(end, [&](const Plane& plane) {
+      farthest_m = std::max(farthest_m, std::abs(signed_distance_m(plane, from_m)));
+      least_slope = std::min(least_slope, std::abs(glm::dot(plane.normal, leg_.direction)));
     });
-    return share;
-  }
-  /// |distance + t · slope| > reach holds for every t beyond this; infinite along the plane.
-  double share_within(const Plane& plane, const Vec3& from_m, double reach_m) const {
-    const double slope = std::abs(glm::dot(plane.normal, leg_.direction));
-    return (reach_m + std::abs(signed_distance_m(plane, from_m))) / slope;
+    return farthest_m < 0.0 ? farthest_m : (reach_m + farthest_m) / least_slope;
   }
 
   const Scene* scene_;

@@ -20,22 +20,6 @@ class LegWalker {
   LegWalker(const SceneTracer<Index>& tracer, int max_transmissions)
       : tracer_(tracer), max_transmissions_(static_cast<std::size_t>(max_transmissions)) {}
 
-  /// Whether something opaque stands between two points of interaction, where nothing transmits.
-  bool is_blocked_between(const Sequence& sequence, const std::vector<Vec3>& points_m, const IgnoredBodies& ignored,
-                          SolverCounters& counters) {
-    if (max_transmissions_ > 0) return false;
-    for (std::size_t leg = 1; leg < sequence.size(); ++leg) {
-      const Stop start = stop_at(sequence[sequence.size() - leg]), end = stop_at(sequence[sequence.size() - 1 - leg]);
-      if (!(glm::distance(points_m[leg - 1], points_m[leg]) > in_plane_guard_m)) return true;
-      ++counters.legs;
-      if (!tracer_.follow_leg(points_m[leg - 1], points_m[leg], start.end(), end.end(), ignored, 0, crossings_,
-                              counters.traversal)) {
-        return true;
-      }
-    }
-    return false;
-  }
-
   /// A leg of a way over known points between two devices in which a triangle stands for which `stops(triangle)` holds,
   /// counted from the transmitter; none where there is none. Legs in the middle are asked first.
   template <typename Stops>
@@ -66,6 +50,8 @@ class LegWalker {
                              const std::vector<Vec3>& points_m, const std::vector<bool>& in_shadow,
                              SolverCounters& counters) {
     const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
+    // Most candidates die on a leg, and of several legs on one in the middle.
+    if (is_blocked_between(sequence, points_m, ignored, counters)) return std::nullopt;
     Path path;
     std::size_t left = max_transmissions_;
     Vec3 from_m = transmitter.position_m;
@@ -76,7 +62,10 @@ class LegWalker {
       const LegEnd start = leg == 0 ? LegEnd{transmitter.mounted_on, {}} : before.end();
       const LegEnd end = last ? LegEnd{receiver.mounted_on, {}} : here.end();
       const Vec3 to_m = last ? receiver.position_m : points_m[leg];
-      if (!walk(from_m, to_m, start, end, ignored, left, path, counters)) return std::nullopt;
+      const bool is_free = max_transmissions_ == 0 && leg > 0 && !last;  // then it was asked above
+      if (!is_free && !is_open(from_m, to_m, start, end, ignored, left, counters)) return std::nullopt;
+      walk(from_m, to_m, ignored, path);
+      left -= crossings_.size();
       if (!last) {
         path.interactions.push_back(interaction_at(sequence[sequence.size() - 1 - leg], points_m[leg], in_shadow[leg]));
       }
@@ -103,21 +92,33 @@ class LegWalker {
     return {facets, {&facet(facets[0]).plane, &facet(facets[1]).plane}};
   }
 
-  /// One leg: false where it is blocked, crosses too many sheets, or has no direction.
-  bool walk(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end, const IgnoredBodies& ignored,
-            std::size_t& left, Path& path, SolverCounters& counters) {
-    const double leg_length_m = glm::distance(from_m, to_m);
-    if (!(leg_length_m > in_plane_guard_m)) return false;
+  /// Whether a leg has a direction, is not blocked, and crosses no more than `left` sheets: those are noted.
+  bool is_open(const Vec3& from_m, const Vec3& to_m, const LegEnd& start, const LegEnd& end,
+               const IgnoredBodies& ignored, std::size_t left, SolverCounters& counters) {
+    if (!(glm::distance(from_m, to_m) > in_plane_guard_m)) return false;
     ++counters.legs;
-    if (!tracer_.follow_leg(from_m, to_m, start, end, ignored, left, crossings_, counters.traversal)) return false;
+    return tracer_.follow_leg(from_m, to_m, start, end, ignored, left, crossings_, counters.traversal);
+  }
+
+  /// Whether something opaque stands between two points of interaction, where nothing transmits.
+  bool is_blocked_between(const Sequence& sequence, const std::vector<Vec3>& points_m, const IgnoredBodies& ignored,
+                          SolverCounters& counters) {
+    if (max_transmissions_ > 0) return false;
+    for (std::size_t leg = 1; leg < sequence.size(); ++leg) {
+      const Stop start = stop_at(sequence[sequence.size() - leg]), end = stop_at(sequence[sequence.size() - 1 - leg]);
+      if (!is_open(points_m[leg - 1], points_m[leg], start.end(), end.end(), ignored, 0, counters)) return true;
+    }
+    return false;
+  }
+
+  /// Adds a leg and the sheets noted to a path.
+  void walk(const Vec3& from_m, const Vec3& to_m, const IgnoredBodies& ignored, Path& path) const {
     for (const Crossing& crossing : crossings_) {
       path.interactions.push_back(
           {InteractionKind::transmission, crossing.facet, from_m + crossing.t * (to_m - from_m)});
     }
-    left -= crossings_.size();
-    path.length_m += leg_length_m;
+    path.length_m += glm::distance(from_m, to_m);
     add_foliage_along(scene(), from_m, to_m, ignored, path.foliage);
-    return true;
   }
 
   Interaction interaction_at(SequenceElement element, const Vec3& point_m, bool in_shadow) const {

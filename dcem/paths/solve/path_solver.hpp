@@ -76,10 +76,8 @@ class PathSolver {
                                            : touches_mirror(element.mirror(), index, sequence, ignored);
       if (!holds) return std::nullopt;
     }
-    // Most candidates die on a leg, and of several legs on one in the middle; what touches an edge takes longer to ask.
-    const std::vector<Vec3>& points_m = points_.points_m();
-    if (legs_.is_blocked_between(sequence, points_m, ignored, counters_)) return std::nullopt;
-    std::optional<Path> path = legs_.follow(transmitter, receiver, sequence, points_m, in_shadow_, counters_);
+    // What touches an edge takes longer to ask than whether the legs are free.
+    std::optional<Path> path = legs_.follow(transmitter, receiver, sequence, points_.points_m(), in_shadow_, counters_);
     for (std::size_t index = 0; index < sequence.size() && path; ++index) {
       const SequenceElement element = sequence[sequence.size() - 1 - index];
       if (!element.is_edge()) continue;
@@ -124,18 +122,22 @@ class PathSolver {
   /// its faces.
   bool touches_edge(std::size_t index, const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
                     const IgnoredBodies& ignored) {
-    const WorldWedge& wedge = scene().wedge(sequence[sequence.size() - 1 - index].edge());
+    const WedgeId id = sequence[sequence.size() - 1 - index].edge();
+    const WorldWedge& wedge = scene().wedge(id);
     if (!diffracts(wedge, rules_) || tracer_.is_ignored(wedge.body, ignored)) return false;
     const std::vector<Vec3>& points_m = points_.points_m();
     const Vec3& here_m = points_m[index];
+    if (contact_at(id, rules_).is_touched(along_edge_m(wedge.edge, here_m))) return false;
     const Vec3& before_m = index == 0 ? transmitter.position_m : points_m[index - 1];
     const Vec3& after_m = index + 1 == points_m.size() ? receiver.position_m : points_m[index + 1];
     const std::optional<FacetId> from = index > 0 ? face_between(index - 1, sequence) : std::nullopt;
     const std::optional<FacetId> to = index + 1 < sequence.size() ? face_between(index, sequence) : std::nullopt;
     if (from && to) return false;  // the terms of such an edge cancel down to rounding
-    if (!from && !clear_of_faces(wedge.edge, before_m - here_m)) return false;
-    if (!to && !clear_of_faces(wedge.edge, after_m - here_m)) return false;
-    const double turn_rad = azimuth_rad(wedge, before_m - here_m, from) - azimuth_rad(wedge, after_m - here_m, to);
+    const double before_rad = azimuth_rad(wedge, before_m - here_m, from);
+    if (!from && !clear_of_faces(wedge.edge, before_m - here_m, before_rad)) return false;
+    const double after_rad = azimuth_rad(wedge, after_m - here_m, to);
+    if (!to && !clear_of_faces(wedge.edge, after_m - here_m, after_rad)) return false;
+    const double turn_rad = before_rad - after_rad;
     in_shadow_[index] = from || to ? std::abs(turn_rad) > pi : hides(wedge, before_m, after_m, std::abs(turn_rad));
     return !rules_.shadow_only || in_shadow_[index];
   }
@@ -162,6 +164,7 @@ class PathSolver {
   /// Whether a third facet is at the path's point `index`, on an edge: then nothing diffracts there.
   bool touches_third(WedgeId id, std::size_t index, const IgnoredBodies& ignored) {
     const WorldWedge& wedge = scene().wedge(id);
+    if (contact_at(id, rules_).is_free(along_edge_m(wedge.edge, points_.points_m()[index]))) return false;
     const double tolerance_m = scene().settings().weld_tolerance_m + wedge.edge.stray_m;
     const std::vector<FacetId> near =
         tracer_.facets_near(points_.points_m()[index], tolerance_m, ignored, counters_.traversal);
@@ -177,18 +180,21 @@ class PathSolver {
     return tracer_.meets(wedge.facets[0], before_m, after_m) || tracer_.meets(wedge.facets[1], before_m, after_m);
   }
 
-  /// In the exterior, and off both faces by more than rounding.
-  static bool clear_of_faces(const Wedge& wedge, const Vec3& away_m) {
-    if (!in_exterior(wedge, away_m)) return false;
+  /// In the exterior, and off both faces by more than rounding. `angle_rad`: the azimuth of the direction.
+  static bool clear_of_faces(const Wedge& wedge, const Vec3& away_m, double angle_rad) {
+    if (!(angle_rad > 0.0 && angle_rad < wedge.exterior_angle_rad)) return false;
     const double across_m = std::hypot(glm::dot(away_m, wedge.tangent), glm::dot(away_m, wedge.normal));
-    const double azimuth = azimuth_rad(wedge, away_m);
-    return across_m * std::min(azimuth, wedge.exterior_angle_rad - azimuth) > in_plane_guard_m;
+    return across_m * std::min(angle_rad, wedge.exterior_angle_rad - angle_rad) > in_plane_guard_m;
   }
 
   /// The first valid sequence, before this one in order of precedence, over facets that lie on top of the path's own
   /// ones at its reflection points.
   std::optional<std::pair<Sequence, Path>> preferred_duplicate(const LinkEnd& transmitter, const LinkEnd& receiver,
                                                                const Sequence& sequence, const Path& path) {
+    const auto stands_alone = [&](SequenceElement element) {
+      return element.is_edge() || is_unstacked(element.mirror(), rules_);
+    };
+    if (std::ranges::all_of(sequence, stands_alone)) return std::nullopt;
     const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
     std::vector<std::vector<SequenceElement>> choices(sequence.size());
     bool any = false;

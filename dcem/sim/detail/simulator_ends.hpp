@@ -14,12 +14,12 @@ namespace dcem {
 template <SurfaceModel Surface, SpatialIndex Index>
 typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface, Index>::transmitter_ends(
     std::span<const Device> devices, std::size_t receivers, std::span<EdgeReach> reach, std::span<KeptHalf> halves,
-    std::vector<char> embedded, bool fine) const {
+    SceneContacts contacts, bool fine) const {
   TransmitterEnds ends;
   ends.devices = devices;
   const bool are_of_scene = devices.data() == scene_.transmitters().data();
   ends.by_id = are_of_scene ? numbers_ : std::make_shared<const detail::DeviceNumbers>(detail::numbers_by_id(devices));
-  ends.embedded = std::move(embedded);
+  ends.contacts = std::move(contacts);
   ends.link.resize(devices.size());
   ends.radio.resize(devices.size());
   pool_->for_each_quick(devices.size(), [&](std::size_t index) {
@@ -29,7 +29,7 @@ typename BasicSimulator<Surface, Index>::TransmitterEnds BasicSimulator<Surface,
     ends.radio[index].emplace(detail::radio_end(devices[index], state));
   });
   ends.reached.resize(ends.link.size());
-  const PathSearchSettings search = search_settings(ends.embedded);
+  const PathSearchSettings search = search_settings(ends.contacts.known());
   if (search.max_diffractions > 0 && (search.exhaustive || needs_rays(search))) find_transmitter_reach(ends, reach);
   if (plan_.joined > 0 && search.max_interactions > 0) find_transmitter_halves(ends, receivers, halves, fine);
   if (settings_.propagation.diffuse.enabled) look_at_surfaces(ends);
@@ -65,7 +65,7 @@ void BasicSimulator<Surface, Index>::look_at_surfaces(TransmitterEnds& ends) con
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& ends, std::size_t receivers,
                                                              std::span<KeptHalf> halves, bool fine) const {
-  const PathSearchSettings search = search_settings(ends.embedded);
+  const PathSearchSettings search = search_settings(ends.contacts.known());
   const bool triples = joins_triples(search);
   const auto serves = [&](const KeptHalf& half) { return !triples || half.lists() != nullptr; };
   const bool are_kept = ends.devices.data() == scene_.transmitters().data();
@@ -98,7 +98,7 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::find_transmitter_reach(TransmitterEnds& ends, std::span<EdgeReach> reach) const {
   const Tracer tracer(scene_, index_);
-  const PathSearchSettings search = search_settings(ends.embedded);
+  const PathSearchSettings search = search_settings(ends.contacts.known());
   if (reach.empty()) {
     ends.own_reach.resize(ends.link.size());
     reach = ends.own_reach;

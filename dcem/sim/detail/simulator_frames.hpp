@@ -240,7 +240,7 @@ void BasicSimulator<Surface, Index>::forget_replaced(const ChangeSet& changes, C
 }
 
 template <SurfaceModel Surface, SpatialIndex Index>
-PathSearchSettings BasicSimulator<Surface, Index>::search_settings(std::span<const char> embedded_edges) const {
+PathSearchSettings BasicSimulator<Surface, Index>::search_settings(const KnownContacts& known) const {
   const PropagationSettings& propagation = settings_.propagation;
   return {plan_.exhaustive,
           reflection_order(propagation),
@@ -251,7 +251,7 @@ PathSearchSettings BasicSimulator<Surface, Index>::search_settings(std::span<con
           diffraction_order(propagation),
           interaction_order(propagation),
           {degrees_to_radians(propagation.diffraction.min_exterior_angle_deg), propagation.diffraction.free_edges,
-           propagation.diffraction.region == DiffractionRegion::shadow, embedded_edges},
+           propagation.diffraction.region == DiffractionRegion::shadow, known},
           plan_.joined,
           propagation.max_path_length_m.value_or(std::numeric_limits<double>::infinity())};
 }

@@ -5,7 +5,7 @@
 #include "dcem/channel/cell_average.hpp"
 #include "dcem/paths/halves/crowd_joiner.hpp"
 #include "dcem/paths/halves/crowd_triples.hpp"
-#include "dcem/paths/query/embedded_edges.hpp"
+#include "dcem/paths/query/scene_contacts.hpp"
 #include "dcem/sim/basic_simulator.hpp"
 #include "dcem/sim/detail/list_groups.hpp"
 #include "dcem/sim/detail/map_groups.hpp"
@@ -34,9 +34,11 @@ struct BasicSimulator<Surface, Index>::MapShare {
 
   MapShare(const BasicSimulator& simulator, const TransmitterEnds& ends)
       : transmitters(ends),
-        search(simulator.search_settings(ends.embedded)),
+        search(simulator.search_settings(ends.contacts.known())),
         crowds(std::max(1U, simulator.pool_->size())),
-        beams(joins_triples(search) ? crowds.size() : 0) {}
+        beams(joins_triples(search) ? crowds.size() : 0),
+        blockers(crowds.size()),
+        asked_edges(edges_of_use(simulator.scene_.wedges().size())) {}
 
   /// The sequences that paths to each of some points may take.
   Joined join(const BasicSimulator& simulator, std::span<const Vec3> points_m, unsigned worker, WorkCounters& work) {
@@ -44,7 +46,8 @@ struct BasicSimulator<Surface, Index>::MapShare {
     const Scene& scene = simulator.scene_;
     const FacetOutlines& outlines = *simulator.outlines_;
     const LaneScene& lanes = *simulator.lanes_;
-    const HalfSettings seen = half_settings(search);
+    HalfSettings seen = half_settings(search);
+    seen.asked_edges = asked_edges;
     Crowd& crowd = crowds[worker];
     crowd.look_from(scene, outlines, lanes, points_m, seen);
     if (!beams.empty()) beams[worker].look_from(scene, outlines, lanes, crowd, seen);
@@ -53,7 +56,8 @@ struct BasicSimulator<Surface, Index>::MapShare {
     for (std::size_t index = 0; index < transmitters.link.size(); ++index) {
       if (!transmitters.link[index]) continue;
       for (std::vector<SequenceList>& of_point : joined) of_point[index].add({});
-      CrowdGates<Index> gates(tracer, outlines, lanes, crowd, *transmitters.halves[index].lists(), counters.solver);
+      CrowdGates<Index> gates(tracer, outlines, lanes, crowd, *transmitters.halves[index].lists(), blockers[worker],
+                              counters.solver);
       const auto add = [&](const Sequence& sequence, std::size_t point) { joined[point][index].add(sequence); };
       CrowdJoiner<Index>(gates, joined_orders(search)).for_each_sequence(add);
       if (!beams.empty()) CrowdTriples<Index>(gates, beams[worker], joined_orders(search)).for_each_sequence(add);
@@ -62,10 +66,25 @@ struct BasicSimulator<Surface, Index>::MapShare {
     return joined;
   }
 
+  /// By edge, whether a transmitter lights it; empty where two elements may follow before one does.
+  std::vector<char> edges_of_use(std::size_t edges) const {
+    if (search.max_diffractions > 1 || !beams.empty()) return {};
+    std::vector<char> of_use(edges, 0);
+    for (std::size_t index = 0; index < transmitters.link.size(); ++index) {
+      if (!transmitters.link[index]) continue;
+      const BeamLists& lists = *transmitters.halves[index].lists();
+      for (std::uint32_t edge = 0; edge < edges; ++edge)
+        if (lists.lights(WedgeId(edge))) of_use[edge] = 1;
+    }
+    return of_use;
+  }
+
   const TransmitterEnds& transmitters;
   PathSearchSettings search;
   std::vector<Crowd> crowds;
   std::vector<CrowdBeams> beams;  ///< none where no sequences of three elements are joined
+  std::vector<Blockers> blockers;
+  std::vector<char> asked_edges;
 };
 
 /// What is asked of a map: where, how, and the receiver at each point. On a grid, points where none could stand are
@@ -114,11 +133,11 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
   const std::size_t size = order.places.size();
   const bool is_grid = order.places.is_grid();
   // Looking at an edge costs several microseconds; in a city it saves about a tenth of a millisecond per point.
-  const bool looks_for_embedded =
+  const bool looks_for_contacts =
       settings_.share_map_work && diffraction_order(settings_.propagation) > 0 && size >= scene_.wedges().size() / 10;
-  TransmitterEnds transmitters =
-      transmitter_ends(scene_.transmitters(), size, {}, {},
-                       looks_for_embedded ? embedded_edges(scene_, index_, *pool_) : std::vector<char>{}, true);
+  TransmitterEnds transmitters = transmitter_ends(
+      scene_.transmitters(), size, {}, {},
+      looks_for_contacts ? scene_contacts(scene_, index_, search_settings().edges, *pool_) : SceneContacts{}, true);
   // Maps hold no channel between elements, and their powers are those of one: none is computed.
   for (std::optional<RadioEnd>& end : transmitters.radio) end->antenna.array = {};
   const Tracer tracer(scene_, index_);

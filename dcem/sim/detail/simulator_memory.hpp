@@ -18,7 +18,7 @@ struct BasicSimulator<Surface, Index>::Following {
   Following(const BasicSimulator& simulator, const TransmitterEnds& ends, const Device& at_end, const LinkEnd& at,
             const RadioEnd& at_receiver)
       : transmitters(ends),
-        search(simulator.search_settings(ends.embedded)),
+        search(simulator.search_settings(ends.contacts.known())),
         tracer(simulator.scene_, simulator.index_),
         field(simulator.evaluator()),
         receiver(at_end),

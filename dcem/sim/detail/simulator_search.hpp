@@ -20,7 +20,7 @@ struct BasicSimulator<Surface, Index>::ReceiverSearch {
         outlines(simulator.outlines_ ? &*simulator.outlines_ : nullptr),
         lanes(simulator.lanes_.get()),
         tracer(simulator.scene_, simulator.index_),
-        search(simulator.search_settings(ends.embedded)),
+        search(simulator.search_settings(ends.contacts.known())),
         key{receiver.id, simulator.frame_.index},
         transmitters(ends),
         end(at),

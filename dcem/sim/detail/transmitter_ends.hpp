@@ -12,6 +12,7 @@
 #include "dcem/field/diffuse/scattering_limits.hpp"
 #include "dcem/field/radio_end.hpp"
 #include "dcem/paths/halves/link_halves.hpp"
+#include "dcem/paths/query/scene_contacts.hpp"
 #include "dcem/paths/visible/surface_view.hpp"
 #include "dcem/scene/scene.hpp"
 #include "dcem/sim/detail/device_numbers.hpp"
@@ -29,7 +30,7 @@ struct TransmitterEnds {
   std::vector<EdgeReach> own_reach;            ///< holds them where nothing is remembered
   HalfRefs halves;                             ///< none where the plan has none
   std::vector<KeptHalf> own_halves;            ///< holds them where nothing is kept
-  std::vector<char> embedded;                  ///< edges that no path can use; empty where nobody has looked
+  SceneContacts contacts;                      ///< what is known; empty where nobody has looked
   /// What each sees of surfaces, where diffuse power is asked for; none of those that are away.
   std::vector<std::shared_ptr<LitSurfaces>> surfaces;
   std::shared_ptr<const ScatteringLimits> limits;  ///< of the scene's materials, where diffuse power is asked for
@@ -74,7 +75,7 @@ inline TransmitterEnds TransmitterEnds::only(std::vector<std::uint32_t> chosen) 
     if (!surfaces.empty()) some.surfaces.push_back(surfaces[index]);
   }
   some.limits = limits;
-  some.embedded = embedded;
+  some.contacts = contacts;
   some.numbers = std::move(chosen);
   some.all = this;
   return some;

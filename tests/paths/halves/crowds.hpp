@@ -33,7 +33,8 @@ inline std::vector<std::vector<Path>> found_together(TracedScene<>& traced, cons
   Crowd crowd(pixels);
   crowd.look_from(traced.scene, outlines, lanes, points_m, half_settings_of(asked));
   SolverCounters counters;
-  CrowdGates<WideIndex> gates(traced.tracer, outlines, lanes, crowd, mast, counters);
+  Blockers blockers;
+  CrowdGates<WideIndex> gates(traced.tracer, outlines, lanes, crowd, mast, blockers, counters);
   const JoinOrders orders{asked.reflections, asked.diffractions, asked.interactions};
   CrowdJoiner<WideIndex> joiner(gates, orders);
   PathSolver<WideIndex> solver(traced.tracer, asked.transmissions, half_settings_of(asked).rules);

@@ -82,7 +82,8 @@ class Mast {
     Crowd crowd(half_.map_pixels());
     crowd.look_from(traced_.scene, outlines_, lanes_, points_m, half_settings_of(asked_));
     SolverCounters counters;
-    CrowdGates<WideIndex> gates(traced_.tracer, outlines_, lanes_, crowd, lists_, counters);
+    Blockers blockers;
+    CrowdGates<WideIndex> gates(traced_.tracer, outlines_, lanes_, crowd, lists_, blockers, counters);
     PathSolver<WideIndex> solver(traced_.tracer, asked_.transmissions, half_settings_of(asked_).rules);
     std::vector<std::vector<Path>> paths(points_m.size());
     const auto solve = [&](const Sequence& sequence, std::size_t point) {
