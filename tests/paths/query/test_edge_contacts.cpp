@@ -128,8 +128,11 @@ TriangleMesh pile(Draw& draw) {
     add_box_faces(mesh, low_m, low_m + Vec3(0.5 + step(8), 0.5 + step(8), 0.5 + step(6)), "metal");
   }
   for (std::size_t sheet = draw.below(4); sheet > 0; --sheet) {
-    const Vec3 middle_m(step(20) - 10, step(20) - 10, step(6));
-    const Vec3 along = draw.below(2) == 0 ? Vec3(1, 0, 0) : draw.direction();
+    // Some lie by a share of the weld tolerance, 1e-4, over what they lie on, or leave it along their length.
+    const double over_m = draw.below(2) == 0 ? draw.between(-1.2e-4, 1.2e-4) : 0.0;
+    const Vec3 middle_m(step(20) - 10, step(20) - 10, step(6) + over_m);
+    const double slope = draw.below(3) == 0 ? draw.between(-1e-4, 1e-4) : 0.0;
+    const Vec3 along = draw.below(3) > 0 ? Vec3(1, 0, slope) : draw.direction();
     const Vec3 across = draw.below(2) == 0 ? Vec3(0, 1, 0) : draw.direction();
     if (glm::length(glm::cross(along, across)) < 0.1) continue;
     add_sheet(mesh, middle_m, draw.between(0.2, 5) * along, draw.between(0.2, 5) * across, "glass");
