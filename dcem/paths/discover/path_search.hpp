@@ -18,6 +18,7 @@
 #include "dcem/paths/discover/search_counters.hpp"
 #include "dcem/paths/discover/search_settings.hpp"
 #include "dcem/paths/halves/covered.hpp"
+#include "dcem/paths/solve/fetch_elements.hpp"
 #include "dcem/paths/solve/path_solver.hpp"
 
 namespace dcem {
@@ -99,8 +100,12 @@ class PathSearch {
     Sequence sequence;
     for (std::size_t index = 0; index < transmitters_.size(); ++index) {
       if (!transmitters_[index]) continue;
-      for (std::size_t number = 0; number < proposed[index].size(); ++number) {
-        const std::span<const SequenceElement> elements = proposed[index][number];
+      const SequenceList& all = proposed[index];
+      constexpr std::size_t ahead = 4, soon = 2;
+      for (std::size_t number = 0; number < all.size(); ++number) {
+        if (number + ahead < all.size()) fetch_elements(tracer_.scene(), all[number + ahead]);
+        if (number + soon < all.size()) fetch_faces(tracer_.scene(), all[number + soon]);
+        const std::span<const SequenceElement> elements = all[number];
         sequence.assign(elements.begin(), elements.end());
         ++counters_.sequences_proposed;
         if (!is_remembered(index, sequence)) keep(index, solver_.solve(*transmitters_[index], receiver_, sequence));

@@ -57,6 +57,10 @@ class BeamLists {
   static constexpr std::size_t of_scenery = 0, of_moved = 1, of_others = 2;
   std::span<const BeamTable, 3> tables() const { return tables_; }
 
+  /// Asks for what is listed of a facet that is soon asked about.
+  [[gnu::always_inline]] void fetch(FacetId facet) const {
+    for (const BeamTable& table : tables_) table.fetch(facet);
+  }
   /// Of all of them, as `BeamTable` has it: the places of the mirrors over which the end may light a facet, and whose
   /// images may lie in a cone …
   template <typename Visit>

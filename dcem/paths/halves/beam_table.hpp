@@ -64,6 +64,11 @@ class BeamTable {
     const RowIndex::Row lit = lit_rows_.row(edge.value);
     return !parts_of(edge).empty() || lit.first != lit.last;
   }
+  /// Asks for what is listed of a facet that is soon asked about.
+  [[gnu::always_inline]] void fetch(FacetId facet) const {
+    before_rows_.fetch(facet.value);
+    if (facet.value < listed_facets_) before_part_rows_.fetch(facet.value);
+  }
   /// Calls `visit(part)` for parts on which the point that diffracts between the end and an apex may lie in a cone, for
   /// the apex at `apex` or within `radius_m` of it.
   template <typename Visit>

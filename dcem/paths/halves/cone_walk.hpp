@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "dcem/core/fetch.hpp"
 #include "dcem/core/simd.hpp"
 #include "dcem/paths/halves/cone_items.hpp"
 
@@ -232,7 +233,11 @@ inline void visit_parts(const BoxTree& tree, std::span<const EightParts> parts, 
 /// … of those of all parts that have these numbers, a multiple of eight …
 inline void visit_listed_parts(std::span<const PartRecord> all, std::span<const std::uint32_t> numbers,
                                std::span<const HalfSpace> cone, const ConeTarget& target, const EightsVisitor& visit) {
+  constexpr std::size_t ahead = 2 * simd_lanes;
   for (std::size_t first = 0; first < numbers.size(); first += simd_lanes) {
+    if (first + ahead < numbers.size()) {
+      for (std::size_t lane = 0; lane < simd_lanes; ++lane) fetch(all[numbers[first + ahead + lane]]);
+    }
     const std::uint32_t lanes = parts_met<false>(PartLanes(all, &numbers[first]), cone, target);
     if (lanes != 0) visit(first, lanes);
   }

@@ -4,10 +4,12 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "dcem/core/fetch.hpp"
 #include "dcem/paths/halves/beam_lists.hpp"
 #include "dcem/paths/halves/crowd.hpp"
 #include "dcem/paths/halves/leg_hints.hpp"
@@ -41,6 +43,17 @@ class CrowdGates {
   const LaneScene& lanes() const { return lanes_; }
   const Crowd& crowd() const { return crowd_; }
   const BeamLists& mast() const { return mast_; }
+  /// A mirror that is soon asked about: first the facet, and, when it has come, what belongs to it.
+  [[gnu::always_inline]] void fetch(FacetId facet) const {
+    dcem::fetch(scene_.facet(facet));
+    dcem::fetch(outlines_.of(facet));
+    dcem::fetch(lanes_.plane(facet));
+    mast_.fetch(facet);
+  }
+  [[gnu::always_inline]] void fetch_more(FacetId facet) const {
+    dcem::fetch(outlines_.sides(facet));
+    dcem::fetch(lanes_.sides(facet));
+  }
   /// The points of the crowd, eight at a time.
   std::span<const LanePoints> packs() const { return packs_; }
   /// The middle of the crowd, from the origin of the numbers in single precision.
@@ -106,14 +119,20 @@ class CrowdGates {
     stop.at.points.z.store(place[2]);
     stop.at.beside_m.store(beside_m);
     const double factor = nearer(sight, stop.element);
-    std::uint32_t left = 0;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+    std::array<std::optional<ViewMap::PointPixels>, simd_lanes> pixels;
+    for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      if (!(beside_m[lane] < too_vague_m)) continue;
       const Vec3 point_m = lanes_.origin_m() + Vec3(place[0][lane], place[1][lane], place[2][lane]);
-      if (beside_m[lane] < too_vague_m && sight.map().hides(point_m, factor, beside_m[lane])) continue;
-      left |= lanes & -lanes;
+      pixels[lane] = sight.map().pixels_of_point(point_m, factor, beside_m[lane]);
+      if (pixels[lane]) sight.map().fetch_pixels(*pixels[lane]);
     }
-    return left;
+    std::uint32_t seen = 0;
+    for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
+      const auto& of = pixels[static_cast<std::size_t>(std::countr_zero(left))];
+      if (!of || !sight.map().hides(*of)) seen |= left & -left;
+    }
+    return seen;
   }
 
   const Scene& scene_;

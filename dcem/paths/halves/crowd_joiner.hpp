@@ -75,7 +75,11 @@ class CrowdJoiner {
   /// The receivers' last point is on a mirror, the one before it on a mirror or an edge.
   template <typename Visit>
   void over_mirrors(const SeenLayer& layer, bool edges, Visit& visit) {
-    for (const FacetId facet : layer.mirrors) {
+    constexpr std::size_t ahead = 12, soon = 6;
+    for (std::size_t at = 0; at < layer.mirrors.size(); ++at) {
+      if (at + ahead < layer.mirrors.size()) gates_.fetch(layer.mirrors[at + ahead]);
+      if (at + soon < layer.mirrors.size()) gates_.fetch_more(layer.mirrors[at + soon]);
+      const FacetId facet = layer.mirrors[at];
       if (!mast().lights(facet)) continue;
       const Plane& plane = scene_.facet(facet).plane;
       images_.clear();
@@ -117,14 +121,14 @@ class CrowdJoiner {
     const float error_m = gates_.error_with(glm::length(image_m) + lanes_.reach_m());
     mast().for_each_part_before(last, cone_, image_m, gates_.radius_m(), [&](const EdgePart& part) {
       const WedgeId first(part.edge);
-      const WorldWedge& wedge = scene_.wedge(first);
-      if (wedge.facets[0] == last || wedge.facets[1] == last) return;  // that is in the wedge's own terms
       for (std::size_t pack = 0; pack < images_.size(); ++pack) {
         const LaneGate at_first = lanes_.meet(part, images_[pack], error_m, beside_[pack]);
         if (at_first.lanes == 0) continue;
         const LaneGate at_last =
             lanes_.cross(last, at_first.points, images_[pack], Float8(error_m) + at_first.beside_m, at_first.lanes);
         if (at_last.lanes == 0) continue;
+        const WorldWedge& wedge = scene_.wedge(first);
+        if (wedge.facets[0] == last || wedge.facets[1] == last) return;  // that is in the wedge's own terms
         gates_.offer(pack, std::array{CrowdStop{last, at_last}, CrowdStop{first, at_first}}, at_last.lanes, visit);
       }
     });

@@ -33,8 +33,8 @@ class EdgeLooker {
   const FacetOutlines& outlines_;
   bool hides_sheets_;
   KellerView view_;
-  std::vector<char> is_asked_;  ///< by facet
-  std::vector<FacetId> asked_;
+  std::vector<char> is_asked_;                       ///< by facet
+  std::vector<FacetId> asked_, grazed_;              ///< in the view being made
   std::vector<std::array<std::uint32_t, 2>> shown_;  ///< a facet, and the cells from which it may be seen
 };
 

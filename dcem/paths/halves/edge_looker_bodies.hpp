@@ -21,9 +21,15 @@ DCEM_INLINE void EdgeLooker::look_over(std::span<const EdgePart> all, std::size_
   view_.look_from(wedge.edge, parts);
   shown_.clear();
   const auto hidden = [&](const Aabb<double>& box) { return view_.hides(box); };
-  outlines_.visit_from(0.5 * (view_.first_m() + view_.last_m()), hidden, [&](FacetId id) { ask(id, wedge); });
-  outlines_.for_each_grazed_between(view_.first_m(), view_.last_m(), 1.0 / nearer_boxes_share,
-                                    [&](FacetId id) { ask(id, wedge); });
+  const auto ask_one = [&](FacetId id) { ask(id, wedge); };
+  outlines_.visit_from(scene_, 0.5 * (view_.first_m() + view_.last_m()), hidden, ask_one);
+  outlines_.for_each_grazed_between(view_.first_m(), view_.last_m(), 1.0 / nearer_boxes_share, [&](FacetId id) {
+    if (is_asked_[id.value] != 0) return;
+    outlines_.fetch(scene_, id);
+    grazed_.push_back(id);
+  });
+  std::ranges::for_each(grazed_, ask_one);
+  grazed_.clear();
   for (const FacetId id : asked_) is_asked_[id.value] = 0;
   asked_.clear();
   for (const auto& [facet, cells] : shown_) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/core/fetch.hpp"
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/paths/halves/cone.hpp"
@@ -58,6 +59,11 @@ class FacetOutlines {
   void update(const Scene& scene, std::span<const BodyId> moved);
 
   const FacetOutline& of(FacetId facet) const { return outlines_[facet.value]; }
+  /// A facet that is soon looked at.
+  [[gnu::always_inline]] void fetch(const Scene& scene, FacetId facet) const {
+    dcem::fetch(scene.facet(facet));
+    dcem::fetch(of(facet));
+  }
   /// In the middle of the scenery: from here the exact search counts in single precision.
   const Vec3& middle_m() const { return middle_m_; }
   std::size_t size() const { return outlines_.size(); }
@@ -109,7 +115,7 @@ class FacetOutlines {
   /// Calls `visit(facet)` for all facets of the scenery but those in boxes of which `hidden(box)` is true when their
   /// turn comes: boxes near to the point come before those behind them.
   template <typename Hidden, typename Visit>
-  void visit_from(const Vec3& point_m, Hidden&& hidden, Visit&& visit) const {
+  void visit_from(const Scene& scene, const Vec3& point_m, Hidden&& hidden, Visit&& visit) const {
     if (nodes_.empty()) return;
     std::vector<Waiting> waiting{{distance_squared(nodes_[0].box, point_m), 0}};
     const auto push = [&](std::uint32_t node) {
@@ -126,7 +132,17 @@ class FacetOutlines {
         push(number + 1);
         push(node.right);
       }
-      for (std::uint32_t index = node.first; index < node.first + node.count; ++index) visit(FacetId(items_[index]));
+      // What comes next is fetched while this is looked at.
+      const std::span<const FacetId> here = facets_in(node);
+      const std::span<const FacetId> next =
+          waiting.empty() ? std::span<const FacetId>{} : facets_in(nodes_[waiting.front().node]);
+      for (const FacetId id : next) fetch(scene, id);
+      for (const FacetId id : here) fetch_hull(scene, id);
+      for (std::size_t at = 0; at < here.size(); ++at) {
+        visit(here[at]);
+        if (at > 0) continue;
+        for (const FacetId id : next) fetch_hull(scene, id);
+      }
     }
   }
 
@@ -166,11 +182,18 @@ class FacetOutlines {
     for (std::size_t first = 0; first < items_.size(); first += simd_lanes) {
       for (std::uint32_t left = asked(planes_[first / simd_lanes]).bits(); left != 0; left &= left - 1) {
         const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(left));
-        if (at < items_.size()) visit(FacetId(items_[at]));
+        if (at < items_.size()) visit(items_[at]);
       }
     }
   }
 
+  [[gnu::always_inline]] static void fetch_hull(const Scene& scene, FacetId facet) {
+    dcem::fetch(scene.hull_m(scene.facet(facet)));
+  }
+
+  std::span<const FacetId> facets_in(const Node& node) const {
+    return std::span(items_).subspan(node.first, node.count);
+  }
   static double distance_squared(const Aabb<double>& box, const Vec3& point_m) {
     const Vec3 way_m = glm::clamp(point_m, box.min, box.max) - point_m;
     return glm::dot(way_m, way_m);
@@ -190,9 +213,9 @@ class FacetOutlines {
 
   std::vector<FacetOutline> outlines_;
   std::vector<HullSide> sides_;
-  std::vector<std::uint32_t> items_;  ///< facets of the scenery, in the order of the leaves
-  std::vector<Node> nodes_;           ///< the root first
-  std::vector<PlaneLanes> planes_;    ///< in the order of `items_`
+  std::vector<FacetId> items_;      ///< facets of the scenery, in the order of the leaves
+  std::vector<Node> nodes_;         ///< the root first
+  std::vector<PlaneLanes> planes_;  ///< in the order of `items_`
   std::vector<BodyFacets> bodies_;
   std::vector<BodyId> bodies_there_;  ///< those that are not absent …
   ConeClusters body_clusters_;        ///< … and their boxes

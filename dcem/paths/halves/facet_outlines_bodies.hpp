@@ -27,7 +27,7 @@ DCEM_INLINE FacetOutlines::FacetOutlines(const Scene& scene) : outlines_(scene.f
   }
   const std::uint32_t scenery = end_of_body(scene, 0);
   for (std::uint32_t index = 0; index < scenery; ++index) {
-    if (!outlines_[index].box.empty()) items_.push_back(index);
+    if (!outlines_[index].box.empty()) items_.push_back(FacetId(index));
   }
   if (!items_.empty()) {
     grow(0, static_cast<std::uint32_t>(items_.size()));
@@ -116,12 +116,12 @@ DCEM_INLINE void FacetOutlines::lay_out_planes(const Scene& scene) {
   for (std::size_t at = 0; at < items_.size(); ++at) {
     PlaneLanes& eight = planes_[at / simd_lanes];
     const std::size_t lane = at % simd_lanes;
-    const Plane& plane = scene.facets()[items_[at]].plane;
+    const Plane& plane = scene.facet(items_[at]).plane;
     eight.x[lane] = static_cast<float>(plane.normal.x);
     eight.y[lane] = static_cast<float>(plane.normal.y);
     eight.z[lane] = static_cast<float>(plane.normal.z);
     eight.offset[lane] = static_cast<float>(glm::dot(plane.normal, plane.point_m - middle_m_));
-    eight.lift[lane] = static_cast<float>(outlines_[items_[at]].lift_m);
+    eight.lift[lane] = static_cast<float>(of(items_[at]).lift_m);
   }
 }
 
@@ -137,8 +137,8 @@ DCEM_INLINE void FacetOutlines::grow(std::uint32_t first, std::uint32_t count) {
   nodes_.push_back({{}, first, count, 0});
   Aabb<double> centres;
   for (std::uint32_t index = first; index < first + count; ++index) {
-    nodes_[number].box.extend(outlines_[items_[index]].box);
-    centres.extend(outlines_[items_[index]].box.center());
+    nodes_[number].box.extend(of(items_[index]).box);
+    centres.extend(of(items_[index]).box.center());
   }
   if (count <= leaf_size) return;
   const Vec3 size = centres.extent();
@@ -154,10 +154,10 @@ DCEM_INLINE void FacetOutlines::grow(std::uint32_t first, std::uint32_t count) {
 DCEM_INLINE void FacetOutlines::divide(std::uint32_t first, std::uint32_t count, int axis) {
   places_.clear();
   for (std::uint32_t index = first; index < first + count; ++index) {
-    places_.emplace_back(outlines_[items_[index]].box.center()[axis], items_[index]);
+    places_.emplace_back(of(items_[index]).box.center()[axis], items_[index].value);
   }
   std::nth_element(places_.begin(), places_.begin() + count / 2, places_.end());
-  for (std::uint32_t index = 0; index < count; ++index) items_[first + index] = places_[index].second;
+  for (std::uint32_t index = 0; index < count; ++index) items_[first + index] = FacetId(places_[index].second);
 }
 
 }  // namespace dcem

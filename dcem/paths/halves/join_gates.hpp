@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "dcem/core/fetch.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 #include "dcem/paths/sequence.hpp"
 #include "dcem/paths/solve/wedge_method.hpp"
@@ -18,20 +19,14 @@ class JoinGates {
 
   /// Elements that are soon asked about: in a large city each lies somewhere else in memory, and that takes longer than
   /// the questions. First the element …
-  void fetch(FacetId facet) const {
-    __builtin_prefetch(&scene_.facet(facet));
-    __builtin_prefetch(&outlines_.of(facet).lift_m);
+  [[gnu::always_inline]] void fetch(FacetId facet) const {
+    dcem::fetch(scene_.facet(facet));
+    dcem::fetch(outlines_.of(facet).lift_m);
   }
-  void fetch(WedgeId edge) const {
-    const auto* const wedge = reinterpret_cast<const char*>(&scene_.wedge(edge));
-    for (std::size_t at = 0; at < sizeof(WorldWedge); at += cache_line) __builtin_prefetch(wedge + at);
-  }
+  [[gnu::always_inline]] void fetch(WedgeId edge) const { dcem::fetch(scene_.wedge(edge)); }
   /// … and, when that has come, what belongs to it.
-  void fetch_more(FacetId facet) const {
-    const auto sides = std::as_bytes(outlines_.sides(facet));
-    for (std::size_t at = 0; at < sides.size(); at += cache_line) __builtin_prefetch(sides.data() + at);
-  }
-  void fetch_more(WedgeId edge) const {
+  [[gnu::always_inline]] void fetch_more(FacetId facet) const { dcem::fetch(outlines_.sides(facet)); }
+  [[gnu::always_inline]] void fetch_more(WedgeId edge) const {
     for (const FacetId face : scene_.wedge(edge).facets) fetch(face);
   }
 
@@ -64,8 +59,6 @@ class JoinGates {
   static constexpr double beside_m = 2e-3;
 
  private:
-  static constexpr std::size_t cache_line = 64;
-
   const Scene& scene_;
   const FacetOutlines& outlines_;
 };

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "dcem/core/fetch.hpp"
+
 namespace dcem {
 
 class RowIndex {
@@ -26,19 +28,20 @@ class RowIndex {
   std::span<const std::uint32_t> used() const { return used_; }
   /// The places under a number.
   Row row(std::uint32_t number) const {
-    const std::size_t at = row_of_.empty() ? found(number) : row_of_[number];
-    return at == none ? Row{} : Row{first_[at], first_[at + 1]};
+    if (!rows_.empty()) return rows_[number];
+    const auto at = std::ranges::lower_bound(used_, number);
+    if (at == used_.end() || *at != number) return {};
+    const auto place = static_cast<std::size_t>(at - used_.begin());
+    return {first_[place], first_[place + 1]};
+  }
+  /// Asks for a row that is soon read.
+  [[gnu::always_inline]] void fetch(std::uint32_t number) const {
+    if (!rows_.empty()) dcem::fetch(rows_[number]);
   }
 
  private:
-  static constexpr std::uint32_t none = 0xffffffffU;
-  std::size_t found(std::uint32_t number) const {
-    const auto at = std::ranges::lower_bound(used_, number);
-    return at == used_.end() || *at != number ? none : static_cast<std::size_t>(at - used_.begin());
-  }
-
   std::vector<std::uint32_t> used_, first_;
-  std::vector<std::uint32_t> row_of_;  ///< by number; none where few are used, and looked for
+  std::vector<Row> rows_;  ///< by number; none where few are used, and looked for
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -48,7 +51,7 @@ void RowIndex::build(std::size_t numbers, std::size_t items, std::uint32_t unit,
   constexpr std::size_t few = 16;  // of so many numbers one is used, and a table of all costs more than it saves
   used_.clear();
   first_.clear();
-  row_of_.clear();
+  rows_.clear();
   if (items == 0) return;
   std::vector<std::uint32_t> next(numbers, 0);
   for (std::size_t item = 0; item < items; ++item) ++next[number_of(item)];
@@ -64,8 +67,8 @@ void RowIndex::build(std::size_t numbers, std::size_t items, std::uint32_t unit,
   first_.push_back(place);
   for (std::size_t item = 0; item < items; ++item) put(item, next[number_of(item)]++);
   if (used_.size() * few < numbers) return;
-  row_of_.assign(numbers, none);
-  for (std::uint32_t at = 0; at < used_.size(); ++at) row_of_[used_[at]] = at;
+  rows_.resize(numbers);
+  for (std::size_t at = 0; at < used_.size(); ++at) rows_[used_[at]] = {first_[at], first_[at + 1]};
 }
 
 }  // namespace dcem

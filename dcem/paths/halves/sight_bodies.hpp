@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dcem/core/build_mode.hpp"
+#include "dcem/core/fetch.hpp"
 #include "dcem/core/thread_pool.hpp"
 #include "dcem/paths/halves/facet_edges.hpp"
 #include "dcem/paths/halves/sight.hpp"
@@ -101,8 +102,11 @@ DCEM_INLINE void Sight::begin_looking(const Scene& scene, const FacetOutlines& o
   reach_m_ = settings.reach_m + radius_m_ + in_reach_m;
   grazed_.clear();
   outlines.for_each_grazed(position_m(), radius_m_, lift_share() / longest_lift_share, [&](FacetId id) {
-    if (is_lifted_far(scene, outlines, id) && !is_out_of_view(outlines.of(id).box)) grazed_.push_back(id);
+    outlines.fetch(scene, id);
+    grazed_.push_back(id);
   });
+  std::erase_if(grazed_,
+                [&](FacetId id) { return !is_lifted_far(scene, outlines, id) || is_out_of_view(outlines.of(id).box); });
 }
 
 DCEM_INLINE void Sight::look_at_each_face(const Scene& scene, const FacetOutlines& outlines,
@@ -150,7 +154,7 @@ DCEM_INLINE void Sight::look_at_faces(const Scene& scene, const FacetOutlines& o
   const auto hidden = [&](const Aabb<double>& box) {
     return is_out_of_view(box) || map_.hides(box, nearer_boxes, faces);
   };
-  outlines.visit_from(position_m(), hidden, look_at);
+  outlines.visit_from(scene, position_m(), hidden, look_at);
   for (const FacetId id : grazed_) look_at(id);
 }
 
@@ -223,13 +227,30 @@ DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outline
   return map_.shows(inside.corners(), facet.plane, nearer_on(scene, outlines, id), faces);
 }
 
+/// Drops edges. Those after the one that is asked about are fetched, and then their faces.
+template <typename Drop>
+void keep_edges(const Scene& scene, const FacetOutlines& outlines, std::vector<WedgeId>& edges, Drop&& drop) {
+  constexpr std::size_t ahead = 8, soon = 4;
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < edges.size(); ++at) {
+    if (at + ahead < edges.size()) fetch(scene.wedge(edges[at + ahead]));
+    if (at + soon < edges.size()) {
+      for (const FacetId face : scene.wedge(edges[at + soon]).facets) {
+        fetch(scene.facet(face).plane);
+        fetch(outlines.of(face).stray_m);
+      }
+    }
+    if (!drop(edges[at])) edges[kept++] = edges[at];
+  }
+  edges.resize(kept);
+}
+
 /// Adds the edges. Where a point of an edge is seen from its exterior, so is one of its faces beside it: but for a
 /// third facet that touches it there, and then nothing diffracts.
 DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                SeenLayer& layer, ThreadPool* pool) const {
   const auto out_of_reach = [&](WedgeId id) {
     const WorldWedge& wedge = scene.wedge(id);
-    if (!settings.asked_edges.empty() && settings.asked_edges[id.value] == 0) return true;
     if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules) || is_inside(wedge.edge)) return true;
     const Vec3 &start_m = wedge.edge.start_m, &end_m = wedge.edge.end_m;
     if (is_beyond({glm::min(start_m, end_m), glm::max(start_m, end_m)})) return true;
@@ -238,8 +259,11 @@ DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines
   std::ranges::sort(layer.mirrors);
   collect_edges(scene, settings.edges ? std::span<const FacetId>(layer.mirrors) : std::span<const FacetId>(),
                 layer.edges);
+  if (!settings.asked_edges.empty()) {
+    std::erase_if(layer.edges, [&](WedgeId id) { return settings.asked_edges[id.value] == 0; });
+  }
   if (pool == nullptr) {
-    std::erase_if(layer.edges, out_of_reach);
+    keep_edges(scene, outlines, layer.edges, out_of_reach);
   } else {
     std::vector<char> is_out(layer.edges.size());
     pool->for_each_quick(is_out.size(), [&](std::size_t at) { is_out[at] = out_of_reach(layer.edges[at]) ? 1 : 0; });

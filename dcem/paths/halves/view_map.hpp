@@ -11,10 +11,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "dcem/core/error.hpp"
+#include "dcem/core/fetch.hpp"
 #include "dcem/core/raw_vector.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/geometry/plane.hpp"
@@ -100,8 +102,29 @@ class ViewMap {
   bool shows(std::span<const Vec3> corners_m, const Plane& plane, double nearer, const FaceSpan& on = {}) const;
   /// Whether a straight line, its distance divided by `nearer` ≥ 1, may be seen.
   bool shows(const Vec3& from_m, const Vec3& to_m, double nearer) const;
-  /// Whether a point that is known to within `beside_m`, its distance divided by `nearer` ≥ 1, is hidden for sure.
-  bool hides(const Vec3& point_m, double nearer, double beside_m = 0.0) const;
+  /// From the first to the last.
+  struct PixelRange {
+    int first, last;
+  };
+  /// The pixels in which a point is seen, and its nearness there.
+  struct PointPixels {
+    PixelRange rows, columns;
+    int face;
+    float nearness;
+  };
+  /// Those of a point that is known to within `beside_m`, its distance divided by `nearer` ≥ 1; none where they say
+  /// nothing of it.
+  std::optional<PointPixels> pixels_of_point(const Vec3& point_m, double nearer, double beside_m = 0.0) const;
+  /// Asks for the first of them before they are looked at.
+  [[gnu::always_inline]] void fetch_pixels(const PointPixels& of) const {
+    fetch(row(of.face, of.rows.first)[of.columns.first]);
+  }
+  /// Whether what is in them is hidden for sure.
+  bool hides(const PointPixels& of) const;
+  bool hides(const Vec3& point_m, double nearer, double beside_m = 0.0) const {
+    const std::optional<PointPixels> pixels = pixels_of_point(point_m, nearer, beside_m);
+    return pixels && hides(*pixels);
+  }
   /// Whether nothing of a box is over a face.
   bool is_beside(const Aabb<double>& box, int face) const {
     const auto [low, high] = faces_.box(face, {box.min - from_m_, box.max - from_m_});
@@ -150,16 +173,16 @@ class ViewMap {
     outline.clip(reach);
     return outline.size() > 0;
   }
+  /// Of a block, so many pixels to a side from a row and a column on: whether some pixel is filled by nothing as near,
+  /// and filling all of them at least so near.
+  bool is_nearer(int face, const std::array<int, 2>& first, int block, float nearness) const;
+  void bring_nearer(int face, const std::array<int, 2>& first, int block, float nearness);
   bool is_over_upright_face(std::span<const Vec3> corners_m, const FaceSpan& on) const;
   template <typename Fill>
   void cover_with(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on, double stray_m, Fill&& fill);
   template <typename Fill>
   void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, const FaceSpan& on,
                       Fill&& fill);
-  /// From the first to the last.
-  struct PixelRange {
-    int first, last;
-  };
   bool pixels_hide(int face, const PixelRange& rows, const PixelRange& columns, float nearness) const;
   bool tiles_hide(int face, const PixelRange& rows, const PixelRange& columns, float nearness) const;
   static bool is_beside(const detail::FacePoint& low, const detail::FacePoint& high) {

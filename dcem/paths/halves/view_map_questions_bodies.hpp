@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "dcem/core/build_mode.hpp"
@@ -53,24 +54,30 @@ DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nea
   return false;
 }
 
-DCEM_INLINE bool ViewMap::hides(const Vec3& point_m, double nearer, double beside_m) const {
+DCEM_INLINE std::optional<ViewMap::PointPixels> ViewMap::pixels_of_point(const Vec3& point_m, double nearer,
+                                                                         double beside_m) const {
   const Vec3 offset_m = point_m - from_m_, size = glm::abs(offset_m);
   const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   const double depth = size[axis];
-  if (depth < 1e-3) return false;
+  if (depth < 1e-3) return std::nullopt;
   // Moved by beside_m, the point moves by less than this on the face; close to a rim of it the map says nothing.
   const double blur = 2.5 * beside_m / depth;
-  if (blur > 0.5) return false;
+  if (blur > 0.5) return std::nullopt;
   const double across = offset_m[(axis + 1) % 3] / depth, along = offset_m[(axis + 2) % 3] / depth;
-  if (beside_m > 0.0 && std::max(std::abs(across), std::abs(along)) + blur >= 1.0) return false;
+  if (beside_m > 0.0 && std::max(std::abs(across), std::abs(along)) + blur >= 1.0) return std::nullopt;
   const auto pixel = [&](double place) {
     return std::clamp(static_cast<int>((place + 1.0) * 0.5 * pixels_), 0, pixels_ - 1);
   };
   const int face = 2 * axis + (offset_m[axis] < 0.0 ? 1 : 0);
   const auto nearness = static_cast<float>(nearer * (1.0 + detail::nearness_rounding) / (depth - beside_m));
-  const PixelRange rows{pixel(along - blur), pixel(along + blur)}, columns{pixel(across - blur), pixel(across + blur)};
-  const bool is_small = rows.last - rows.first < tile_pixels && columns.last - columns.first < tile_pixels;
-  return is_small ? pixels_hide(face, rows, columns, nearness) : tiles_hide(face, rows, columns, nearness);
+  return PointPixels{
+      {pixel(along - blur), pixel(along + blur)}, {pixel(across - blur), pixel(across + blur)}, face, nearness};
+}
+
+DCEM_INLINE bool ViewMap::hides(const PointPixels& of) const {
+  const bool is_small = of.rows.last - of.rows.first < tile_pixels && of.columns.last - of.columns.first < tile_pixels;
+  return is_small ? pixels_hide(of.face, of.rows, of.columns, of.nearness)
+                  : tiles_hide(of.face, of.rows, of.columns, of.nearness);
 }
 
 DCEM_INLINE bool ViewMap::pixels_hide(int face, const PixelRange& rows, const PixelRange& columns,
