@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "dcem/geometry/plane.hpp"
@@ -64,6 +65,53 @@ struct MovedSides {
   std::span<const Vec3> all() const { return {normals.data(), count}; }
 };
 
+/// How far a convex polygon reaches along a direction in its plane, from the foot of a point P = from_m; and between
+/// which slopes along it, against the way away from the plane, all that is behind the polygon lies as seen from P, and
+/// is hidden from all points P + offsets_m[i], too. It is the strip around the polygon, its two sides moved in as
+/// `sides_moved_in` has it: as each of them is a sum of sides of the polygon, nothing that is inside all of those is
+/// outside of it.
+struct Reach {
+  double low_m, high_m;
+  double low, high;  ///< slopes; where the first is larger, nothing is left
+};
+
+/// `along`: in the plane, or all but. `distance_m`: of P from the plane, above 0; `towards`: the plane's normal on the
+/// side of P.
+inline Reach reach_along(std::span<const Vec3> corners_m, const Vec3& along, double distance_m, const Vec3& towards,
+                         const Vec3& from_m, std::span<const Vec3> offsets_m) {
+  double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
+  for (const Vec3& corner_m : corners_m) {
+    const double place_m = glm::dot(along, corner_m - from_m);
+    low_m = std::min(low_m, place_m);
+    high_m = std::max(high_m, place_m);
+  }
+  Reach reach{low_m, high_m, low_m / distance_m, high_m / distance_m};
+  for (const Vec3& offset_m : offsets_m) {
+    const double place_m = glm::dot(along, offset_m), share = 1.0 / (distance_m + glm::dot(towards, offset_m));
+    reach.low = std::max(reach.low, share * (low_m - place_m));
+    reach.high = std::min(reach.high, share * (high_m - place_m));
+  }
+  return reach;
+}
+
+/// Whether a convex polygon is clearly narrower than the points P + offsets_m[i] are apart, so that its sides, moved
+/// in, leave nothing: most outlines are as small as that, and this is found out sooner. Where `sides_moved_in` answers
+/// false this may say anything.
+inline bool is_narrower(std::span<const Vec3> corners_m, const Plane& plane, const Vec3& from_m,
+                        std::span<const Vec3> offsets_m) {
+  const double height_m = signed_distance_m(plane, from_m), distance_m = std::abs(height_m);
+  const Vec3 normal = plane.normal, towards = height_m > 0.0 ? normal : -normal;
+  const auto leaves_nothing = [&](const Vec3& along) {
+    const Reach reach = reach_along(corners_m, along, distance_m, towards, from_m, offsets_m);
+    return reach.low > reach.high;
+  };
+  constexpr double upright = 0.1, level = 0.99;
+  const double levelness = std::abs(normal.z);
+  const Vec3 across = levelness > level ? Vec3(1.0, 0.0, 0.0) : Vec3(normal.y, -normal.x, 0.0);
+  if (leaves_nothing(across)) return true;
+  return levelness > upright && leaves_nothing(glm::cross(normal, across));
+}
+
 }  // namespace detail
 
 /// The sides of a convex polygon as half spaces through a point P = from_m, each moved inwards so far that what is
@@ -91,7 +139,7 @@ inline bool sides_moved_in(std::span<const Vec3> corners_m, const Plane& plane, 
   for (const Vec3& corner : corners_m) centre_m += corner / static_cast<double>(corners_m.size());
   const std::size_t first = result.count;
   if (first + corners_m.size() > result.normals.size()) return false;
-  std::array<double, detail::InsetOutline::capacity> turned{};  // how far towards the points, at most
+  std::array<double, detail::InsetOutline::capacity> turned;  // how far towards the points, at most
   std::array<double, detail::InsetOutline::capacity> outside_m;
   for (std::size_t index = 0; index < corners_m.size(); ++index) {
     const Vec3 &from = corners_m[index], &to = corners_m[index + 1 == corners_m.size() ? 0 : index + 1];

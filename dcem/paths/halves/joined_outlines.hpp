@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "dcem/geometry/plane.hpp"
@@ -102,10 +103,25 @@ inline bool opens(const JoinedOutline& one, const JoinedOutline& other, const Po
   return false;
 }
 
-/// The slit around the line, and `more` to each side, at the distance 1 m from P. False where the points are too close,
-/// or the line is shorter than `more`.
-inline bool slit_around(const JoinedOutline& one, const JoinedOutline& other, const PointsAround& points, double more,
-                        InsetOutline& result) {
+/// A slit around the line at the distance 1 m from P: level directions to the line and across, and how far it reaches
+/// to each side.
+struct SlitFrame {
+  Vec3 ahead, across;
+  double away_m, wide;
+
+  /// With `more` to each side of what the points need; none where they are too close.
+  static std::optional<SlitFrame> of(const JoinedOutline& one, const PointsAround& points, double more) {
+    const Vec3 way_m = one.corners_m[one.side] - points.from_m();
+    const double away_m = std::hypot(way_m.x, way_m.y), reach_m = 1.5 * points.level_m();
+    if (!(away_m > 2.0 * reach_m + 1e-3)) return std::nullopt;
+    const Vec3 ahead(way_m.x / away_m, way_m.y / away_m, 0.0);
+    return SlitFrame{ahead, {-ahead.y, ahead.x, 0.0}, away_m, reach_m / (away_m - reach_m) + more};
+  }
+};
+
+/// All of the slit that is as high as both outlines are at the line; false where that is less than `least`.
+inline bool slit_around(const JoinedOutline& one, const JoinedOutline& other, const PointsAround& points,
+                        const SlitFrame& frame, double least, InsetOutline& result) {
   const auto ends_of = [](const JoinedOutline& outline) {
     const double from_m = outline.corners_m[outline.side].z;
     const double to_m = outline.corners_m[(outline.side + 1) % outline.corners_m.size()].z;
@@ -113,18 +129,41 @@ inline bool slit_around(const JoinedOutline& one, const JoinedOutline& other, co
   };
   const auto [one_low_m, one_high_m] = ends_of(one);
   const auto [other_low_m, other_high_m] = ends_of(other);
-  const Vec3 way_m = one.corners_m[one.side] - points.from_m();
-  const double away_m = std::hypot(way_m.x, way_m.y), reach_m = 1.5 * points.level_m();
-  if (!(away_m > 2.0 * reach_m + 1e-3)) return false;
-  const double low = (std::max(one_low_m, other_low_m) - points.from_m().z) / away_m;
-  const double high = (std::min(one_high_m, other_high_m) - points.from_m().z) / away_m;
-  if (high - low < more) return false;
-  const Vec3 ahead(way_m.x / away_m, way_m.y / away_m, 0.0), across(-ahead.y, ahead.x, 0.0), up(0.0, 0.0, 1.0);
-  const double wide = reach_m / (away_m - reach_m) + more;
+  const double low = (std::max(one_low_m, other_low_m) - points.from_m().z) / frame.away_m;
+  const double high = (std::min(one_high_m, other_high_m) - points.from_m().z) / frame.away_m;
+  if (high - low < least) return false;
   const auto corner = [&](double aside, double height) {
-    return points.from_m() + ahead + aside * across + height * up;
+    return points.from_m() + frame.ahead + aside * frame.across + Vec3(0.0, 0.0, height);
   };
+  const double wide = frame.wide;
   return result.assign(std::array{corner(-wide, low), corner(wide, low), corner(wide, high), corner(-wide, high)});
+}
+
+/// The places across the slit, at the distance 1 m from P and against the way to the line, that are inside the side of
+/// an outline far from the line, as all points see it.
+inline void keep_before_far_side(const JoinedOutline& outline, const PointsAround& points, const SlitFrame& frame,
+                                 double& from, double& to) {
+  const double height_m = signed_distance_m(outline.plane, points.from_m()), distance_m = std::abs(height_m);
+  const Vec3 normal = outline.plane.normal, towards = height_m > 0.0 ? normal : -normal;
+  const Vec3 along(normal.y, -normal.x, 0.0);
+  const Reach reach = reach_along(outline.corners_m, along, distance_m, towards, points.from_m(), points.offsets_m());
+  const double line_m = frame.away_m * glm::dot(along, frame.ahead);
+  const bool ends_high = reach.high_m - line_m > line_m - reach.low_m;
+  const Vec3 inwards = ends_high ? -along - reach.high * towards : along + reach.low * towards;
+  const double straight = glm::dot(inwards, frame.ahead), aside = glm::dot(inwards, frame.across);
+  if (aside > 0.0) from = std::max(from, -straight / aside);
+  if (aside < 0.0) to = std::min(to, -straight / aside);
+}
+
+/// Whether the two are so narrow that their far sides, moved in, leave nothing of the slit: `keep_inside` would find
+/// that, too, for ten times the price. It is asked at the height of P: of outlines that are all but upright it may give
+/// up a sliver at another height, by which less is hidden.
+inline bool is_closed_between(const JoinedOutline& one, const JoinedOutline& other, const PointsAround& points,
+                              const SlitFrame& frame) {
+  double from = -frame.wide, to = frame.wide;
+  keep_before_far_side(one, points, frame, from, to);
+  keep_before_far_side(other, points, frame, from, to);
+  return from >= to;
 }
 
 /// Leaves what is inside all sides of both but for those on the line, as all points see them; false where that is

@@ -11,33 +11,36 @@
 
 namespace dcem::detail {
 
-/// Each pixel holds the k nearest sheets that fill it, nearest first.
+/// Each block of pixels holds the k nearest sheets that fill it, nearest first.
 class SheetLayers {
  public:
-  /// Where a way may cross more sheets than this, sheets hide nothing: that would take more memory than it is worth.
-  static constexpr int most_crossed = 3;
+  /// Where a way may cross more sheets than this, sheets hide nothing.
+  static constexpr int most_crossed = 10;
 
   /// A way may cross so many, 1 to `most_crossed`. Parallel sheets that are no farther apart than `pile_m` are one.
   void count(int crossed, double pile_m) {
     crossed_ = static_cast<std::size_t>(crossed);
     pile_m_ = pile_m;
   }
+  /// Pixels to a side of a block: 1 for up to three sheets, and 2 for more, as many layers of each pixel take more
+  /// memory and time than they are worth. Ten in blocks take as much as two and a half in pixels.
+  int block_pixels() const { return crossed_ <= 3 ? 1 : 2; }
   void clear() {
     planes_.clear();
     layers_.clear();
   }
 
-  /// From now on sheets are those of a plane, `distance_m` in front of the point, in a view of so many pixels; no point
+  /// From now on sheets are those of a plane, `distance_m` in front of the point, in a view of so many blocks; no point
   /// of it is farther away than `reach_m`.
-  void take(const Vec3& normal, double distance_m, double reach_m, std::size_t pixels) {
-    if (layers_.empty()) layers_.resize(pixels * crossed_);
+  void take(const Vec3& normal, double distance_m, double reach_m, std::size_t blocks) {
+    if (layers_.empty()) layers_.resize(blocks * crossed_);
     planes_.push_back({normal, distance_m, reach_m});
   }
 
-  /// A sheet of that plane fills a pixel. Returns the nearness of the sheet that is one too many; 0: there is none.
-  float add(std::size_t pixel, float nearness) {
+  /// A sheet of that plane fills a block. Returns the nearness of the sheet that is one too many; 0: there is none.
+  float add(std::size_t block, float nearness) {
     const auto number = static_cast<std::uint32_t>(planes_.size() - 1);
-    const std::span<Layer> layers = std::span(layers_).subspan(pixel * crossed_, crossed_);
+    const std::span<Layer> layers = std::span(layers_).subspan(block * crossed_, crossed_);
     for (const Layer& layer : layers) {
       if (layer.nearness > 0.0F && may_be_one(planes_[layer.plane], planes_[number])) return 0.0F;
     }
@@ -71,7 +74,7 @@ class SheetLayers {
   std::size_t crossed_ = 1;
   double pile_m_ = 0.0;
   std::vector<SheetPlane> planes_;
-  std::vector<Layer> layers_;  ///< by pixel
+  std::vector<Layer> layers_;  ///< by block
 };
 
 }  // namespace dcem::detail

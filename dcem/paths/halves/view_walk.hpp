@@ -46,36 +46,52 @@ template <typename Visit>
   }
 }
 
-inline void age_tiles(const FacePixels& face, int first_row, int last_row, int first_column, int last_column) {
+/// Pixels from the first to the last of each.
+struct PixelBox {
+  int first_row, last_row, first_column, last_column;
+
+  bool empty() const { return last_column < first_column; }
+};
+
+/// Notes that the tiles of some pixels may hold less than is there.
+inline void age_tiles(const FacePixels& face, const PixelBox& box) {
   constexpr int to_a_side = FacePixels::tile_pixels;
-  for (int tile_row = first_row / to_a_side; tile_row <= last_row / to_a_side; ++tile_row) {
+  for (int tile_row = box.first_row / to_a_side; tile_row <= box.last_row / to_a_side; ++tile_row) {
     char* const tile = face.tile_is_old + static_cast<std::ptrdiff_t>(tile_row) * face.tiles;
-    for (int column = first_column / to_a_side; column <= last_column / to_a_side; ++column) tile[column] = 1;
+    for (int column = box.first_column / to_a_side; column <= box.last_column / to_a_side; ++column) tile[column] = 1;
   }
 }
 
-/// Calls `fill(row, begin, end, nearness)` for runs of pixels that an outline fills, with the least nearness there.
+/// Calls `fill(row, begin, end, nearness)` for runs of pixels that an outline fills, so many of them along a face, with
+/// the least nearness there. Returns a box that holds all of them.
 template <typename Fill>
-inline void for_each_filled(const FacePixels& face, const FaceOutline& outline, const FaceNearness& nearness,
-                            Fill&& fill) {
+inline PixelBox for_each_run(int pixels, const FaceOutline& outline, const FaceNearness& nearness, Fill&& fill) {
   FaceRows rows;
-  if (!rows.take(outline, face.pixels)) return;
-  if (rows.high()[0] - rows.low()[0] < 1.0 || rows.high()[1] - rows.low()[1] < 1.0) return;  // it fills no pixel
+  if (!rows.take(outline, pixels)) return {0, 0, 0, -1};
+  if (rows.high()[0] - rows.low()[0] < 1.0 || rows.high()[1] - rows.low()[1] < 1.0) return {0, 0, 0, -1};
   rows.find_crossed();
   constexpr float hair = 2e-3F;  // of a pixel
-  int first_column = face.pixels, last_column = -1;
+  int first_column = pixels, last_column = -1;
   for (int row = rows.first(); row <= rows.last(); ++row) {
     if (rows.to(row) < -1e8F || rows.to(row + 1) < -1e8F) continue;
     const float from = std::max(rows.from(row), rows.from(row + 1)) + hair;
     const float to = std::min(rows.to(row), rows.to(row + 1)) - hair;
     const int begin = std::max(0, static_cast<int>(std::ceil(from)));
-    const int end = std::min(face.pixels, static_cast<int>(std::floor(to)));
+    const int end = std::min(pixels, static_cast<int>(std::floor(to)));
     if (begin >= end) continue;
-    fill(row, begin, end, least_in_row(nearness, row, face.pixels));
+    fill(row, begin, end, least_in_row(nearness, row, pixels));
     first_column = std::min(first_column, begin);
     last_column = std::max(last_column, end - 1);
   }
-  if (last_column >= first_column) age_tiles(face, rows.first(), rows.last(), first_column, last_column);
+  return {rows.first(), rows.last(), first_column, last_column};
+}
+
+/// The same of the pixels of a face, of which tiles are noted as old.
+template <typename Fill>
+inline void for_each_filled(const FacePixels& face, const FaceOutline& outline, const FaceNearness& nearness,
+                            Fill&& fill) {
+  const PixelBox box = for_each_run(face.pixels, outline, nearness, fill);
+  if (!box.empty()) age_tiles(face, box);
 }
 
 /// Notes in pixels what is there nearer than before.

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -42,16 +43,17 @@ TriangleMesh glass_houses(Draw& draw, int houses, int screens) {
 
 }  // namespace
 
-TEST_CASE("joined halves find every path through one, two and three sheets, and the same bits") {
+TEST_CASE("joined halves find every path through one, two, three and more sheets, and the same bits") {
   std::size_t found = 0;
   for (std::uint64_t seed = 3000; seed < 3060; ++seed) {
     Draw draw(seed);
     TracedScene<> traced(scene_of(glass_houses(draw, 1 + static_cast<int>(draw.below(3)), 6)));
-    for (int link = 0; link < 3; ++link) {
+    for (int link = 0; link < 4; ++link) {
       const LinkEnd from = somewhere(traced, draw), to = somewhere(traced, draw);
       CAPTURE(seed);
       CAPTURE(link);
-      found += check_joined(traced, from, to, {1 + link}, draw.below(2) == 0 ? 256 : 64);
+      found += check_joined(traced, from, to, {link < 3 ? 1 + link : 4 + static_cast<int>(draw.below(7))},
+                            draw.below(2) == 0 ? 256 : 64);
     }
   }
   MESSAGE(found << " paths");
@@ -65,7 +67,7 @@ TEST_CASE("a crowd finds every path through sheets of each of its points") {
     TracedScene<> traced(scene_of(glass_houses(draw, 2, 5)));
     const std::vector<Vec3> points_m = some_crowd(draw, 4.0, Vec3(-15, -15, 0.5), Vec3(15, 15, 8));
     CAPTURE(seed);
-    found += check_crowd(traced, somewhere(traced, draw), points_m, {1 + static_cast<int>(draw.below(3))}, 128);
+    found += check_crowd(traced, somewhere(traced, draw), points_m, {1 + static_cast<int>(draw.below(5))}, 128);
   }
   MESSAGE(found << " paths");
   CHECK(found > 500);
@@ -74,13 +76,14 @@ TEST_CASE("a crowd finds every path through sheets of each of its points") {
 TEST_CASE("no ray that may still cross a sheet meets a facet that a view calls hidden, and much is hidden") {
   Draw draw(5);
   std::size_t met = 0, lost = 0, hidden = 0, all = 0;
-  for (int round = 0; round < 12; ++round) {
-    TracedScene<> traced(scene_of(glass_houses(draw, 12, 24)));
+  constexpr std::array<int, 4> most_crossed{1, 2, 3, 5};
+  for (int round = 0; round < 16; ++round) {
+    const int crossed = most_crossed[static_cast<std::size_t>(round % 4)];
+    TracedScene<> traced(scene_of(glass_houses(draw, 12, crossed > 3 ? 120 : 24)));
     const FacetOutlines outlines(traced.scene);
-    const int crossed = 1 + round % 3;
     HalfSettings settings;
     settings.sheets = crossed;
-    if (round % 2 == 1) settings.closer_from = 0;
+    if (round / 4 % 2 == 1) settings.closer_from = 0;
     for (int place = 0; place < 4; ++place) {
       const LinkEnd end = traced.end(draw.inside(Vec3(-25, -25, 0.2), Vec3(25, 25, 10)));
       PathHalf half(place < 2 ? 64 : 256);
@@ -117,21 +120,62 @@ TEST_CASE("no ray that may still cross a sheet meets a facet that a view calls h
 }
 
 TEST_CASE("behind one sheet more than a path may cross nothing is seen") {
-  TriangleMesh mesh;
-  for (const double x_m : {2.0, 3.0, 4.0}) add_sheet_across_x(mesh, x_m, 20.0, "glass");
-  add_sheet_across_x(mesh, 6.0, 1.0, "metal");
-  TracedScene<> traced(scene_of(mesh));
-  const FacetOutlines outlines(traced.scene);
-  const FacetId behind = traced.facet_at(Vec3(6, 0, 0), "metal");
-  for (const auto& [crossed, is_seen] :
-       {std::pair(0, false), {1, false}, {2, false}, {3, true}, {4, true}, {10, true}}) {
-    HalfSettings settings;
-    settings.sheets = crossed;
-    PathHalf half;
-    half.find_scenery(traced.scene, outlines, traced.end(Vec3(0.0)), settings);
-    CAPTURE(crossed);
-    CHECK(std::ranges::binary_search(half.layers()[0].mirrors, behind) == is_seen);
+  for (const int sheets : {3, 5, 11}) {
+    TriangleMesh mesh;
+    for (int sheet = 0; sheet < sheets; ++sheet) add_sheet_across_x(mesh, 2.0 + 0.3 * sheet, 20.0, "glass");
+    add_sheet_across_x(mesh, 6.0, 1.0, "metal");
+    TracedScene<> traced(scene_of(mesh));
+    const FacetOutlines outlines(traced.scene);
+    const FacetId behind = traced.facet_at(Vec3(6, 0, 0), "metal");
+    for (int crossed = 0; crossed <= 10; ++crossed) {
+      HalfSettings settings;
+      settings.sheets = crossed;
+      PathHalf half;
+      half.find_scenery(traced.scene, outlines, traced.end(Vec3(0.0)), settings);
+      CAPTURE(sheets);
+      CAPTURE(crossed);
+      CHECK(std::ranges::binary_search(half.layers()[0].mirrors, behind) == (crossed >= sheets));
+    }
   }
+}
+
+TEST_CASE("what is before the last of slanted sheets is seen all along them, and little of what is behind") {
+  std::size_t behind = 0, behind_seen = 0;
+  for (const Vec3& slant : {Vec3(1, 0.7, 0.4), Vec3(1, -0.7, -0.4), Vec3(-0.5, 1, -0.5), Vec3(0.4, -0.6, 1)}) {
+    const Vec3 normal = glm::normalize(slant), along = glm::normalize(glm::cross(normal, Vec3(0.1, 0.2, 1)));
+    const Vec3 across = glm::cross(normal, along);
+    for (int crossed = 1; crossed <= 10; ++crossed) {
+      const auto depth_m = [](int sheet) { return 3.0 + 0.5 * sheet; };
+      TriangleMesh mesh;
+      for (int sheet = 0; sheet <= crossed; ++sheet) {
+        add_sheet(mesh, depth_m(sheet) * normal, 60.0 * along, 60.0 * across, "glass");
+      }
+      std::vector<Vec3> before_m, behind_m;
+      for (int place = -8; place <= 8; ++place) {
+        const Vec3 beside_m = 0.6 * place * along + 0.4 * place * across;
+        before_m.push_back((depth_m(crossed) - 0.1) * normal + beside_m);
+        behind_m.push_back((depth_m(crossed) + 1.0) * normal + beside_m);
+        for (const Vec3& middle_m : {before_m.back(), behind_m.back()}) {
+          add_sheet(mesh, middle_m, 0.2 * along, 0.1 * across, "metal");
+        }
+      }
+      TracedScene<> traced(scene_of(mesh));
+      const FacetOutlines outlines(traced.scene);
+      HalfSettings settings;
+      settings.sheets = crossed;
+      PathHalf half;
+      half.find_scenery(traced.scene, outlines, traced.end(Vec3(0.0)), settings);
+      const auto is_seen = [&](const Vec3& point_m) {
+        return std::ranges::binary_search(half.layers()[0].mirrors, traced.facet_at(point_m, "metal"));
+      };
+      CAPTURE(crossed);
+      for (const Vec3& point_m : before_m) CHECK(is_seen(point_m));
+      behind += behind_m.size();
+      behind_seen += static_cast<std::size_t>(std::ranges::count_if(behind_m, is_seen));
+    }
+  }
+  MESSAGE(behind_seen << " of " << behind << " behind are seen");
+  CHECK(10 * behind_seen < behind);
 }
 
 TEST_CASE("a pile of sheets that a leg counts once hides as one sheet") {

@@ -63,7 +63,7 @@ TEST_CASE("a view drawn by several threads, a face each, is the view drawn at on
     ViewMap at_once(128), by_face(128);
     at_once.look_from(from_m);
     by_face.look_from(from_m, pool);
-    for (ViewMap* const map : {&at_once, &by_face}) map->count_sheets(1 + round % 3, 1e-3);
+    for (ViewMap* const map : {&at_once, &by_face}) map->count_sheets(1 + round % 5, 1e-3);
     cover(at_once, patches, {});
     pool.for_each(6, [&](std::size_t face, unsigned) {
       cover(by_face, patches, {static_cast<int>(face), static_cast<int>(face) + 1});
