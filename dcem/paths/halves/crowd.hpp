@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dcem/paths/halves/common_cone.hpp"
+#include "dcem/paths/halves/extreme_points.hpp"
 #include "dcem/paths/halves/lanes.hpp"
 #include "dcem/paths/halves/sight.hpp"
 
@@ -25,6 +26,7 @@ class Crowd {
   void look_from(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes,
                  std::span<const Vec3> points_m, const HalfSettings& settings) {
     points_m_.assign(points_m.begin(), points_m.end());
+    take_extreme_points(points_m, extreme_m_);
     origin_m_ = lanes.origin_m();
     sight_.look_from(points_m);
     sight_.find_scenery(scene, outlines, settings, layers_[0]);
@@ -56,23 +58,29 @@ class Crowd {
 
   /// The points on one `side` (1 or −1) of a plane, in the order in which they are.
   void points_beside(const Plane& plane, double side, std::vector<Vec3>& result_m) const {
-    result_m.clear();
-    for (const Vec3& point_m : points_m_) {
-      if (side * signed_distance_m(plane, point_m) > in_plane_guard_m) result_m.push_back(point_m);
-    }
+    take_beside(points_m_, plane, side, result_m);
   }
 
   /// What the images of all points on one `side` (1 or −1) of a mirror may see through it; false where no point is
-  /// there. The cone of each image is inside.
+  /// there. The cone of each image is inside. Mostly all points are on one side: then those between others need not be
+  /// asked, of which no quotient is larger than that of all others (extreme_points.hpp).
   bool cone(const FacetOutlines& outlines, FacetId facet, const Plane& plane, double side,
             std::vector<HalfSpace>& result) const {
-    points_beside(plane, side, scratch_m_);
+    take_beside(extreme_m_, plane, side, scratch_m_);
+    if (scratch_m_.size() < extreme_m_.size()) points_beside(plane, side, scratch_m_);
     if (scratch_m_.empty()) return false;
     common_cone(outlines.sides(facet), plane, side * plane.normal, scratch_m_, origin_m_, result);
     return true;
   }
 
  private:
+  static void take_beside(std::span<const Vec3> points_m, const Plane& plane, double side,
+                          std::vector<Vec3>& result_m) {
+    result_m.clear();
+    for (const Vec3& point_m : points_m) {
+      if (side * signed_distance_m(plane, point_m) > in_plane_guard_m) result_m.push_back(point_m);
+    }
+  }
   static std::span<const Vec3> part(std::span<const Vec3> points_m, std::size_t number) {
     return points_m.subspan(number * simd_lanes,
                             std::min<std::size_t>(simd_lanes, points_m.size() - number * simd_lanes));
@@ -80,6 +88,7 @@ class Crowd {
   Sight sight_;
   std::array<SeenLayer, 2> layers_;
   std::vector<Vec3> points_m_;
+  std::vector<Vec3> extreme_m_;  ///< those that are not between others
   Vec3 origin_m_{0.0};
   double radius_m_ = 0.0;
   mutable std::vector<Vec3> scratch_m_;

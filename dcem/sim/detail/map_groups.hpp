@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dcem/scene/device.hpp"
@@ -19,42 +21,157 @@ inline std::size_t group_side(double spacing_m) {
   return std::min(most, 1 + static_cast<std::size_t>(std::min(steps, static_cast<double>(most))));
 }
 
-/// The open points of a grid in groups of at most 16: what is joined by free straight steps, tile by tile. Cells are
-/// counted row by row. `open` holds what is not 0 for an open cell; `free(cell, cell)` says whether a step is free.
+/// Open points of a grid in groups: which are in each, ascending, and of each cell in which it is.
+class GridGroups {
+ public:
+  static constexpr std::size_t most_points = 16;
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+  /// `open` holds what is not 0 for an open cell. Cells are counted row by row.
+  GridGroups(const ReceiverGrid& grid, std::span<const char> open)
+      : columns_(grid.columns()),
+        rows_(grid.rows()),
+        spacing_m_(grid.spacing_m),
+        side_{group_side(grid.spacing_m[0]), group_side(grid.spacing_m[1])},
+        open_(open),
+        group_of_(grid.size(), none) {}
+
+  /// What is joined by free straight steps, tile by tile. `free(cell, cell)` says whether a step is free.
+  template <typename Free>
+  void fill_tiles(Free&& free);
+  /// Where tiles are cut up into small groups, these join others beside them, as far as no two points are farther apart
+  /// along x or y than two steps more than in a tile, and than 10 m: a view of few points costs as much as one of many.
+  template <typename Free>
+  void join_small(Free&& free);
+
+  std::vector<std::vector<std::size_t>> take() {
+    std::erase_if(groups_, [](const std::vector<std::size_t>& group) { return group.empty(); });
+    return std::move(groups_);
+  }
+
+ private:
+  struct Box {
+    std::size_t low_row, high_row, low_column, high_column;
+  };
+
+  Box box_of(const std::vector<std::size_t>& group) const {
+    Box box{rows_, 0, columns_, 0};
+    for (const std::size_t cell : group) {
+      const std::size_t row = cell / columns_, column = cell % columns_;
+      box = {std::min(box.low_row, row), std::max(box.high_row, row), std::min(box.low_column, column),
+             std::max(box.high_column, column)};
+    }
+    return box;
+  }
+  bool are_near(const std::vector<std::size_t>& one, const std::vector<std::size_t>& other) const {
+    constexpr std::size_t more_steps = 2;
+    constexpr double widest_m = 10.0;
+    const Box first = box_of(one), second = box_of(other);
+    const std::array<std::size_t, 2> steps{
+        std::max(first.high_column, second.high_column) - std::min(first.low_column, second.low_column),
+        std::max(first.high_row, second.high_row) - std::min(first.low_row, second.low_row)};
+    const auto are_few = [&](std::size_t axis) {
+      return steps[axis] < side_[axis] + more_steps && static_cast<double>(steps[axis]) * spacing_m_[axis] <= widest_m;
+    };
+    return are_few(0) && are_few(1);
+  }
+  /// Calls `visit(cell)` for the cells beside one.
+  template <typename Visit>
+  void for_each_beside(std::size_t cell, Visit&& visit) const {
+    const std::size_t row = cell / columns_, column = cell % columns_;
+    if (column > 0) visit(cell - 1);
+    if (column + 1 < columns_) visit(cell + 1);
+    if (row > 0) visit(cell - columns_);
+    if (row + 1 < rows_) visit(cell + columns_);
+  }
+  /// The tile of a cell.
+  std::array<std::size_t, 2> tile_of(std::size_t cell) const {
+    return {cell / columns_ / side_[1], cell % columns_ / side_[0]};
+  }
+  template <typename Free>
+  void fill_from(std::size_t seed, Free& free);
+  /// The largest group beside one that it may join, or none.
+  template <typename Free>
+  std::uint32_t group_beside(std::uint32_t number, Free& free) const;
+
+  std::size_t columns_, rows_;
+  std::array<double, 2> spacing_m_;
+  std::array<std::size_t, 2> side_;  ///< of a tile, along x and y
+  std::span<const char> open_;
+  std::vector<std::uint32_t> group_of_;  ///< by cell
+  std::vector<std::vector<std::size_t>> groups_;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
 template <typename Free>
-std::vector<std::vector<std::size_t>> map_groups(const ReceiverGrid& grid, std::span<const char> open, Free&& free) {
-  const std::size_t columns = grid.columns(), rows = grid.rows();
-  const std::array<std::size_t, 2> side{group_side(grid.spacing_m[0]), group_side(grid.spacing_m[1])};
-  std::vector<std::vector<std::size_t>> groups;
-  std::vector<char> taken(grid.size(), 0);
-  for (std::size_t tile_row = 0; tile_row < rows; tile_row += side[1]) {
-    for (std::size_t tile_column = 0; tile_column < columns; tile_column += side[0]) {
-      const std::size_t end_row = std::min(rows, tile_row + side[1]);
-      const std::size_t end_column = std::min(columns, tile_column + side[0]);
-      for (std::size_t at = 0; at < (end_row - tile_row) * (end_column - tile_column); ++at) {
-        const std::size_t width = end_column - tile_column;
-        const std::size_t seed = (tile_row + at / width) * columns + tile_column + at % width;
-        if (open[seed] == 0 || taken[seed] != 0) continue;
-        std::vector<std::size_t> group{seed};
-        taken[seed] = 1;
-        const auto take = [&](std::size_t from, std::size_t to) {
-          if (open[to] == 0 || taken[to] != 0 || !free(from, to)) return;
-          taken[to] = 1;
-          group.push_back(to);
-        };
-        for (std::size_t next = 0; next < group.size(); ++next) {
-          const std::size_t cell = group[next], row = cell / columns, column = cell % columns;
-          if (column > tile_column) take(cell, cell - 1);
-          if (column + 1 < end_column) take(cell, cell + 1);
-          if (row > tile_row) take(cell, cell - columns);
-          if (row + 1 < end_row) take(cell, cell + columns);
+void GridGroups::fill_tiles(Free&& free) {
+  for (std::size_t first_row = 0; first_row < rows_; first_row += side_[1]) {
+    for (std::size_t first_column = 0; first_column < columns_; first_column += side_[0]) {
+      for (std::size_t row = first_row; row < std::min(rows_, first_row + side_[1]); ++row) {
+        for (std::size_t column = first_column; column < std::min(columns_, first_column + side_[0]); ++column) {
+          fill_from(row * columns_ + column, free);
         }
-        std::ranges::sort(group);
-        groups.push_back(std::move(group));
       }
     }
   }
-  return groups;
+}
+
+template <typename Free>
+void GridGroups::fill_from(std::size_t seed, Free& free) {
+  if (open_[seed] == 0 || group_of_[seed] != none) return;
+  const auto number = static_cast<std::uint32_t>(groups_.size());
+  std::vector<std::size_t> group{seed};
+  group_of_[seed] = number;
+  for (std::size_t next = 0; next < group.size(); ++next) {
+    const std::size_t from = group[next];
+    for_each_beside(from, [&](std::size_t to) {
+      if (open_[to] == 0 || group_of_[to] != none || tile_of(to) != tile_of(seed) || !free(from, to)) return;
+      group_of_[to] = number;
+      group.push_back(to);
+    });
+  }
+  std::ranges::sort(group);
+  groups_.push_back(std::move(group));
+}
+
+template <typename Free>
+void GridGroups::join_small(Free&& free) {
+  for (std::uint32_t number = 0; number < groups_.size(); ++number) {
+    if (groups_[number].empty() || 2 * groups_[number].size() > most_points) continue;
+    const std::uint32_t other = group_beside(number, free);
+    if (other == none) continue;
+    for (const std::size_t cell : groups_[number]) group_of_[cell] = other;
+    groups_[other].insert(groups_[other].end(), groups_[number].begin(), groups_[number].end());
+    std::ranges::sort(groups_[other]);
+    groups_[number].clear();
+  }
+}
+
+template <typename Free>
+std::uint32_t GridGroups::group_beside(std::uint32_t number, Free& free) const {
+  const std::vector<std::size_t>& group = groups_[number];
+  std::uint32_t best = none;
+  for (const std::size_t cell : group) {
+    for_each_beside(cell, [&](std::size_t to) {
+      const std::uint32_t other = group_of_[to];
+      if (other == none || other == number || other == best) return;
+      if (group.size() + groups_[other].size() > most_points || !are_near(group, groups_[other])) return;
+      if (best != none && groups_[other].size() <= groups_[best].size()) return;
+      if (free(cell, to)) best = other;
+    });
+  }
+  return best;
+}
+
+/// The open points of a grid in groups of at most 16 that free straight steps join. `open` holds what is not 0 for an
+/// open cell; `free(cell, cell)` says whether a step is free.
+template <typename Free>
+std::vector<std::vector<std::size_t>> map_groups(const ReceiverGrid& grid, std::span<const char> open, Free&& free) {
+  GridGroups groups(grid, open);
+  groups.fill_tiles(free);
+  groups.join_small(free);
+  return groups.take();
 }
 
 }  // namespace dcem::detail

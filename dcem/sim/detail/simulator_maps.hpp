@@ -158,6 +158,7 @@ std::vector<RadioMap> BasicSimulator<Surface, Index>::solve_map(const MapOrder& 
       for (RadioMap& map : maps) map.points[point] = {positions_m[point], is_grid && open[point] == 0, {}, {}};
     }
   });
+  static_assert(detail::GridGroups::most_points == Crowd::most_points);
   const bool shares_views = plan_.joined > 0 && settings_.share_map_work && !transmitters.halves.empty();
   const auto is_free = [&](std::size_t from, std::size_t to) {
     return shares_views && !index_.occluded(segment_between(positions_m[from], positions_m[to]), {}, nullptr);
