@@ -56,6 +56,20 @@ bool leaves_something(std::span<const Vec3> corners_m, const Plane& plane, const
          inset_outline(corners_m, from_m, sides.all(), inside);
 }
 
+/// What was said early of outlines that hide nothing, and of those that hide something.
+struct Tally {
+  std::size_t said = 0, empty = 0, left = 0, lost = 0;
+
+  void add(bool says_nothing_is_left, bool leaves) {
+    said += says_nothing_is_left ? 1U : 0U;
+    (leaves ? left : empty) += 1U;
+    lost += leaves && says_nothing_is_left ? 1U : 0U;
+  }
+  void tell(const char* what) const {
+    MESSAGE(said << what << " of " << empty << " that hide nothing, and " << left << " that hide something");
+  }
+};
+
 /// Of two façades that meet on a vertical line: corners from the line on.
 struct Corner {
   std::array<std::array<Vec3, 4>, 2> corners_m;
@@ -81,7 +95,7 @@ Corner some_corner(Draw& draw, const Vec3& line_m) {
 
 TEST_CASE("an outline called narrower than points are apart hides nothing from all of them") {
   Draw draw(7);
-  std::size_t narrow = 0, empty = 0, left = 0, lost = 0;
+  Tally tally;
   for (int round = 0; round < 100'000; ++round) {
     const double size_m = draw.magnitude(0.1, 5.0);
     const std::vector<Vec3> offsets_m = some_offsets(draw, size_m);
@@ -94,19 +108,17 @@ TEST_CASE("an outline called narrower than points are apart hides nothing from a
     const std::vector<Vec3> corners_m = some_outline(draw, plane, 4.0 * size_m);
     const bool leaves = leaves_something(corners_m, plane, from_m, offsets_m);
     const bool is_narrow = dcem::detail::is_narrower(corners_m, plane, from_m, offsets_m);
-    narrow += is_narrow ? 1U : 0U;
-    (leaves ? left : empty) += 1U;
-    lost += leaves && is_narrow ? 1U : 0U;
+    tally.add(is_narrow, leaves);
   }
-  MESSAGE(narrow << " narrow ones of " << empty << " that hide nothing, and " << left << " that hide something");
-  CHECK(lost == 0);
-  CHECK(left > 10'000);
-  CHECK(narrow > empty / 3);  // or it would not be worth asking
+  tally.tell(" narrow ones");
+  CHECK(tally.lost == 0);
+  CHECK(tally.left > 10'000);
+  CHECK(tally.said > tally.empty / 3);  // or it would not be worth asking
 }
 
 TEST_CASE("façades whose far sides are said to close the slit between them leave nothing of it") {
   Draw draw(9);
-  std::size_t closed = 0, empty = 0, left = 0, lost = 0;
+  Tally tally;
   for (int round = 0; round < 100'000; ++round) {
     const std::vector<Vec3> offsets_m = some_offsets(draw, draw.magnitude(0.1, 5.0));
     const Vec3 from_m = draw.inside(Vec3(-50, -50, 0), Vec3(50, 50, 20));
@@ -119,14 +131,12 @@ TEST_CASE("façades whose far sides are said to close the slit between them leav
     if (!slit || !slit_around(one, other, points, *slit, more, both) || opens(one, other, points)) continue;
     const bool is_closed = is_closed_between(one, other, points, *slit);
     const bool leaves = keep_inside(one, other, points, both);
-    closed += is_closed ? 1U : 0U;
-    (leaves ? left : empty) += 1U;
-    lost += leaves && is_closed ? 1U : 0U;
+    tally.add(is_closed, leaves);
   }
-  MESSAGE(closed << " closed ones of " << empty << " that hide nothing, and " << left << " that hide something");
-  CHECK(lost == 0);
-  CHECK(left > 1'000);
-  CHECK(closed > empty / 2);
+  tally.tell(" closed ones");
+  CHECK(tally.lost == 0);
+  CHECK(tally.left > 1'000);
+  CHECK(tally.said > tally.empty / 2);
 }
 
 }  // namespace test_narrow_outlines

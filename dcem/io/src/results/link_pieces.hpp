@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/core/fetch.hpp"
 #include "dcem/core/thread_pool.hpp"
 #include "dcem/sim/frame_result.hpp"
 
@@ -40,12 +41,9 @@ inline std::vector<std::span<const LinkResult>> link_pieces(std::span<const Link
 /// while those before are told.
 template <typename Visit>
 void for_each_link(std::span<const LinkResult> links, Visit&& visit) {
-  constexpr std::size_t ahead = 6, cache_line = 64;
+  constexpr std::size_t ahead = 6;
   for (std::size_t at = 0; at < links.size(); ++at) {
-    if (at + ahead < links.size() && !links[at + ahead].paths.empty()) {
-      const char* const path = reinterpret_cast<const char*>(links[at + ahead].paths.data());
-      for (std::size_t byte = 0; byte < sizeof(PathContribution); byte += cache_line) __builtin_prefetch(path + byte);
-    }
+    if (at + ahead < links.size() && !links[at + ahead].paths.empty()) fetch(links[at + ahead].paths.front());
     visit(links[at]);
   }
 }
