@@ -20,6 +20,9 @@
 /// How far to step. (g²)'' = −Σ Σ p p' (x − x')² cos(u(x − x')) ≥ −2, so from a point with the value F and the slope F'
 /// of g² the curve stays above F + F's − s². Up to where that parabola meets c² no crossing can be missed; near a
 /// crossing this is Newton's method from one side, over a shallow dip the steps shrink and grow again.
+///
+/// Under a strong path there is often no crossing at all. That is told sooner at equal distances of u, where from one
+/// to the next each phasor turns by the same angle: what two neighbours say about the way between them is enough.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -82,6 +85,10 @@ class StandardDistribution {
     }
   }
 
+  struct Point {
+    double weight = 0.0, x = 0.0;
+  };
+  std::span<const Point> points() const { return points_; }
   bool empty() const { return points_.empty(); }
   /// Of the abscissas before they were divided by it.
   double deviation() const { return deviation_; }
@@ -106,12 +113,80 @@ class StandardDistribution {
   }
 
  private:
-  struct Point {
-    double weight = 0.0, x = 0.0;
-  };
   std::vector<Point> points_;
   double deviation_ = 0.0;
 };
+
+/// g² and its derivative at equal distances.
+class TurningPhasors {
+ public:
+  TurningPhasors(const StandardDistribution& distribution, double from, double distance) {
+    for (const StandardDistribution::Point& point : distribution.points()) {
+      const double here = from * point.x, turned = distance * point.x;
+      phasors_.push_back(
+          {point.weight * std::cos(here), point.weight * std::sin(here), std::cos(turned), std::sin(turned), point.x});
+    }
+  }
+
+  /// Of the place at hand, and goes on to the next.
+  StandardDistribution::Square next() {
+    double real = 0.0, imaginary = 0.0, real_slope = 0.0, imaginary_slope = 0.0;
+    for (Phasor& phasor : phasors_) {
+      const auto [c, s, turn_c, turn_s, x] = phasor;
+      real += c;
+      imaginary += s;
+      real_slope -= x * s;
+      imaginary_slope += x * c;
+      phasor.c = c * turn_c - s * turn_s;
+      phasor.s = c * turn_s + s * turn_c;
+    }
+    return {real * real + imaginary * imaginary, 2.0 * (real * real_slope + imaginary * imaginary_slope)};
+  }
+
+ private:
+  struct Phasor {
+    double c, s, turn_c, turn_s, x;
+  };
+  std::vector<Phasor> phasors_;
+};
+
+/// How far from a place at which g² is `surplus` > 0 above the level's square it stays above: the root of surplus +
+/// slope·s − s² = 0; of the two forms of it the one without a difference of equal numbers.
+inline double sure_step(double surplus, double slope) {
+  const double root = std::sqrt(slope * slope + 4.0 * surplus);
+  return slope > 0.0 ? 0.5 * (slope + root) : 2.0 * surplus / (root - slope);
+}
+
+/// The same between two places, step by step.
+inline bool surely_stays_between(const StandardDistribution& distribution, double level, double from, double to,
+                                 double rounding) {
+  const double least_step = (to - from) / 256.0;
+  for (double u = from; u < to;) {
+    const StandardDistribution::Square square = distribution.square_at(u);
+    const double surplus = square.value - level * level - rounding;
+    const double step = surplus > 0.0 ? sure_step(surplus, square.slope) : 0.0;
+    if (step < least_step) return false;
+    u += step;
+  }
+  return true;
+}
+
+/// Whether g surely stays above a level all the way; where that is not sure, nothing is said.
+inline bool surely_stays_above(const StandardDistribution& distribution, double level, double from, double end) {
+  constexpr double distance = 0.3;   // by measurement
+  constexpr double rounding = 1e-9;  // of a hundred turns, far above
+  TurningPhasors phasors(distribution, from, distance);
+  double sure_before = 0.0;
+  for (double u = from;; u += distance) {
+    const StandardDistribution::Square square = phasors.next();
+    const double surplus = square.value - level * level - rounding;
+    if (!(surplus > 0.0)) return false;
+    const bool is_sure = u == from || sure_before + sure_step(surplus, -square.slope) >= distance;
+    if (!is_sure && !surely_stays_between(distribution, level, u - distance, u, rounding)) return false;
+    if (u > end) return true;
+    sure_before = sure_step(surplus, square.slope);
+  }
+}
 
 /// The crossing between a point above the level and one at or below it, to the last bit that g² resolves. Newton's
 /// method from the end that was found last, a sixteenth too far, so that the other end comes near, too; where that
@@ -136,16 +211,14 @@ inline std::optional<double> first_fall(const StandardDistribution& distribution
   if (distribution.least() > level) return std::nullopt;
   const double bound = std::acos(level), end = coherence_search_multiple * bound;
   const double least_step = end / coherence_search_steps;
+  if (surely_stays_above(distribution, level, bound, end)) return std::nullopt;
   double above = 0.0, u = bound;
   while (u <= end) {
     const StandardDistribution::Square square = distribution.square_at(u);
     const double surplus = square.value - level * level;
     if (surplus <= 0.0) return enclosed_fall(distribution, above, u, level);
-    // Root of surplus + slope·s − s² = 0; of the two forms of it the one without a difference of equal numbers.
-    const double root = std::sqrt(square.slope * square.slope + 4.0 * surplus);
-    const double step = square.slope > 0.0 ? 0.5 * (square.slope + root) : 2.0 * surplus / (root - square.slope);
     above = u;
-    u += std::max(step, least_step);
+    u += std::max(sure_step(surplus, square.slope), least_step);
   }
   return std::nullopt;
 }
