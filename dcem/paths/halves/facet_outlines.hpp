@@ -14,6 +14,7 @@
 #include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/paths/halves/cone.hpp"
+#include "dcem/paths/halves/facet_feet.hpp"
 #include "dcem/paths/halves/facet_joints.hpp"
 #include "dcem/paths/halves/hull_sides.hpp"
 #include "dcem/scene/scene.hpp"
@@ -80,6 +81,9 @@ class FacetOutlines {
 
   /// Those that meet a facet along a vertical line and have a higher number.
   std::span<const FacetJoint> joints(FacetId facet) const { return joints_.of(facet); }
+
+  /// Those that stand on the lowest level of the scenery.
+  const FacetFeet& feet() const { return feet_; }
 
   /// Whether a point of a facet's plane is over its hull, or no farther from it than `margin_m`.
   bool is_over(FacetId facet, const Vec3& point_m, double margin_m) const {
@@ -220,6 +224,7 @@ class FacetOutlines {
   std::vector<BodyId> bodies_there_;  ///< those that are not absent …
   ConeClusters body_clusters_;        ///< … and their boxes
   FacetJoints joints_;
+  FacetFeet feet_;
   Vec3 middle_m_{0.0};
   std::vector<std::pair<double, std::uint32_t>> places_;  ///< of items along an axis, while the tree grows
 };

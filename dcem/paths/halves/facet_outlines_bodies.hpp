@@ -36,6 +36,7 @@ DCEM_INLINE FacetOutlines::FacetOutlines(const Scene& scene) : outlines_(scene.f
     lay_out_planes(scene);
   }
   joints_.find(scene, scenery, [&](FacetId id) { return scene.facet(id).present && hides_as_hull(of(id)); });
+  feet_.find(scene, scenery);
   for (std::uint32_t body = 1; body < scene.bodies().size(); ++body) {
     const std::uint32_t first = end_of_body(scene, body - 1);
     bodies_.push_back({{}, first, end_of_body(scene, body) - first});
@@ -80,6 +81,13 @@ DCEM_INLINE void FacetOutlines::place(const Scene& scene, std::uint32_t index) {
   for (const Vec3& corner : hull_m) {
     if (facet.present) outline.box.extend(corner);
     centre_m += corner / static_cast<double>(hull_m.size());
+  }
+  if (facet.present) {
+    // Edges are where planes cross: of facets that stray they may end lower than any corner.
+    for (const WedgeId id : scene.wedges_of_facet(FacetId(index))) {
+      const Wedge& edge = scene.wedge(id).edge;
+      outline.box.min.z = std::min({outline.box.min.z, edge.start_m.z, edge.end_m.z});
+    }
   }
   for (std::size_t corner = 0; corner < hull_m.size(); ++corner) {
     const Vec3 &from = hull_m[corner], &to = hull_m[(corner + 1) % hull_m.size()];

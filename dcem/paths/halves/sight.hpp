@@ -11,48 +11,16 @@
 #include <vector>
 
 #include "dcem/paths/halves/facet_outlines.hpp"
+#include "dcem/paths/halves/half_settings.hpp"
 #include "dcem/paths/halves/may_face.hpp"
 #include "dcem/paths/halves/mirror_beam.hpp"
 #include "dcem/paths/halves/view_cells.hpp"
 #include "dcem/paths/halves/view_map.hpp"
 #include "dcem/paths/query/link_end.hpp"
-#include "dcem/paths/solve/edge_rules.hpp"
 
 namespace dcem {
 
 class ThreadPool;
-
-/// What is the same for all halves.
-struct HalfSettings {
-  bool edges = true;  ///< look for edges, too
-  /// A path crosses at most so many sheets: what is behind more of them is hidden.
-  int sheets = std::numeric_limits<int>::max();
-  EdgeRules rules{};
-  /// Where at least so many facets of the scenery may be seen that are small in the map, the view is looked at twice.
-  /// That only takes away what nothing comes of.
-  std::size_t closer_from = std::numeric_limits<std::size_t>::max();
-  /// Nothing farther than this counts as seen, along the way over a mirror where one is looked through.
-  double reach_m = std::numeric_limits<double>::infinity();
-  bool pairs = true;                    ///< halves are joined over two elements and more: images need what they may see
-  std::span<const char> asked_edges{};  ///< by edge, 0 where nobody asks whether it is seen; empty: all are asked for
-};
-
-/// Bodies that are looked at.
-struct BodyChoice {
-  std::optional<BodyId> not_there;  ///< one that does not exist for the end
-  std::span<const char> moved{};    ///< by body, whether it has moved; empty: all have
-  bool have_moved = true;           ///< those that have, or those that have not
-
-  bool takes(std::uint32_t body) const {
-    return (moved.empty() || moved[body] != 0) == have_moved && not_there != BodyId(body);
-  }
-};
-
-/// Of the scenery, or of what moves.
-struct SeenLayer {
-  std::vector<FacetId> mirrors;  ///< ascending
-  std::vector<WedgeId> edges;    ///< ascending
-};
 
 class Sight {
  public:
@@ -165,6 +133,21 @@ class Sight {
     const double lift_m = lift_share() * outlines.of(id).lift_m;
     return least_distance_m(scene.facet(id).plane) * longest_lift_share <= lift_m;
   }
+  /// Whether all points are above the feet of the façades that stand on the lowest level of the scenery.
+  bool is_above_feet(const FacetOutlines& outlines) const {
+    return std::ranges::all_of(points_m_, [&](const Vec3& point_m) {
+      return point_m.z > outlines.feet().lowest_m() + FacetFeet::least_height_m;
+    });
+  }
+  /// Bodies may reach under what stands on that level, and edges where planes cross.
+  void hide_nothing_below_feet(const FacetOutlines& outlines, ViewMap& map) const {
+    if (hides_under_feet_) map.hide_nothing_below(below_feet_m(outlines));
+  }
+  static double below_feet_m(const FacetOutlines& outlines) { return outlines.feet().lowest_m() - 1e-9; }
+  /// Whether a facet, or an edge of it, may be seen under feet.
+  bool reaches_under_feet(const FacetOutlines& outlines, FacetId id) const {
+    return hides_under_feet_ && outlines.of(id).box.min.z < below_feet_m(outlines);
+  }
   void take_points(std::span<const Vec3> points_m, const Vec3& middle_m);
   using FaceSpan = ViewMap::FaceSpan;
   void look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
@@ -193,6 +176,8 @@ class Sight {
              const FaceSpan& faces = {}) const;
   void cover_as_whole(const Scene& scene, const FacetOutlines& outlines, FacetId id, const HalfSettings& settings,
                       ViewMap& map, const FaceSpan& faces) const;
+  std::span<const Vec3> deepened(const Scene& scene, const FacetOutlines& outlines, FacetId id, const ViewMap& map,
+                                 detail::InsetOutline& deep) const;
   /// The plane of a facet where it is farthest.
   Plane farthest_plane(const WorldFacet& facet, const FacetOutline& outline) const;
   /// Whether its hull hides all behind it: it is opaque, no end that touches it looks past it, and where a mirror is
@@ -237,6 +222,7 @@ class Sight {
   std::optional<MirrorBeam> beam_;                            ///< where a mirror is looked through
   double radius_m_ = 0.0;                                     ///< how far points are from the middle
   double reach_m_ = std::numeric_limits<double>::infinity();  ///< from `position_m()`, with what points may be off by
+  bool hides_under_feet_ = false;                             ///< nothing is seen there
   bool is_body_ = false;  ///< the points are the corners of a body that is looked from
   std::optional<BodyId> ignored_body_;
   std::vector<FacetId> mounted_on_;

@@ -99,6 +99,8 @@ DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines&
 DCEM_INLINE void Sight::begin_looking(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings) {
   seen_.assign(outlines.size(), 0);
   count_sheets(scene, settings, map_);
+  hides_under_feet_ = is_above_feet(outlines);
+  hide_nothing_below_feet(outlines, map_);
   reach_m_ = settings.reach_m + radius_m_ + in_reach_m;
   grazed_.clear();
   outlines.for_each_grazed(position_m(), radius_m_, lift_share() / longest_lift_share, [&](FacetId id) {
@@ -219,6 +221,9 @@ DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outline
                                 const FaceSpan& faces) const {
   const WorldFacet& facet = scene.facet(id);
   if (!facet.present || facet.body == ignored_body_) return false;
+  if (reaches_under_feet(outlines, id)) {
+    return !beam_ || (id != beam_->mirror() && !beam_->is_beside(outlines.of(id).box));
+  }
   if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, id), faces);
   if (id == beam_->mirror() || beam_->is_beside(outlines.of(id).box)) return false;
   detail::InsetOutline inside;

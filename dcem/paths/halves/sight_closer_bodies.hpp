@@ -68,6 +68,7 @@ DCEM_INLINE void Sight::look_into(const Scene& scene, const FacetOutlines& outli
   if (places.size() < crowded) return std::ranges::for_each(places, mark), void();
   map.look_into(position_m(), cells_.corners_m(cell), offsets_m_);
   count_sheets(scene, settings, map);
+  hide_nothing_below_feet(outlines, map);
   // Nearer, what strays may stray by more than the margin of a pixel, 0.002 of it; at the corners of the cube pixels
   // are a third as wide as in the middle of its faces.
   const double margin_rad = 2e-3 / (3.0 * 4.0 * map.pixels());
@@ -82,8 +83,10 @@ DCEM_INLINE void Sight::look_into(const Scene& scene, const FacetOutlines& outli
   }
   for (const std::uint32_t place : places) {
     if (std::atomic_ref(shown_[place]).load(std::memory_order_relaxed) != 0) continue;
-    const Plane& plane = scene.facet(seen[place]).plane;
-    if (map.shows(scene.hull_m(scene.facet(seen[place])), plane, nearer_on(scene, outlines, seen[place]))) mark(place);
+    const WorldFacet& facet = scene.facet(seen[place]);
+    const bool is_seen = reaches_under_feet(outlines, seen[place]) ||
+                         map.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, seen[place]));
+    if (is_seen) mark(place);
   }
 }
 

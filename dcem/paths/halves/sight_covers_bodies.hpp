@@ -1,6 +1,7 @@
 #pragma once
 /// Bodies of sight.hpp: what hides what is behind it.
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "dcem/core/build_mode.hpp"
@@ -42,20 +43,36 @@ DCEM_INLINE Plane Sight::farthest_plane(const WorldFacet& facet, const FacetOutl
   return {facet.plane.point_m - side * outline.stray_m * facet.plane.normal, facet.plane.normal};
 }
 
+/// The hull of a facet, and what is under it where nothing is seen there: as much as fills the pixels that its foot
+/// runs through.
+DCEM_INLINE std::span<const Vec3> Sight::deepened(const Scene& scene, const FacetOutlines& outlines, FacetId id,
+                                                  const ViewMap& map, detail::InsetOutline& deep) const {
+  const std::span<const Vec3> hull_m = scene.hull_m(scene.facet(id));
+  if (!hides_under_feet_ || !outlines.feet().stands(id)) return hull_m;
+  constexpr double pixels = 2.5;
+  double away_m = 0.0;
+  for (const Vec3& corner_m : hull_m) {
+    away_m = std::max(away_m, std::hypot(corner_m.x - position_m().x, corner_m.y - position_m().y));
+  }
+  return outlines.feet().deepened(id, hull_m, away_m * pixels * 2.0 / map.pixels(), deep);
+}
+
 /// By itself, and together with those that it meets.
 DCEM_INLINE void Sight::cover_as_whole(const Scene& scene, const FacetOutlines& outlines, FacetId id,
                                        const HalfSettings& settings, ViewMap& map, const FaceSpan& faces) const {
-  const auto joined = [&](FacetId one, std::size_t side) -> JoinedOutline {
+  const auto joined = [&](FacetId one, std::size_t side, detail::InsetOutline& deep) -> JoinedOutline {
     const WorldFacet& facet = scene.facet(one);
     const FacetOutline& outline = outlines.of(one);
-    return {scene.hull_m(facet), farthest_plane(facet, outline), side, 2.0 * outline.stray_m};
+    return {deepened(scene, outlines, one, map, deep), farthest_plane(facet, outline), side, 2.0 * outline.stray_m};
   };
-  const JoinedOutline alone = joined(id, 0);
+  detail::InsetOutline own_deep, other_deep;
+  const JoinedOutline alone = joined(id, 0, own_deep);
   const bool is_flat = outlines.of(id).stray_m <= detail::flat_facet_m && points_m_.size() == 1;
   map.cover(alone.corners_m, alone.plane, faces, is_flat ? 0.0 : alone.stray_m);
   for (const FacetJoint& joint : outlines.joints(id)) {
     if (!hides_as_whole(scene, outlines, joint.other, settings)) continue;
-    map.cover_between(joined(id, joint.own_side), joined(joint.other, joint.other_side), faces);
+    const JoinedOutline other = joined(joint.other, joint.other_side, other_deep);
+    map.cover_between({alone.corners_m, alone.plane, joint.own_side, alone.stray_m}, other, faces);
   }
 }
 

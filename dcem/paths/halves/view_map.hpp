@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -76,6 +77,8 @@ class ViewMap {
     faces_ = detail::ViewFaces(detail::frame_of_window(point_m, {cell_m, 0.0, 0.0, cube_pixels_}).value());
     clear(cube_pixels_);
   }
+  /// From now on nothing below this height is hidden, until it looks from somewhere else.
+  void hide_nothing_below(double height_m) { least_height_m_ = height_m; }
   const Vec3& from_m() const { return from_m_; }
   int pixels() const { return pixels_; }
   int faces() const { return faces_.count(); }
@@ -149,6 +152,7 @@ class ViewMap {
   }
   /// The same, but for the pixels.
   void make_room(int pixels) {
+    least_height_m_ = -std::numeric_limits<double>::infinity();
     pixels_ = pixels;
     tiles_ = pixels / tile_pixels;
     nearness_.resize(static_cast<std::size_t>(faces_.count() * pixels * pixels));
@@ -183,6 +187,7 @@ class ViewMap {
   template <typename Fill>
   void cover_as_it_is(std::span<const Vec3> corners_m, const Plane& plane, double distance_m, const FaceSpan& on,
                       Fill&& fill);
+  bool is_below_all_hidden(const Vec3& point_m) const { return point_m.z < least_height_m_; }
   bool pixels_hide(int face, const PixelRange& rows, const PixelRange& columns, float nearness) const;
   bool tiles_hide(int face, const PixelRange& rows, const PixelRange& columns, float nearness) const;
   static bool is_beside(const detail::FacePoint& low, const detail::FacePoint& high) {
@@ -201,8 +206,9 @@ class ViewMap {
   int cube_pixels_, pixels_ = 0, tiles_ = 0;
   detail::ViewFaces faces_;
   Vec3 from_m_{0.0};
-  std::vector<Vec3> offsets_m_;  ///< of further points
-  RawVector<float> nearness_;    ///< 1/depth of what fills the pixel; 0: nothing does
+  double least_height_m_ = -std::numeric_limits<double>::infinity();  ///< of what may be hidden
+  std::vector<Vec3> offsets_m_;                                       ///< of further points
+  RawVector<float> nearness_;  ///< 1/depth of what fills the pixel; 0: nothing does
   // Worked out when they are asked for, until the map is settled.
   mutable std::vector<float> tile_nearness_;   ///< no more than the smallest of 8 × 8 pixels …
   mutable std::vector<char> tile_is_old_;      ///< … and whether it may be less

@@ -17,6 +17,7 @@ DCEM_INLINE bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& pl
   const double distance_m = -signed_distance_m(plane, from_m_);
   const bool says_nothing = std::abs(distance_m) < 1e-6 || nearer >= always_seen;
   if (says_nothing || corners_m.size() > detail::FaceOutline::most_corners) return true;
+  if (std::ranges::any_of(corners_m, [&](const Vec3& corner_m) { return is_below_all_hidden(corner_m); })) return true;
   const FaceSpan faces = faces_.in(on);
   for (int face = faces.first; face < faces.last; ++face) {
     detail::FaceOutline outline;
@@ -29,6 +30,7 @@ DCEM_INLINE bool ViewMap::shows(std::span<const Vec3> corners_m, const Plane& pl
 }
 
 DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nearer) const {
+  if (is_below_all_hidden(from_m) || is_below_all_hidden(to_m)) return true;
   const std::array<Vec3, 2> ends_m{from_m, to_m};
   for (int face = 0; face < faces_.count(); ++face) {
     detail::FaceOutline line;
@@ -59,7 +61,7 @@ DCEM_INLINE std::optional<ViewMap::PointPixels> ViewMap::pixels_of_point(const V
   const Vec3 offset_m = point_m - from_m_, size = glm::abs(offset_m);
   const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   const double depth = size[axis];
-  if (depth < 1e-3) return std::nullopt;
+  if (depth < 1e-3 || point_m.z - beside_m < least_height_m_) return std::nullopt;
   // Moved by beside_m, the point moves by less than this on the face; close to a rim of it the map says nothing.
   const double blur = 2.5 * beside_m / depth;
   if (blur > 0.5) return std::nullopt;
@@ -109,6 +111,7 @@ DCEM_INLINE bool ViewMap::tiles_hide(int face, const PixelRange& rows, const Pix
 }
 
 DCEM_INLINE bool ViewMap::hides(const Aabb<double>& box, double nearer, const FaceSpan& on) const {
+  if (is_below_all_hidden(box.min)) return false;
   const Vec3 low_m = box.min - from_m_, high_m = box.max - from_m_;
   const bool inside = low_m.x <= 0 && low_m.y <= 0 && low_m.z <= 0 && high_m.x >= 0 && high_m.y >= 0 && high_m.z >= 0;
   if (inside) return false;
