@@ -121,6 +121,7 @@ class StandardDistribution {
 class TurningPhasors {
  public:
   TurningPhasors(const StandardDistribution& distribution, double from, double distance) {
+    phasors_.reserve(distribution.points().size());
     for (const StandardDistribution::Point& point : distribution.points()) {
       const double here = from * point.x, turned = distance * point.x;
       phasors_.push_back(
@@ -157,7 +158,7 @@ inline double sure_step(double surplus, double slope) {
   return slope > 0.0 ? 0.5 * (slope + root) : 2.0 * surplus / (root - slope);
 }
 
-/// The same between two places, step by step.
+/// Whether g surely stays above a level between two places, step by step.
 inline bool surely_stays_between(const StandardDistribution& distribution, double level, double from, double to,
                                  double rounding) {
   const double least_step = (to - from) / 256.0;
@@ -171,7 +172,8 @@ inline bool surely_stays_between(const StandardDistribution& distribution, doubl
   return true;
 }
 
-/// Whether g surely stays above a level all the way; where that is not sure, nothing is said.
+/// The same all the way, in turns. False says nothing: the search then goes all the way itself, so that the fall that
+/// it finds does not depend on how far this came.
 inline bool surely_stays_above(const StandardDistribution& distribution, double level, double from, double end) {
   constexpr double distance = 0.3;   // by measurement
   constexpr double rounding = 1e-9;  // of a hundred turns, far above

@@ -3,7 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <complex>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -204,6 +207,38 @@ TEST_CASE("drawn channels: the level is met there, nowhere before, and not befor
   }
   CHECK(found > 30);
   CHECK(absent > 10);
+}
+
+TEST_CASE("a level a little above the deepest dip is met, however late that comes, and one a little below never") {
+  constexpr double step = 0.01;  // in units of 1/(2π·spread): a dip between two steps is 2.5e-5 deeper in |R|² at most
+  constexpr double little = 1e-3;    // far more than that in |R|
+  constexpr double longest = 101.0;  // coherence_search_multiple · arccos(0)
+  Draw draw(22);
+  int late = 0;
+  for (int repetition = 0; repetition < 60; ++repetition) {
+    CAPTURE(repetition);
+    auto samples = power_samples(drawn_paths(draw, 4 + draw.below(8), 1e-6, 1e-6));
+    samples.front().power_ratio = draw.between(1.2, 2.0) * total_power(samples);  // so no dip is deeper than 0.09
+    const double unit_hz = 1.0 / (2.0 * pi * power_moments(samples)->rms_delay_spread_s);
+    std::vector<double> levels;
+    for (double u = step; u < longest; u += step) levels.push_back(correlation(samples, u * unit_hz));
+    const auto deepest_until = [&](double u) {
+      const auto count = std::min(levels.size(), static_cast<std::size_t>(u / step));
+      return std::min_element(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(count));
+    };
+    const auto end = [](double level) { return coherence_search_multiple * std::acos(level); };
+    // Where the search ends hangs on the level: a dip before the end for a level above it counts.
+    const auto dip = deepest_until(0.95 * end(*deepest_until(longest) + 0.05));
+    const double dip_hz = static_cast<double>(dip - levels.begin() + 1) * step * unit_hz;
+    REQUIRE(dip_hz < 0.99 * end(*dip + little) * unit_hz);
+    const auto met_hz = coherence_bandwidth_hz(samples, *dip + little);
+    REQUIRE(met_hz);
+    CHECK(*met_hz < dip_hz);
+    late += *met_hz > 0.5 * end(*dip + little) * unit_hz ? 1 : 0;
+    const double below = *deepest_until(longest) - little;
+    CHECK_FALSE(coherence_bandwidth_hz(samples, below));
+  }
+  CHECK(late > 5);
 }
 
 }  // namespace test_coherence

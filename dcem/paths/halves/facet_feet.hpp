@@ -43,6 +43,8 @@ class FacetFeet {
 
   /// The number of the corner with which the foot begins.
   unsigned char foot_of(const Scene& scene, const WorldFacet& facet) const;
+  template <typename Visit>
+  static void for_each_corner(const Scene& scene, const WorldFacet& facet, Visit&& visit);
   bool is_on_lowest_level(const Scene& scene, const WorldFacet& facet) const;
 
   std::vector<unsigned char> foot_;  ///< by facet
@@ -51,35 +53,36 @@ class FacetFeet {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-inline void FacetFeet::find(const Scene& scene, std::uint32_t facets) {
-  const auto for_each_corner = [&](std::uint32_t facet, auto&& visit) {
-    const WorldFacet& held = scene.facets()[facet];
-    for (std::uint32_t triangle = 0; triangle < held.triangle_count; ++triangle) {
-      for (const Vec3& corner_m : scene.corners_m(held.first_triangle + triangle)) visit(corner_m);
-    }
-  };
-  for (std::uint32_t facet = 0; facet < facets; ++facet) {
-    for_each_corner(facet, [&](const Vec3& corner_m) { lowest_m_ = std::min(lowest_m_, corner_m.z); });
+template <typename Visit>
+void FacetFeet::for_each_corner(const Scene& scene, const WorldFacet& facet, Visit&& visit) {
+  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
+    for (const Vec3& corner_m : scene.corners_m(facet.first_triangle + triangle)) visit(corner_m);
   }
-  for (std::uint32_t facet = 0; facet < facets; ++facet) foot_.push_back(foot_of(scene, scene.facets()[facet]));
+}
+
+inline void FacetFeet::find(const Scene& scene, std::uint32_t facets) {
+  const auto scenery = scene.facets().first(facets);
+  for (const WorldFacet& facet : scenery) {
+    for_each_corner(scene, facet, [&](const Vec3& corner_m) { lowest_m_ = std::min(lowest_m_, corner_m.z); });
+  }
+  for (const WorldFacet& facet : scenery) foot_.push_back(foot_of(scene, facet));
 }
 
 /// Whether all corners of its triangles that are as low as its foot are on the lowest level.
 inline bool FacetFeet::is_on_lowest_level(const Scene& scene, const WorldFacet& facet) const {
-  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    for (const Vec3& corner_m : scene.corners_m(facet.first_triangle + triangle)) {
-      if (corner_m.z < lowest_m_ + foot_m && corner_m.z != lowest_m_) return false;
-    }
-  }
-  return true;
+  bool is_on = true;
+  for_each_corner(scene, facet, [&](const Vec3& corner_m) {
+    is_on = is_on && (corner_m.z >= lowest_m_ + foot_m || corner_m.z == lowest_m_);
+  });
+  return is_on;
 }
 
-/// Of an upright hull with two corners at the foot, from which its sides go straight up.
+/// Of an upright hull with two corners at the foot, from which its sides go straight up: where there are more, one of
+/// them lies beside another and not below.
 inline unsigned char FacetFeet::foot_of(const Scene& scene, const WorldFacet& facet) const {
   const std::span<const Vec3> hull_m = scene.hull_m(facet);
   if (std::abs(facet.plane.normal.z) > rounding_m || hull_m.size() < 4 || hull_m.size() > most_corners) return none;
   const auto is_low = [&](const Vec3& corner_m) { return corner_m.z < lowest_m_ + foot_m; };
-  if (std::ranges::count_if(hull_m, is_low) != 2) return none;
   const auto corner_m = [&](std::size_t number) { return hull_m[number % hull_m.size()]; };
   const auto is_below = [&](std::size_t low, std::size_t high) {
     const Vec3 way_m = corner_m(high) - corner_m(low);

@@ -17,6 +17,7 @@
 
 #include "dcem/core/thread_pool.hpp"
 #include "dcem/paths/halves/sight.hpp"
+#include "tests/paths/halves/point_groups.hpp"
 #include "tests/paths/halves/small_town.hpp"
 #include "tests/paths/small_scenes.hpp"
 #include "tests/support/all_tests.hpp"
@@ -241,21 +242,6 @@ class Town {
 
 // Points that look ----------------------------------------------------------------------------------------------------
 
-struct Group {
-  std::vector<Vec3> points_m;
-  bool is_body = false;  ///< all points between them look
-
-  Vec3 some_point_m(Draw& draw) const {
-    if (!is_body || draw.below(4) == 0) return points_m[draw.below(points_m.size())];
-    std::vector<double> shares(points_m.size());
-    double sum = 0.0;
-    for (double& share : shares) sum += share = draw.between(0.0, 1.0);
-    Vec3 point_m(0.0);
-    for (std::size_t corner = 0; corner < shares.size(); ++corner) point_m += shares[corner] / sum * points_m[corner];
-    return point_m;
-  }
-};
-
 /// How high over the level points are. `is_low`: down to below it.
 double some_height_m(Draw& draw, bool is_low) {
   if (is_low) return draw.below(3) == 0 ? draw.between(-0.02, 0.12) : draw.between(-6.0, 0.15);
@@ -279,23 +265,15 @@ Vec3 some_place_m(Draw& draw, Town& town, bool is_low) {
   return place_m;
 }
 
-Group some_group(Draw& draw, const Vec3& middle_m) {
+PointGroup some_group(Draw& draw, const Vec3& middle_m) {
   const double size_m = draw.magnitude(0.01, 6.0);
   const double high_m = draw.below(2) == 0 ? 0.0 : draw.between(0.0, 0.3) * size_m;
   const Vec3 half_m = 0.5 * Vec3(size_m, draw.between(0.1, 1.0) * size_m, high_m);
-  Group group;
+  PointGroup group;
   group.points_m = {middle_m};
   const std::size_t kind = draw.below(4);
-  if (kind == 2) {
-    group.is_body = true;
-    group.points_m.clear();
-    for (const double x : {-1.0, 1.0}) {
-      for (const double y : {-1.0, 1.0}) {
-        group.points_m.push_back(middle_m + half_m * Vec3(x, y, -1.0));
-        if (high_m > 0.0) group.points_m.push_back(middle_m + half_m * Vec3(x, y, 1.0));
-      }
-    }
-  } else if (kind == 3) {
+  if (kind == 2) return points_of_box(middle_m, half_m);
+  if (kind == 3) {
     for (std::size_t point = 1 + draw.below(8); point > 0; --point) {
       group.points_m.push_back(middle_m + draw.inside(-half_m, half_m));
     }
@@ -406,7 +384,7 @@ class Looks {
 
  private:
   void look(Town& town, TracedScene<>& traced, const FacetOutlines& outlines, int rays) {
-    Group group = some_group(draw_, some_place_m(draw_, town, is_low_));
+    PointGroup group = some_group(draw_, some_place_m(draw_, town, is_low_));
     if (!group.is_body) {  // points touch nothing
       std::erase_if(group.points_m, [&](const Vec3& point_m) { return nearest_m(traced, point_m) == 0.0; });
     }
@@ -446,7 +424,7 @@ class Looks {
     }
   }
 
-  void look_at_edge(const Town& town, TracedScene<>& traced, const FacetOutlines& outlines, const Group& group,
+  void look_at_edge(const Town& town, TracedScene<>& traced, const FacetOutlines& outlines, const PointGroup& group,
                     const Sight& sight, const std::array<std::vector<WedgeId>, 2>& seen) {
     const WedgeId id(static_cast<std::uint32_t>(draw_.below(traced.scene.wedges().size())));
     const WorldWedge& wedge = traced.scene.wedge(id);
@@ -472,7 +450,7 @@ class Looks {
   void look_through(Town& town, TracedScene<>& traced, const FacetOutlines& outlines, int rays) {
     const FacetId mirror(static_cast<std::uint32_t>(draw_.below(outlines.size())));
     const WorldFacet& facet = traced.scene.facet(mirror);
-    Group group = some_group(draw_, some_place_m(draw_, town, is_low_));
+    PointGroup group = some_group(draw_, some_place_m(draw_, town, is_low_));
     const double side = signed_distance_m(facet.plane, group.points_m[0]) > 0.0 ? 1.0 : -1.0;
     const auto is_before = [&](const Vec3& point_m) {
       return side * signed_distance_m(facet.plane, point_m) > in_plane_guard_m;
@@ -526,7 +504,7 @@ class Looks {
     return std::ranges::binary_search(sorted, id);
   }
   /// Then nothing is reflected there.
-  static bool is_along(const Group& group, const Plane& plane) {
+  static bool is_along(const PointGroup& group, const Plane& plane) {
     return std::ranges::all_of(group.points_m, [&](const Vec3& point_m) {
       return std::abs(signed_distance_m(plane, point_m)) <= in_plane_guard_m;
     });

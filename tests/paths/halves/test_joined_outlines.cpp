@@ -15,6 +15,7 @@
 
 #include "dcem/geometry/triangle.hpp"
 #include "dcem/paths/halves/sight.hpp"
+#include "tests/paths/halves/point_groups.hpp"
 #include "tests/paths/small_scenes.hpp"
 
 namespace test_joined_outlines {
@@ -309,21 +310,6 @@ class AllTriangles {
 
 // Points side by side -------------------------------------------------------------------------------------------------
 
-struct Group {
-  std::vector<Vec3> points_m;
-  bool is_body = false;  ///< all points between them look
-
-  Vec3 some_point_m(Draw& draw) const {
-    if (!is_body || draw.below(4) == 0) return points_m[draw.below(points_m.size())];
-    std::vector<double> shares(points_m.size());
-    double sum = 0.0;
-    for (double& share : shares) sum += share = draw.between(0.0, 1.0);
-    Vec3 point_m(0.0);
-    for (std::size_t corner = 0; corner < shares.size(); ++corner) point_m += shares[corner] / sum * points_m[corner];
-    return point_m;
-  }
-};
-
 /// Somewhere in the street, a bit in front of a façade, by a line, or in the plane of a façade.
 Vec3 some_place_m(Draw& draw, const Town& town, const Vec3& origin_m, const AllTriangles& triangles) {
   const Line& line = town.lines[draw.below(town.lines.size())];
@@ -353,11 +339,11 @@ Vec3 some_place_m(Draw& draw, const Town& town, const Vec3& origin_m, const AllT
   }
 }
 
-Group some_group(Draw& draw, const Vec3& middle_m) {
+PointGroup some_group(Draw& draw, const Vec3& middle_m) {
   const double size_m = draw.below(3) == 0 ? draw.magnitude(1e-4, 0.1) : draw.magnitude(0.01, 8.0);
   const double high_m = draw.below(2) == 0 ? 0.0 : draw.between(0.0, 0.5) * size_m;
   const Vec3 half_m = 0.5 * Vec3(size_m, draw.between(0.05, 1.0) * size_m, high_m);
-  Group group;
+  PointGroup group;
   switch (draw.below(4)) {
     case 0:
       group.points_m = {middle_m};
@@ -368,14 +354,7 @@ Group some_group(Draw& draw, const Vec3& middle_m) {
       }
       break;
     case 2:
-      group.is_body = true;
-      for (const double x : {-1.0, 1.0}) {
-        for (const double y : {-1.0, 1.0}) {
-          group.points_m.push_back(middle_m + half_m * Vec3(x, y, -1.0));
-          if (high_m > 0.0) group.points_m.push_back(middle_m + half_m * Vec3(x, y, 1.0));
-        }
-      }
-      break;
+      return points_of_box(middle_m, half_m);
     default:
       for (std::size_t point = 2 + draw.below(15); point > 0; --point) {
         group.points_m.push_back(middle_m + draw.inside(-half_m, half_m));
@@ -418,7 +397,7 @@ struct Count {
 };
 
 /// Shoots from a group, which has looked.
-void shoot(Draw& draw, const Town& town, const Scene& scene, const FacetOutlines& outlines, const Group& group,
+void shoot(Draw& draw, const Town& town, const Scene& scene, const FacetOutlines& outlines, const PointGroup& group,
            const Sight& sight, const SeenLayer& seen, const AllTriangles& triangles, int sheets, int rays,
            Count& count) {
   const auto is_along = [&](const Plane& plane) {  // then nothing is reflected there
@@ -449,7 +428,7 @@ void shoot(Draw& draw, const Town& town, const Scene& scene, const FacetOutlines
 }
 
 /// Looks at points of edges.
-void look_at_edges(Draw& draw, const Scene& scene, const Group& group, const SeenLayer& seen,
+void look_at_edges(Draw& draw, const Scene& scene, const PointGroup& group, const SeenLayer& seen,
                    const AllTriangles& triangles, int points, Count& count) {
   for (int point = 0; point < points && !scene.wedges().empty(); ++point) {
     const WedgeId id(static_cast<std::uint32_t>(draw.below(scene.wedges().size())));
@@ -484,7 +463,7 @@ Count shoot_in_towns(std::uint64_t seed, int towns, int groups, int rays) {
     }
     AllTriangles triangles(traced.scene);
     for (int place = 0; place < groups; ++place) {
-      Group group = some_group(draw, some_place_m(draw, town, origin_m, triangles));
+      PointGroup group = some_group(draw, some_place_m(draw, town, origin_m, triangles));
       if (!group.is_body) {  // points touch nothing
         std::erase_if(group.points_m, [&](const Vec3& point_m) { return triangles.distance_m(point_m) < 2e-4; });
       }
@@ -556,7 +535,7 @@ Count shoot_through_mirrors(std::uint64_t seed, int towns, int mirrors, int rays
     for (int round = 0; round < mirrors; ++round) {
       const FacetId mirror(static_cast<std::uint32_t>(draw.below(outlines.size())));
       const Plane& plane = traced.scene.facet(mirror).plane;
-      Group group = some_group(draw, some_place_m(draw, town, origin_m, triangles));
+      PointGroup group = some_group(draw, some_place_m(draw, town, origin_m, triangles));
       const double side = signed_distance_m(plane, group.points_m[0]) > 0.0 ? 1.0 : -1.0;
       const auto is_before = [&](const Vec3& point_m) {
         return side * signed_distance_m(plane, point_m) > in_plane_guard_m;
