@@ -28,6 +28,7 @@ class Crowd {
     points_m_.assign(points_m.begin(), points_m.end());
     take_extreme_points(points_m, extreme_m_);
     origin_m_ = lanes.origin_m();
+    sight_.expect(outlines.size());
     sight_.look_from(points_m);
     sight_.find_scenery(scene, outlines, settings, layers_[0]);
     sight_.find_bodies(scene, outlines, settings, {}, layers_[1]);

@@ -27,6 +27,7 @@ class SheetLayers {
   int block_pixels() const { return crossed_ <= 3 ? 1 : 2; }
   void clear() {
     planes_.clear();
+    are_one_.clear();
     layers_.clear();
   }
 
@@ -35,6 +36,7 @@ class SheetLayers {
   void take(const Vec3& normal, double distance_m, double reach_m, std::size_t blocks) {
     if (layers_.empty()) layers_.resize(blocks * crossed_);
     planes_.push_back({normal, distance_m, reach_m});
+    are_one_.assign(planes_.size(), Answer::not_asked);
   }
 
   /// A sheet of that plane fills a block. Returns the nearness of the sheet that is one too many; 0: there is none.
@@ -42,7 +44,7 @@ class SheetLayers {
     const auto number = static_cast<std::uint32_t>(planes_.size() - 1);
     const std::span<Layer> layers = std::span(layers_).subspan(block * crossed_, crossed_);
     for (const Layer& layer : layers) {
-      if (layer.nearness > 0.0F && may_be_one(planes_[layer.plane], planes_[number])) return 0.0F;
+      if (layer.nearness > 0.0F && may_be_last(layer.plane)) return 0.0F;
     }
     Layer added{nearness, number};
     for (Layer& layer : layers) {
@@ -61,6 +63,13 @@ class SheetLayers {
     double distance_m, reach_m;
   };
 
+  enum class Answer : char { not_asked, no, yes };
+
+  bool may_be_last(std::uint32_t plane) {
+    Answer& answer = are_one_[plane];
+    if (answer == Answer::not_asked) answer = may_be_one(planes_[plane], planes_.back()) ? Answer::yes : Answer::no;
+    return answer == Answer::yes;
+  }
   /// A leg counts parallel sheets once that lie within the weld tolerance of each other where it crosses them, and so a
   /// pile or a fan of them. By so much two planes may be apart where they are in view.
   bool may_be_one(const SheetPlane& one, const SheetPlane& other) const {
@@ -74,7 +83,8 @@ class SheetLayers {
   std::size_t crossed_ = 1;
   double pile_m_ = 0.0;
   std::vector<SheetPlane> planes_;
-  std::vector<Layer> layers_;  ///< by block
+  std::vector<Answer> are_one_;  ///< by plane, whether the last one may be the same sheet
+  std::vector<Layer> layers_;    ///< by block
 };
 
 }  // namespace dcem::detail
