@@ -88,11 +88,6 @@ std::vector<std::string> kinds_of(const LinkResult& link) {
   return all;
 }
 
-/// Halves every amplitude and lets through a tenth, whatever the material.
-struct HalfMirror {
-  SurfaceResponse response(MaterialId, double) const { return {{-0.5, 0.5}, {0.1, 0.1}}; }
-};
-
 using Strings = std::vector<std::string>;
 
 }  // namespace
@@ -232,28 +227,6 @@ TEST_CASE("map points inside a body or on a wall are obstructed and hold nothing
   CHECK(points[2].statistics.path_count > 0);
   simulator.advance_to(4.0, 1);  // the trolley has gone on
   CHECK_FALSE(simulator.radio_maps({"area", Vec3(2, 1.5, 0.5), {2.0, 1.5}, {1, 1}, {}})[0].points[0].obstructed);
-}
-
-TEST_CASE("a surface model of the caller's own sets every amplitude") {
-  TriangleMesh mesh;
-  add_sheet(mesh, Vec3(0, 0, 0), Vec3(9, 0, 0), Vec3(0, 9, 0), "glass");
-  Scene scene = scene_of(mesh);
-  scene.add_transmitter(device_at("t", Vec3(-2, 0.5, 1.5), 0.0, {0.0, {PolarizationKind::dual, 0.0}}));
-  scene.add_receiver(device_at("above", Vec3(2, 0.5, 1.5), 0.0, {0.0, {PolarizationKind::dual, 0.0}}));
-  scene.add_receiver(device_at("below", Vec3(2, 0.5, -1.5), 0.0, {0.0, {PolarizationKind::dual, 0.0}}));
-  BasicSimulator<HalfMirror> simulator(std::move(scene), settings_for(1, 1), HalfMirror{});
-  const FrameResult result = simulator.advance_to(0.0);
-  REQUIRE(kinds_of(result.links.at(0)) == Strings{"", "R"});
-  REQUIRE(kinds_of(result.links.at(1)) == Strings{"T"});
-  const double wavelength_m = 299'792'458.0 / 30e9, five_m = wavelength_m / (4.0 * pi * 5.0);
-  // In the plane of incidence θ̂ and φ̂ are TM and TE: |entries| are a half and a tenth of free space over 5 m.
-  for (const auto& [link, path, factor] : {std::tuple(0, 1, 0.5), {1, 0, 0.1}}) {
-    const ComplexMatrix2& transfer =
-        result.links[static_cast<std::size_t>(link)].paths[static_cast<std::size_t>(path)].transfer;
-    CHECK(std::abs(transfer(0, 0)) == doctest::Approx(factor * five_m).epsilon(1e-12).scale(0.0));
-    CHECK(std::abs(transfer(1, 1)) == doctest::Approx(factor * five_m).epsilon(1e-12).scale(0.0));
-    CHECK(std::abs(transfer(0, 1)) < 1e-12 * five_m);
-  }
 }
 
 TEST_CASE("absent bodies: no link for what rides on them, and nothing of them in the way") {
