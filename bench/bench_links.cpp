@@ -1,11 +1,12 @@
 /// Times the exact search for links in a city, step by step, one thread.
 ///
 ///   bench_links ROUNDS FILE.obj --mast X Y Z [--receivers N] [--within METRES] [--height METRES] [--copies N]
-///                              [--interactions N] [--diffractions N] [--no-lists | --over-edges]
+///                              [--interactions N] [--diffractions N] [--roofs] [--no-lists | --over-edges]
 ///
-/// Receivers stand at random where nothing is above them but the sky, the transmitter at a mast. For each link: what
-/// the receiver may see (its half), its half joined with that of the mast, and the solver. One CSV row for each step:
-/// mean, 95 % and the longest of all links, medians over the rounds. Rounds must find the same paths: otherwise exit 1.
+/// Receivers stand at random where nothing is above them but the sky, in streets or on roofs, the transmitter at a
+/// mast. For each link: what the receiver may see (its half), its half joined with that of the mast, and the solver.
+/// One CSV row for each step: mean, 95 % and the longest of all links, medians over the rounds. Rounds must find the
+/// same paths: otherwise exit 1.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -34,7 +35,7 @@ struct Options {
   std::size_t receivers = 100;
   double within_m = 280.0, height_m = 1.5;
   int copies = 1, interactions = 2, diffractions = 1;
-  bool no_lists = false, over_edges = false;
+  bool roofs = false, no_lists = false, over_edges = false;
 };
 
 constexpr const char* step_names[] = {"half", "join", "solver", "sum"};
@@ -87,8 +88,10 @@ class City {
       const Vec3 above(options_.mast_m[0] + options_.within_m * (2.0 * random.uniform() - 1.0),
                        options_.mast_m[1] + options_.within_m * (2.0 * random.uniform() - 1.0), bounds.max.z + 1.0);
       const auto ground = index_.closest_hit({above, Vec3(0.0, 0.0, -1.0)}, {}, nullptr);
-      const bool is_street = ground && above.z - ground->t < bounds.min.z + 0.5;
-      if (is_street) places.push_back({above.x, above.y, above.z - ground->t + options_.height_m});
+      if (!ground) continue;
+      const double over_lowest_m = above.z - ground->t - bounds.min.z;
+      const bool is_asked_for = options_.roofs ? over_lowest_m > 3.0 : over_lowest_m < 0.5;
+      if (is_asked_for) places.push_back({above.x, above.y, above.z - ground->t + options_.height_m});
     }
     return places;
   }
@@ -172,6 +175,7 @@ bool bench(const Options& options) {
     row.text(options.no_lists     ? "no"
              : options.over_edges ? "over edges"
                                   : "yes")
+        .text(options.roofs ? "roofs" : "streets")
         .count(places.size())
         .number(mast_ms, 1)
         .text(step_names[step]);
@@ -195,11 +199,13 @@ int main(int count, char** arguments) {
   app.add_option("--copies", options.copies, "N x N copies of the scene")->check(CLI::Range(1, 16));
   app.add_option("--interactions", options.interactions, "at most")->check(CLI::Range(0, 3));
   app.add_option("--diffractions", options.diffractions, "at most")->check(CLI::Range(0, 2));
+  app.add_flag("--roofs", options.roofs, "receivers stand on roofs instead of in streets");
   auto* const no_lists = app.add_flag("--no-lists", options.no_lists, "the mast has not stood for long");
   app.add_flag("--over-edges", options.over_edges, "the mast has stood for thousands of links")->excludes(no_lists);
   return dcem::bench::run_program(app, count, arguments, [&] {
     std::puts(
-        "scene,triangles,max_interactions,max_diffractions,lists,links,mast_ms,step,mean_ms,p95_ms,maximum_ms,mirrors,"
+        "scene,triangles,max_interactions,max_diffractions,lists,receivers,links,mast_ms,step,mean_ms,p95_ms,maximum_"
+        "ms,mirrors,"
         "edges,proposed,paths,hash");
     return bench(options);
   });
