@@ -149,7 +149,9 @@ class BasicSimulator {
   bool looks() const { return plan_.joined > 0 || settings_.propagation.diffuse.enabled; }
   /// Room for what receivers see, one per thread; empty where no views are made.
   std::vector<ReceiverRoom> receiver_rooms() const {
-    return std::vector<ReceiverRoom>(looks() ? std::max(1U, pool_->size()) : 0U);
+    if (!looks()) return {};
+    const int pixels = detail::pixels_for_facets(PathHalf::default_pixels, outlines_->size());
+    return std::vector<ReceiverRoom>(std::max(1U, pool_->size()), ReceiverRoom{PathHalf(pixels), {}});
   }
   Evaluator evaluator() const {
     const PropagationSettings& propagation = settings_.propagation;

@@ -20,7 +20,9 @@ class Crowd {
  public:
   static constexpr std::size_t most_points = 2 * simd_lanes;
 
-  explicit Crowd(int map_pixels = 384) : sight_(map_pixels) {}
+  static constexpr int default_pixels = 384;  ///< along a side of the view map: by measurement in cities
+
+  explicit Crowd(int map_pixels = default_pixels) : sight_(map_pixels) {}
 
   /// Looks from 1 to `most_points` points, which touch nothing and ride on nothing.
   void look_from(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes,
@@ -28,7 +30,6 @@ class Crowd {
     points_m_.assign(points_m.begin(), points_m.end());
     take_extreme_points(points_m, extreme_m_);
     origin_m_ = lanes.origin_m();
-    sight_.expect(outlines.size());
     sight_.look_from(points_m);
     sight_.find_scenery(scene, outlines, settings, layers_[0]);
     sight_.find_bodies(scene, outlines, settings, {}, layers_[1]);

@@ -10,7 +10,6 @@ DCEM_INLINE void PathHalf::find_scenery(const Scene& scene, const FacetOutlines&
   note(end);
   place_ = nullptr;
   has_images_ = true;
-  own_sight_.expect(outlines.size());
   own_sight_.look_from(end, pool);
   own_sight_.find_scenery(scene, outlines, settings, layers_[0], pool);
   has_pairs_ = settings.pairs;

@@ -32,11 +32,6 @@ class Sight {
 
   explicit Sight(int map_pixels) : map_(map_pixels) {}
 
-  /// The next look is at so many facets. Where they are few, little can be hidden, and to fill many pixels takes longer
-  /// than it saves: by measurement.
-  void expect(std::size_t facets) {
-    map_.make_do_with(facets <= 256 ? 64 : facets <= 1'024 ? 128 : detail::FaceRows::most_pixels);
-  }
   /// Looks from one end. `pool`: empties the map; none: the calling thread does.
   void look_from(const LinkEnd& end, ThreadPool* pool = nullptr);
   /// Looks from several points at once, which ride on nothing and touch nothing.

@@ -43,12 +43,10 @@ class ViewMap {
 
   /// So many pixels along each side of the six faces: a multiple of 8, at most 1024. It looks from somewhere before it
   /// is asked anything.
-  explicit ViewMap(int pixels) : most_pixels_(pixels), cube_pixels_(pixels) {
+  explicit ViewMap(int pixels) : cube_pixels_(pixels) {
     DCEM_ASSERT(pixels > 0 && pixels % tile_pixels == 0 && pixels <= detail::FaceRows::most_pixels);
   }
 
-  /// From the next look on makes do with so many, a multiple of 8, where it is for more.
-  void make_do_with(int pixels) { cube_pixels_ = std::min(most_pixels_, pixels); }
   /// Empties the map, which from now on is that of another point. With `offsets_m` it is that of all points
   /// `point_m + offsets_m[i]`, too, seen from `point_m`: outlines hide only what they hide from all of them.
   void look_from(const Vec3& point_m, std::span<const Vec3> offsets_m = {}) {
@@ -205,7 +203,7 @@ class ViewMap {
     return {row(face, 0), tile_nearness_.data() + first_tile, tile_is_old_.data() + first_tile, pixels_, tiles_};
   }
 
-  int most_pixels_, cube_pixels_, pixels_ = 0, tiles_ = 0;
+  int cube_pixels_, pixels_ = 0, tiles_ = 0;
   detail::ViewFaces faces_;
   Vec3 from_m_{0.0};
   double least_height_m_ = -std::numeric_limits<double>::infinity();  ///< of what may be hidden

@@ -51,6 +51,12 @@ inline void add_search_work(const SearchCounters& counters, WorkCounters& work) 
   work.primitives_tested += counters.solver.traversal.primitives_tested;
 }
 
+/// Pixels of a view of so many facets, `most` at most: where they are few, little can be hidden, and to fill many
+/// pixels takes longer than it saves. By measurement.
+inline int pixels_for_facets(int most, std::size_t facets) {
+  return std::min(most, facets <= 256 ? 64 : facets <= 1'024 ? 128 : most);
+}
+
 /// Pixels of the view maps of so many transmitters: 6 MB each, less where they are many.
 inline int view_pixels_for(std::size_t transmitters) {
   if (transmitters <= 4) return 2 * PathHalf::default_pixels;

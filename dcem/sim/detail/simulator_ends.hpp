@@ -75,7 +75,8 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
   }
   if (halves.empty()) {
     const std::size_t count = ends.link.size();
-    ends.own_halves = kept_halves(count, fine ? detail::fine_view_pixels_for(count) : detail::view_pixels_for(count));
+    const int most = fine ? detail::fine_view_pixels_for(count) : detail::view_pixels_for(count);
+    ends.own_halves = kept_halves(count, detail::pixels_for_facets(most, outlines_->size()));
     halves = ends.own_halves;
   }
   const bool over_mirrors = search.max_reflections >= 1 && search.max_interactions >= 2;

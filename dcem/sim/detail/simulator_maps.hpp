@@ -35,7 +35,8 @@ struct BasicSimulator<Surface, Index>::MapShare {
   MapShare(const BasicSimulator& simulator, const TransmitterEnds& ends)
       : transmitters(ends),
         search(simulator.search_settings(ends.contacts.known())),
-        crowds(std::max(1U, simulator.pool_->size())),
+        crowds(std::max(1U, simulator.pool_->size()),
+               Crowd(detail::pixels_for_facets(Crowd::default_pixels, simulator.outlines_->size()))),
         beams(joins_triples(search) ? crowds.size() : 0),
         blockers(crowds.size()),
         asked_edges(edges_of_use(simulator.scene_.wedges().size())) {}

@@ -47,7 +47,8 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   if (plan_.joined == 0) return;
   lanes_ = std::make_unique<LaneScene>(scene_, *outlines_);
   const std::size_t transmitters = scene_.transmitters().size();
-  halves_ = kept_halves(transmitters, detail::view_pixels_for(transmitters));
+  halves_ =
+      kept_halves(transmitters, detail::pixels_for_facets(detail::view_pixels_for(transmitters), outlines_->size()));
   if (cache_ != CacheMode::exact) return;
   for (KeptHalf& half : halves_) half.keep_places(detail::longest_step_in_place_m, true, false, known_places_.get());
 }
