@@ -71,9 +71,11 @@ void check_names(const Scene& scene, const MapOrders& orders, const std::string&
   });
 }
 
-/// While a map is folded to cells there are both. The maps of a frame are there together.
+/// While a map is folded to cells there are both. The maps of a frame are there together, and while they are written
+/// what is over all transmitters is, too.
 void check_memory(const Scene& scene, const MapOrders& orders, const ScenarioOptions& options) {
-  const double point_bytes = static_cast<double>(scene.transmitters().size()) * sizeof(RadioMapPoint);
+  const double point_bytes =
+      static_cast<double>(scene.transmitters().size()) * sizeof(RadioMapPoint) + sizeof(CombinedMapPoint);
   for (const ReceiverGrid& grid : orders.grids) {
     const std::size_t samples = grid.samples_per_cell();
     const std::size_t points = grid.size() * (samples > 1 ? samples + 1 : 1);

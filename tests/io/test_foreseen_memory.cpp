@@ -55,8 +55,8 @@ TEST_CASE("a map of more points takes as much more memory as was foreseen") {
   CAPTURE(foreseen_bytes);
   CAPTURE(taken_bytes);
   REQUIRE(foreseen_bytes > 15e6);
-  // Groups of neighbours and the lines of the table come on top, some tens of bytes a point; below, the small map has
-  // room for work that the large one has used again.
+  // The lines of the table come on top, some tens of bytes a point; below, the small map has room for work that the
+  // large one has used again.
   CHECK(taken_bytes > 0.8 * foreseen_bytes);
   CHECK(taken_bytes < 1.4 * foreseen_bytes);
 }
