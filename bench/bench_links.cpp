@@ -1,12 +1,14 @@
-/// Times the exact search for links in a city, step by step, one thread.
+/// Times the exact search for links in a city, step by step.
 ///
-///   bench_links ROUNDS FILE.obj --mast X Y Z [--receivers N] [--within METRES] [--height METRES] [--copies N]
-///                              [--interactions N] [--diffractions N] [--roofs] [--no-lists | --over-edges]
+///   bench_links ROUNDS FILE.obj|FILE.json --mast X Y Z [--receivers N] [--within METRES] [--height METRES]
+///                              [--copies N | --frame N] [--interactions N] [--diffractions N] [--roofs]
+///                              [--no-lists | --over-edges] [--threads N]
 ///
-/// Receivers stand at random where nothing is above them but the sky, in streets or on roofs, the transmitter at a
-/// mast. For each link: what the receiver may see (its half), its half joined with that of the mast, and the solver.
-/// One CSV row for each step: mean, 95 % and the longest of all links, medians over the rounds. Rounds must find the
-/// same paths: otherwise exit 1.
+/// Of a scenario the scene is taken with its bodies where they are in a frame. Receivers stand at random where nothing
+/// is above them but the sky, in streets or on roofs, the transmitter at a mast. For each link: what the receiver may
+/// see (its half), its half joined with that of the mast, and the solver. One CSV row for each step: mean, 95 % and the
+/// longest of all links, medians over the rounds; `elapsed_ms` is what passes on the clock for all links, by link:
+/// with more threads than one it is less than the mean. Rounds must find the same paths: otherwise exit 1.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -19,7 +21,10 @@
 #include "dcem/accel/wide_index.hpp"
 #include "dcem/core/random.hpp"
 #include "dcem/core/statistics.hpp"
+#include "dcem/core/thread_pool.hpp"
+#include "dcem/io/frame_source.hpp"
 #include "dcem/io/obj_reader.hpp"
+#include "dcem/io/scenario.hpp"
 #include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/paths/path_finder.hpp"
 
@@ -35,6 +40,8 @@ struct Options {
   std::size_t receivers = 100;
   double within_m = 280.0, height_m = 1.5;
   int copies = 1, interactions = 2, diffractions = 1;
+  std::size_t frame = 0;
+  unsigned threads = 1;
   bool roofs = false, no_lists = false, over_edges = false;
 };
 
@@ -45,14 +52,12 @@ constexpr std::size_t step_count = 4;
 struct LinkTimes {
   std::array<double, step_count> ms{};
   std::size_t mirrors = 0, edges = 0, proposed = 0, paths = 0;
+  std::vector<std::array<std::uint64_t, 2>> path_facts;  ///< how many interactions, and the bits of the length
 };
 
 class City {
  public:
-  explicit City(const Options& options) : options_(options) {
-    const dcem::TriangleMesh mesh = dcem::bench::tiled(dcem::io::read_obj(options.file).mesh, options.copies);
-    for (const std::string& name : mesh.material_names) scene_.add_material({name, dcem::PerfectConductor{}});
-    scene_.set_scenery(mesh);
+  explicit City(const Options& options) : options_(options), scene_(scene_of(options)), rooms_(options.threads) {
     index_.build(scene_.triangle_view(), scene_.triangle_boxes(), scene_.first_triangles());
     outlines_.emplace(scene_);
     lanes_.emplace(scene_, *outlines_);
@@ -62,6 +67,21 @@ class City {
     search_.max_diffractions = options.diffractions;
     search_.max_interactions = options.interactions;
     search_.joined = 3;
+  }
+
+  static dcem::Scene scene_of(const Options& options) {
+    if (std::filesystem::path(options.file).extension() == ".json") {
+      dcem::io::Scenario scenario = dcem::io::load_scenario(options.file);
+      dcem::io::FrameSource frames(scenario);
+      for (std::size_t index = 0; index <= options.frame; ++index)
+        scenario.scene.apply(frames.frame(scenario.scene, index));
+      return std::move(scenario.scene);
+    }
+    dcem::Scene scene;
+    const dcem::TriangleMesh mesh = dcem::bench::tiled(dcem::io::read_obj(options.file).mesh, options.copies);
+    for (const std::string& name : mesh.material_names) scene.add_material({name, dcem::PerfectConductor{}});
+    scene.set_scenery(mesh);
+    return scene;
   }
 
   const dcem::Scene& scene() const { return scene_; }
@@ -96,18 +116,19 @@ class City {
     return places;
   }
 
-  LinkTimes solve(const Vec3& receiver_m, std::uint64_t& hash) {
+  LinkTimes solve(const Vec3& receiver_m, unsigned worker) {
+    dcem::ReceiverRoom& room = rooms_[worker];
     const dcem::SceneTracer<dcem::WideIndex> tracer(scene_, index_);
     const dcem::LinkEnd receiver{receiver_m, {}, {}};
     const std::vector<std::optional<dcem::LinkEnd>> transmitters{mast_};
     LinkTimes times;
     const Stopwatch half;
-    dcem::look_from(scene_, search_, *outlines_, *lanes_, receiver, room_);
+    dcem::look_from(scene_, search_, *outlines_, *lanes_, receiver, room);
     times.ms[0] = half.elapsed_ms();
     const dcem::HalfRefs masts{halves_};
     const Stopwatch join;
     const auto proposed =
-        dcem::join_halves(scene_, search_, {*outlines_, *lanes_, masts, room_.half, room_.lists}, transmitters);
+        dcem::join_halves(scene_, search_, {*outlines_, *lanes_, masts, room.half, room.lists}, transmitters);
     times.ms[1] = join.elapsed_ms();
     const Stopwatch solver;
     dcem::SearchCounters counters;
@@ -115,12 +136,14 @@ class City {
                                         std::vector<dcem::ReachedEdges>(1), proposed);
     times.ms[2] = solver.elapsed_ms();
     times.ms[3] = times.ms[0] + times.ms[1] + times.ms[2];
-    times.mirrors = room_.half.layers()[0].mirrors.size();
-    times.edges = room_.half.layers()[0].edges.size();
+    for (const auto& layer : room.half.layers()) {
+      times.mirrors += layer.mirrors.size();
+      times.edges += layer.edges.size();
+    }
     times.proposed = proposed[0].size();
     times.paths = links[0].paths.size();
     for (const dcem::Path& path : links[0].paths) {
-      hash = dcem::hash_values(hash, path.interactions.size(), dcem::bench::hash_of(path.length_m));
+      times.path_facts.push_back({path.interactions.size(), dcem::bench::hash_of(path.length_m)});
     }
     return times;
   }
@@ -134,7 +157,7 @@ class City {
   dcem::PathSearchSettings search_;
   std::vector<dcem::KeptHalf> halves_{dcem::KeptHalf(512)};
   dcem::LinkEnd mast_;
-  dcem::ReceiverRoom room_;
+  std::vector<dcem::ReceiverRoom> rooms_;
 };
 
 bool bench(const Options& options) {
@@ -145,11 +168,19 @@ bool bench(const Options& options) {
   for (auto& step : by_link) step.resize(places.size());
   std::uint64_t expected = 0;
   LinkTimes sum;
+  dcem::ThreadPool pool(options.threads);
+  std::vector<double> elapsed_ms;
   for (int round = 0; round < options.rounds; ++round) {
     std::uint64_t hash = 0;
     sum = {};
+    std::vector<LinkTimes> times_of(places.size());
+    const Stopwatch watch;
+    pool.for_each(places.size(),
+                  [&](std::size_t link, unsigned worker) { times_of[link] = city.solve(places[link], worker); });
+    elapsed_ms.push_back(watch.elapsed_ms() / static_cast<double>(places.size()));
     for (std::size_t link = 0; link < places.size(); ++link) {
-      const LinkTimes times = city.solve(places[link], hash);
+      const LinkTimes& times = times_of[link];
+      for (const auto& [interactions, length] : times.path_facts) hash = dcem::hash_values(hash, interactions, length);
       for (std::size_t step = 0; step < step_count; ++step) by_link[step][link].push_back(times.ms[step]);
       sum.mirrors += times.mirrors;
       sum.edges += times.edges;
@@ -180,7 +211,8 @@ bool bench(const Options& options) {
         .number(mast_ms, 1)
         .text(step_names[step]);
     row.number(mean_ms, 3).number(dcem::quantile(ms, 0.95), 3).number(dcem::quantile(ms, 1.0), 3);
-    row.count(sum.mirrors).count(sum.edges).count(sum.proposed).count(sum.paths).hash(expected).print();
+    row.count(sum.mirrors).count(sum.edges).count(sum.proposed).count(sum.paths).hash(expected);
+    row.count(options.threads).number(dcem::median(elapsed_ms), 3).print();
   }
   return true;
 }
@@ -191,12 +223,15 @@ int main(int count, char** arguments) {
   Options options;
   CLI::App app("Times the exact search for links in a city");
   app.add_option("ROUNDS", options.rounds, "rounds over all links")->required()->check(CLI::Range(1, 1000));
-  app.add_option("FILE", options.file, "OBJ file, in metres, z up")->required();
+  app.add_option("FILE", options.file, "OBJ file, in metres, z up, or scenario")->required();
   app.add_option("--mast", options.mast_m, "where the transmitter stands")->required()->expected(3);
   app.add_option("--receivers", options.receivers, "how many")->check(CLI::Range(1, 1'000'000));
   app.add_option("--within", options.within_m, "of the mast, along both axes, m")->check(CLI::PositiveNumber);
   app.add_option("--height", options.height_m, "of the receivers over the ground, m");
-  app.add_option("--copies", options.copies, "N x N copies of the scene")->check(CLI::Range(1, 16));
+  auto* const copies = app.add_option("--copies", options.copies, "N x N copies of an OBJ file");
+  copies->check(CLI::Range(1, 16));
+  app.add_option("--frame", options.frame, "of the scenario")->excludes(copies);
+  app.add_option("--threads", options.threads, "links are shared out to")->check(CLI::Range(1, 256));
   app.add_option("--interactions", options.interactions, "at most")->check(CLI::Range(0, 3));
   app.add_option("--diffractions", options.diffractions, "at most")->check(CLI::Range(0, 2));
   app.add_flag("--roofs", options.roofs, "receivers stand on roofs instead of in streets");
@@ -206,7 +241,7 @@ int main(int count, char** arguments) {
     std::puts(
         "scene,triangles,max_interactions,max_diffractions,lists,receivers,links,mast_ms,step,mean_ms,p95_ms,maximum_"
         "ms,mirrors,"
-        "edges,proposed,paths,hash");
+        "edges,proposed,paths,hash,threads,elapsed_ms");
     return bench(options);
   });
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dcem/core/ids.hpp"
+#include "dcem/geometry/vector.hpp"
 #include "dcem/paths/solve/edge_rules.hpp"
 
 namespace dcem {
@@ -32,6 +33,7 @@ struct BodyChoice {
   std::optional<BodyId> not_there;  ///< one that does not exist for the end
   std::span<const char> moved{};    ///< by body, whether it has moved; empty: all have
   bool have_moved = true;           ///< those that have, or those that have not
+  const Vec3* end_m = nullptr;      ///< who looks, where the view is one from all of a body; null: all of it does
 
   bool takes(std::uint32_t body) const {
     return (moved.empty() || moved[body] != 0) == have_moved && not_there != BodyId(body);

@@ -71,10 +71,16 @@ class PathHalf {
   /// Whether the end surely cannot see a point that lies on a facet, or on an edge.
   template <typename Element>
   bool hides(const Scene& scene, const FacetOutlines& outlines, Element element, const Vec3& point_m) const {
-    return sight().map().hides(point_m, sight().nearer_on(scene, outlines, element));
+    return sight().map().hides(point_m, nearer_on(scene, outlines, element));
   }
 
  private:
+  double nearer_on(const Scene& scene, const FacetOutlines& outlines, FacetId mirror) const {
+    return sight().nearer_on(scene, outlines, mirror, 0.0, &position_m_);
+  }
+  double nearer_on(const Scene& scene, const FacetOutlines& outlines, WedgeId edge) const {
+    return sight().nearer_on(scene, outlines, edge, &position_m_);
+  }
   void note(const LinkEnd& end) {
     position_m_ = end.position_m;
     ignored_body_ = end.ignored_body;

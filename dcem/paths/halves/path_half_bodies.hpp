@@ -42,7 +42,7 @@ DCEM_INLINE void PathHalf::find_bodies(const Scene& scene, const FacetOutlines& 
                                        std::span<const char> moved, ThreadPool* pool) {
   for (const bool have_moved : {true, false}) {
     HalfLayer& layer = layers_[have_moved ? 1 : 2];
-    sight().find_bodies(scene, outlines, settings, {ignored_body_, moved, have_moved}, layer);
+    sight().find_bodies(scene, outlines, settings, {ignored_body_, moved, have_moved, &position_m_}, layer);
     layer.lay_out(scene, position_m_, outlines.middle_m(), has_pairs_);
     if (has_pairs_) bodies_[have_moved ? 0 : 1].lay_out(scene, layer, position_m_, outlines.middle_m());
   }

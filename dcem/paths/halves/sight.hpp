@@ -86,21 +86,24 @@ class Sight {
   const ViewMap& map() const { return map_; }
 
   /// By which factor a point of a facet or an edge counts as nearer, so that nothing that its legs ignore hides it.
-  double nearer_on(const Scene& scene, const FacetOutlines& outlines, FacetId facet, double more_m = 0.0) const {
-    const double distance_m = least_distance_m(scene.facet(facet).plane);
+  /// `end_m`: to whom, of a view from several points one of them or between them; null: to all.
+  double nearer_on(const Scene& scene, const FacetOutlines& outlines, FacetId facet, double more_m = 0.0,
+                   const Vec3* end_m = nullptr) const {
+    const double distance_m = distance_of(end_m, scene.facet(facet).plane);
     const double lift_m = outlines.of(facet).lift_m + more_m;
     if (points_m_.size() == 1) {
       return distance_m > 2.0 * lift_m ? distance_m / (distance_m - lift_m) : ViewMap::always_seen;
     }
     // Of two points an outline hides something farther along the leg of one than along that of the other, but by less
     // than twice: it is no nearer to one point than half its distance from the middle.
-    return distance_m > 100.0 * lift_m ? 1.0 / (1.0 - 2.0 * lift_m / distance_m) : ViewMap::always_seen;
+    const double fewest = end_m != nullptr ? 4.0 : 100.0;
+    return distance_m > fewest * lift_m ? 1.0 / (1.0 - 2.0 * lift_m / distance_m) : ViewMap::always_seen;
   }
-  double nearer_on(const Scene& scene, const FacetOutlines& outlines, WedgeId edge) const {
+  double nearer_on(const Scene& scene, const FacetOutlines& outlines, WedgeId edge, const Vec3* end_m = nullptr) const {
     const WorldWedge& wedge = scene.wedge(edge);
     // The edge may lie on one side of a face's plane, and triangles of the face on the other.
     const auto on = [&](FacetId face) {
-      return nearer_on(scene, outlines, face, wedge.edge.stray_m + outlines.of(face).stray_m);
+      return nearer_on(scene, outlines, face, wedge.edge.stray_m + outlines.of(face).stray_m, end_m);
     };
     return std::max(on(wedge.facets[0]), on(wedge.facets[1]));
   }
@@ -128,10 +131,18 @@ class Sight {
     }
     return is_body_ && lowest_m <= 0.0 && highest_m >= 0.0 ? 0.0 : least_m;
   }
+  /// How close to a plane one point is, or, null, any of them.
+  double distance_of(const Vec3* end_m, const Plane& plane) const {
+    return end_m != nullptr ? std::abs(signed_distance_m(plane, *end_m)) : least_distance_m(plane);
+  }
+  /// One point, or, null, all of them.
+  std::span<const Vec3> points_or(const Vec3* end_m) const {
+    return end_m != nullptr ? std::span(end_m, 1) : std::span(points_m_);
+  }
   /// Whether a facet is grazed so that a point of it, lifted, is farther in front than boxes allow for.
-  bool is_lifted_far(const Scene& scene, const FacetOutlines& outlines, FacetId id) const {
+  bool is_lifted_far(const Scene& scene, const FacetOutlines& outlines, FacetId id, const Vec3* end_m = nullptr) const {
     const double lift_m = lift_share() * outlines.of(id).lift_m;
-    return least_distance_m(scene.facet(id).plane) * longest_lift_share <= lift_m;
+    return distance_of(end_m, scene.facet(id).plane) * longest_lift_share <= lift_m;
   }
   /// Whether all points are above the feet of the façades that stand on the lowest level of the scenery.
   bool is_above_feet(const FacetOutlines& outlines) const {
@@ -162,7 +173,8 @@ class Sight {
                      const FaceSpan& faces, std::vector<FacetId>& seen);
   void look_at_bodies(const Scene& scene, const FacetOutlines& outlines, const BodyChoice& bodies,
                       std::vector<FacetId>& seen) const;
-  bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id, const FaceSpan& faces = {}) const;
+  bool may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id, const FaceSpan& faces = {},
+               const Vec3* end_m = nullptr) const;
   /// How many of some facets are not wider than a few pixels of the map: those that others hide only in finer ones.
   std::size_t count_small(const FacetOutlines& outlines, std::span<const FacetId> seen) const;
   /// Where it pays.
@@ -195,10 +207,9 @@ class Sight {
   void cover_beyond(std::span<const Vec3> corners_m, const Plane& plane, const Plane* sheet, ViewMap& map,
                     const FaceSpan& faces) const;
   /// Whether all points are in a facet's plane: nothing is reflected there, though its edges may diffract.
-  bool is_along(const Plane& plane) const {
-    return std::all_of(points_m_.begin(), points_m_.end(), [&](const Vec3& point_m) {
-      return std::abs(signed_distance_m(plane, point_m)) <= in_plane_guard_m;
-    });
+  static bool are_along(std::span<const Vec3> points_m, const Plane& plane) {
+    return std::ranges::all_of(
+        points_m, [&](const Vec3& point_m) { return std::abs(signed_distance_m(plane, point_m)) <= in_plane_guard_m; });
   }
   /// Whether all of a box is farther away than anything that is looked for.
   bool is_beyond(const Aabb<double>& box) const {
@@ -208,13 +219,13 @@ class Sight {
   /// Whether nothing in a box is looked for: it is too far away, or beside the mirror that is looked through.
   bool is_out_of_view(const Aabb<double>& box) const { return is_beyond(box) || (beam_ && beam_->is_beside(box)); }
   /// Whether all points are between the faces of a wedge, where it is solid.
-  bool is_inside(const Wedge& wedge) const {
-    return std::none_of(points_m_.begin(), points_m_.end(),
-                        [&](const Vec3& point_m) { return may_face(wedge, point_m - wedge.start_m); });
+  static bool are_inside(std::span<const Vec3> points_m, const Wedge& wedge) {
+    return std::ranges::none_of(points_m,
+                                [&](const Vec3& point_m) { return may_face(wedge, point_m - wedge.start_m); });
   }
   /// `pool`: asks about the edges, of a map that is settled; none: the calling thread does.
   void finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer,
-              ThreadPool* pool = nullptr) const;
+              ThreadPool* pool = nullptr, const Vec3* end_m = nullptr) const;
 
   ViewMap map_;
   std::vector<Vec3> points_m_, offsets_m_;  ///< of several: from their middle

@@ -169,8 +169,8 @@ DCEM_INLINE void Sight::look_at_bodies(const Scene& scene, const FacetOutlines& 
     const bool is_hidden = map_.hides(body.box, nearer_boxes);
     for (std::uint32_t index = body.first; index < body.first + body.count; ++index) {
       const FacetId id(index);
-      if (is_hidden && !is_lifted_far(scene, outlines, id)) continue;
-      if (may_see(scene, outlines, id)) seen.push_back(id);
+      if (is_hidden && !is_lifted_far(scene, outlines, id, bodies.end_m)) continue;
+      if (may_see(scene, outlines, id, {}, bodies.end_m)) seen.push_back(id);
     }
   }
 }
@@ -206,7 +206,7 @@ DCEM_INLINE void Sight::find_bodies(const Scene& scene, const FacetOutlines& out
                                     const BodyChoice& bodies, SeenLayer& layer) const {
   layer.mirrors.clear();
   look_at_bodies(scene, outlines, bodies, layer.mirrors);
-  finish(scene, outlines, settings, layer);
+  finish(scene, outlines, settings, layer, nullptr, bodies.end_m);
 }
 
 DCEM_INLINE void Sight::find_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
@@ -217,19 +217,19 @@ DCEM_INLINE void Sight::find_facets(const Scene& scene, const FacetOutlines& out
   if (bodies) look_at_bodies(scene, outlines, {}, seen);
 }
 
-DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id,
-                                const FaceSpan& faces) const {
+DCEM_INLINE bool Sight::may_see(const Scene& scene, const FacetOutlines& outlines, FacetId id, const FaceSpan& faces,
+                                const Vec3* end_m) const {
   const WorldFacet& facet = scene.facet(id);
   if (!facet.present || facet.body == ignored_body_) return false;
   if (reaches_under_feet(outlines, id)) {
     return !beam_ || (id != beam_->mirror() && !beam_->is_beside(outlines.of(id).box));
   }
-  if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, id), faces);
+  if (!beam_) return map_.shows(scene.hull_m(facet), facet.plane, nearer_on(scene, outlines, id, 0.0, end_m), faces);
   if (id == beam_->mirror() || beam_->is_beside(outlines.of(id).box)) return false;
   detail::InsetOutline inside;
   if (!inside.assign(scene.hull_m(facet))) return true;
   if (!beam_->cut(inside)) return inside.is_full();
-  return map_.shows(inside.corners(), facet.plane, nearer_on(scene, outlines, id), faces);
+  return map_.shows(inside.corners(), facet.plane, nearer_on(scene, outlines, id, 0.0, end_m), faces);
 }
 
 /// Drops edges. Those after the one that is asked about are fetched, and then their faces.
@@ -253,13 +253,15 @@ void keep_edges(const Scene& scene, const FacetOutlines& outlines, std::vector<W
 /// Adds the edges. Where a point of an edge is seen from its exterior, so is one of its faces beside it: but for a
 /// third facet that touches it there, and then nothing diffracts.
 DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
-                               SeenLayer& layer, ThreadPool* pool) const {
+                               SeenLayer& layer, ThreadPool* pool, const Vec3* end_m) const {
+  const std::span<const Vec3> points_m = points_or(end_m);
   const auto out_of_reach = [&](WedgeId id) {
     const WorldWedge& wedge = scene.wedge(id);
-    if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules) || is_inside(wedge.edge)) return true;
-    const Vec3 &start_m = wedge.edge.start_m, &end_m = wedge.edge.end_m;
-    if (is_beyond({glm::min(start_m, end_m), glm::max(start_m, end_m)})) return true;
-    return !map_.shows(wedge.edge.start_m, wedge.edge.end_m, nearer_on(scene, outlines, id));
+    if (!diffracts(wedge, settings.rules) || is_embedded(id, settings.rules) || are_inside(points_m, wedge.edge))
+      return true;
+    const Vec3 &first_m = wedge.edge.start_m, &last_m = wedge.edge.end_m;
+    if (is_beyond({glm::min(first_m, last_m), glm::max(first_m, last_m)})) return true;
+    return !map_.shows(wedge.edge.start_m, wedge.edge.end_m, nearer_on(scene, outlines, id, end_m));
   };
   std::ranges::sort(layer.mirrors);
   collect_edges(scene, settings.edges ? std::span<const FacetId>(layer.mirrors) : std::span<const FacetId>(),
@@ -279,7 +281,7 @@ DCEM_INLINE void Sight::finish(const Scene& scene, const FacetOutlines& outlines
     layer.edges.resize(kept);
   }
   std::erase_if(layer.mirrors, [&](FacetId id) {
-    return std::ranges::binary_search(mounted_on_, id) || is_along(scene.facet(id).plane);
+    return std::ranges::binary_search(mounted_on_, id) || are_along(points_m, scene.facet(id).plane);
   });
 }
 

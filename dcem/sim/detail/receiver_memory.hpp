@@ -23,7 +23,7 @@ namespace dcem::detail {
 /// place. Sequences over bodies are found anew in each frame, over all that may be seen from the place: among many
 /// bodies it pays only for who stays in it for long …
 inline double longest_pooled_step_m(std::size_t bodies) {
-  return std::min(2.0, 60.0 / static_cast<double>(std::max<std::size_t>(1, bodies)));
+  return std::min(2.0, 400.0 / static_cast<double>(std::max<std::size_t>(1, bodies)));
 }
 /// … the same where sequences of three elements are joined …
 inline constexpr double longest_step_of_triples_m = 0.75;
