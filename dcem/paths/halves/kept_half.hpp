@@ -107,7 +107,8 @@ class KeptHalf {
               const HalfSettings& settings);
 
   /// Works on the next place, as much in each frame, so that it is known, with time for what others prepare, when the
-  /// device comes into it. The frame that `enters` one has spent some time on that.
+  /// device comes into it. The frame that `enters` one has spent some time on that. Who turns away from it gets the
+  /// next one after a pause, which is twice as long each time: in a bend all would be in vain.
   void prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m, const Vec3& step_m,
                     bool enters, const HalfSettings& settings);
 
@@ -118,6 +119,14 @@ class KeptHalf {
 
   /// After how many frames a device that moves on like this is in a place no more: `most` + 1 where it is longer.
   static int frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most);
+
+  /// In how many frames a device that is in no place is to come into one: the more, the less each of them takes on top
+  /// of looking itself, but who turns, by so much in each step, is soon elsewhere.
+  int frames_of_looking(double turns_by_m) const;
+  /// After how many it is in a box; 0 where it takes more than `most`, or does not come into it.
+  static int frames_until_in(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most);
+  /// Whether it is then no farther aside than the box is wide.
+  static bool leads_by(const PlaceBox& box, const Vec3& now_m, int frames, const Vec3& step_m);
 
   /// Whether a device that has moved so far will be in a place for some frames.
   bool pays(const Vec3& moved_m) const { return keeps_places_ && glm::length(moved_m) <= longest_step_m_; }
@@ -155,7 +164,10 @@ class KeptHalf {
   std::shared_ptr<Place> made_;  ///< the next one, as long as it is being made
   bool has_entered_ = false;
   int frames_to_next_ = 0, work_on_next_ = 0;
-  double step_m_ = 0.0;  ///< from the frame before
+  int misses_ = 0, pause_ = 0;  ///< places that were not come into, one after the other; frames to wait after the last
+  double step_m_ = 0.0;         ///< from the frame before
+  Vec3 moved_m_{0.0};           ///< in the frame before, on the way through places
+  double turns_by_m_ = 0.0;     ///< how far the last step has led aside from where the one before it led
 };
 
 /// So many, each with maps of this many pixels a side.

@@ -89,7 +89,9 @@ DCEM_INLINE void KeptHalf::go_on_over_edges(const BeamSource& source, std::size_
 
 DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
                                   const Vec3& step_m, const HalfSettings& settings) {
+  const Vec3 before_m = std::exchange(moved_m_, step_m);
   step_m_ = glm::length(step_m);
+  turns_by_m_ = step_m_ > 0.0 ? glm::length(glm::cross(before_m, step_m)) / step_m_ : 0.0;
   HalfSettings of_place = settings;
   if (!over_mirrors_) of_place.closer_from = very_many;  // it takes as long as it saves, or longer
   const bool enters = enter(scene, outlines, end.position_m, step_m, of_place);
@@ -122,20 +124,27 @@ DCEM_INLINE bool KeptHalf::enter(const Scene& scene, const FacetOutlines& outlin
 
 DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
                                         const Vec3& step_m, bool enters, const HalfSettings& settings) {
-  constexpr int most_frames = 8;
+  constexpr int most_frames = 8, longest_pause = 16;
   // What pools of candidates take, and to go over to those of the place that is entered.
   const int work_of_others = candidates_work + (over_mirrors_ ? triples_work : 0);
   const int work_of_entering = over_mirrors_ ? 350 : 7;
+  if (enters) pause_ = misses_ = 0;
   if (place_) {
     frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
-  } else if (--frames_to_next_ <= 0 || !next_) {
-    next_.reset();  // missed, or none
+  } else if (next_ && !next_->box().holds(now_m)) {
+    frames_to_next_ = frames_until_in(next_->box(), now_m, step_m, 2 * frames_of_looking(0.0));
+  } else {
+    --frames_to_next_;
+  }
+  if (next_ && (frames_to_next_ <= 0 || !leads_by(next_->box(), now_m, frames_to_next_, step_m))) {
+    next_.reset();
     made_.reset();
-    // Meanwhile the device looks itself, through its mirrors, too, if places do.
-    frames_to_next_ = over_mirrors_ ? most_frames : most_frames / 2;
+    pause_ = std::min(1 << misses_++, longest_pause);
   }
   work_on_next_ = enters ? work_of_entering : 0;
-  if (frames_to_next_ > most_frames) return;
+  if (pause_ > 0 && pause_-- > 0) return;
+  if (!place_ && !next_) frames_to_next_ = frames_of_looking(turns_by_m_);  // through its mirrors, too, if places do
+  if (place_ && frames_to_next_ > most_frames) return;
   if (!next_) begin_next(now_m, step_m);
   const int share = even_share(next_->work_left() + work_of_others, work_on_next_, frames_to_next_);
   while (!next_->is_known() && fits(next_->next_work(), work_on_next_, share)) {
@@ -166,6 +175,24 @@ DCEM_INLINE int KeptHalf::frames_until_out(const PlaceBox& box, const Vec3& now_
   return frames;
 }
 
+DCEM_INLINE int KeptHalf::frames_of_looking(double turns_by_m) const {
+  constexpr int many = 12;
+  const int few = over_mirrors_ ? 8 : 4;
+  constexpr double aside_m = 0.25;  // half of what a place leaves to each side
+  return 0.5 * many * (many + 1) * turns_by_m <= aside_m ? many : few;
+}
+
+DCEM_INLINE int KeptHalf::frames_until_in(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most) {
+  int frames = 1;
+  while (frames <= most && !box.holds(now_m + static_cast<double>(frames) * step_m)) ++frames;
+  return frames <= most ? frames : 0;
+}
+
+DCEM_INLINE bool KeptHalf::leads_by(const PlaceBox& box, const Vec3& now_m, int frames, const Vec3& step_m) {
+  const Vec3 away_m = now_m + static_cast<double>(frames) * step_m - box.middle_m;
+  return std::abs(glm::dot(away_m, box.aside())) <= box.half_m.y && std::abs(away_m.z) <= box.half_m.z;
+}
+
 DCEM_INLINE PlaceBox KeptHalf::place_ahead(const Vec3& before_m, const Vec3& now_m, double behind_m) {
   constexpr double half_width_m = 0.5, half_height_m = 0.1;
   const Vec3 moved_m = now_m - before_m;
@@ -184,6 +211,7 @@ DCEM_INLINE void KeptHalf::find_scenery(const Scene& scene, const FacetOutlines&
   place_.reset();
   next_.reset();
   made_.reset();
+  moved_m_ = Vec3(0.0);
   has_entered_ = false;
   half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, closer), pool);
   is_closer_ = closer;

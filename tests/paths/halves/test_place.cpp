@@ -145,6 +145,38 @@ TEST_CASE("of a place that lies ahead each frame works out as much, and it is kn
   }
 }
 
+TEST_CASE("a device that jumps or sets out looks itself, and works out little beside, until its first place is known") {
+  for (const double step_m : {0.14, 0.5, 1.4, 2.0}) {
+    CAPTURE(step_m);
+    Drive drive;
+    for (int jump = 0; jump < 3; ++jump) {
+      drive.go_on(jump == 0 ? 0.0 : 20.0);
+      int frames = 0, most = 0;
+      while (!drive.half.place() && frames < 30) {
+        drive.go_on(step_m);
+        if (!drive.half.place()) most = std::max(most, drive.half.work_on_next());
+        ++frames;
+      }
+      CHECK(frames >= 12);  // in each of these a twelfth of 65, and parts are at most 9
+      CHECK(frames <= 13);
+      CHECK(most <= std::ceil(65.0 / 12.0) + 4.5);
+    }
+  }
+}
+
+TEST_CASE("in a bend that leads out of all places few of them are begun, and none anew in every frame") {
+  Drive drive;
+  int work = 0, in_places = 0;
+  for (int frame = 0; frame < 300; ++frame) {
+    const double turned = 1.4 * frame / 6.0;
+    drive.go_to(6.0 * Vec3(std::cos(turned), std::sin(turned), 0.0));
+    in_places += drive.half.place() ? 1 : 0;
+    work += drive.half.work_on_next();
+  }
+  CHECK(in_places == 0);
+  CHECK(work < 600);  // 2 a frame: of looking itself, some 20, a tenth
+}
+
 TEST_CASE("a device that brakes, speeds up or turns is in places most of the time") {
   for (const double radius_m : {6.0, 10.0, 20.0}) {
     CAPTURE(radius_m);
