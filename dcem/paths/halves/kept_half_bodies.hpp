@@ -133,8 +133,10 @@ DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines&
     frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
   } else if (next_ && !next_->box().holds(now_m)) {
     frames_to_next_ = frames_until_in(next_->box(), now_m, step_m, 2 * frames_of_looking(0.0));
-  } else {
-    --frames_to_next_;
+  } else if (--frames_to_next_ > 0 && next_ &&
+             frames_until_out(next_->box(), now_m, step_m, frames_to_next_) <= frames_to_next_) {
+    next_.reset();  // faster than when it was begun, the device is out again before it is known
+    made_.reset();
   }
   if (next_ && (frames_to_next_ <= 0 || !leads_by(next_->box(), now_m, frames_to_next_, step_m))) {
     next_.reset();
