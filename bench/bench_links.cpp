@@ -55,6 +55,22 @@ struct LinkTimes {
   std::vector<std::array<std::uint64_t, 2>> path_facts;  ///< how many interactions, and the bits of the length
 };
 
+/// That of a scenario in a frame, or copies of an OBJ file side by side.
+dcem::Scene scene_of(const Options& options) {
+  if (std::filesystem::path(options.file).extension() == ".json") {
+    dcem::io::Scenario scenario = dcem::io::load_scenario(options.file);
+    dcem::io::FrameSource frames(scenario);
+    for (std::size_t index = 0; index <= options.frame; ++index)
+      scenario.scene.apply(frames.frame(scenario.scene, index));
+    return std::move(scenario.scene);
+  }
+  dcem::Scene scene;
+  const dcem::TriangleMesh mesh = dcem::bench::tiled(dcem::io::read_obj(options.file).mesh, options.copies);
+  for (const std::string& name : mesh.material_names) scene.add_material({name, dcem::PerfectConductor{}});
+  scene.set_scenery(mesh);
+  return scene;
+}
+
 class City {
  public:
   explicit City(const Options& options) : options_(options), scene_(scene_of(options)), rooms_(options.threads) {
@@ -67,21 +83,6 @@ class City {
     search_.max_diffractions = options.diffractions;
     search_.max_interactions = options.interactions;
     search_.joined = 3;
-  }
-
-  static dcem::Scene scene_of(const Options& options) {
-    if (std::filesystem::path(options.file).extension() == ".json") {
-      dcem::io::Scenario scenario = dcem::io::load_scenario(options.file);
-      dcem::io::FrameSource frames(scenario);
-      for (std::size_t index = 0; index <= options.frame; ++index)
-        scenario.scene.apply(frames.frame(scenario.scene, index));
-      return std::move(scenario.scene);
-    }
-    dcem::Scene scene;
-    const dcem::TriangleMesh mesh = dcem::bench::tiled(dcem::io::read_obj(options.file).mesh, options.copies);
-    for (const std::string& name : mesh.material_names) scene.add_material({name, dcem::PerfectConductor{}});
-    scene.set_scenery(mesh);
-    return scene;
   }
 
   const dcem::Scene& scene() const { return scene_; }

@@ -120,9 +120,12 @@ class KeptHalf {
   /// After how many frames a device that moves on like this is in a place no more: `most` + 1 where it is longer.
   static int frames_until_out(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most);
 
+  /// Counts the frames until the device comes into the next place, and drops that if it will not.
+  void see_whether_next_is_met(const Vec3& now_m, const Vec3& step_m);
+
   /// In how many frames a device that is in no place is to come into one: the more, the less each of them takes on top
-  /// of looking itself, but who turns, by so much in each step, is soon elsewhere.
-  int frames_of_looking(double turns_by_m) const;
+  /// of looking itself, but who turns is soon elsewhere.
+  int frames_of_looking() const;
   /// After how many it is in a box; 0 where it takes more than `most`, or does not come into it.
   static int frames_until_in(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most);
   /// Whether it is then no farther aside than the box is wide.

@@ -14,6 +14,8 @@ namespace detail {
 
 /// A place that leaves a gap to the last one begins so far behind where the device comes into it.
 inline constexpr double least_behind_m = 0.25;
+/// Frames over which the work on the next place is spread: of a device in a place, and of one that looks itself.
+inline constexpr int most_frames = 8, most_frames_of_looking = 12;
 
 }  // namespace detail
 
@@ -124,35 +126,40 @@ DCEM_INLINE bool KeptHalf::enter(const Scene& scene, const FacetOutlines& outlin
 
 DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
                                         const Vec3& step_m, bool enters, const HalfSettings& settings) {
-  constexpr int most_frames = 8, longest_pause = 16;
   // What pools of candidates take, and to go over to those of the place that is entered.
   const int work_of_others = candidates_work + (over_mirrors_ ? triples_work : 0);
   const int work_of_entering = over_mirrors_ ? 350 : 7;
   if (enters) pause_ = misses_ = 0;
-  if (place_) {
-    frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, most_frames);
-  } else if (next_ && !next_->box().holds(now_m)) {
-    frames_to_next_ = frames_until_in(next_->box(), now_m, step_m, 2 * frames_of_looking(0.0));
-  } else if (--frames_to_next_ > 0 && next_ &&
-             frames_until_out(next_->box(), now_m, step_m, frames_to_next_) <= frames_to_next_) {
-    next_.reset();  // faster than when it was begun, the device is out again before it is known
-    made_.reset();
-  }
-  if (next_ && (frames_to_next_ <= 0 || !leads_by(next_->box(), now_m, frames_to_next_, step_m))) {
-    next_.reset();
-    made_.reset();
-    pause_ = std::min(1 << misses_++, longest_pause);
-  }
+  see_whether_next_is_met(now_m, step_m);
   work_on_next_ = enters ? work_of_entering : 0;
   if (pause_ > 0 && pause_-- > 0) return;
-  if (!place_ && !next_) frames_to_next_ = frames_of_looking(turns_by_m_);  // through its mirrors, too, if places do
-  if (place_ && frames_to_next_ > most_frames) return;
+  if (!place_ && !next_) frames_to_next_ = frames_of_looking();  // through its mirrors, too, if places do
+  if (place_ && frames_to_next_ > detail::most_frames) return;
   if (!next_) begin_next(now_m, step_m);
   const int share = even_share(next_->work_left() + work_of_others, work_on_next_, frames_to_next_);
   while (!next_->is_known() && fits(next_->next_work(), work_on_next_, share)) {
     work_on_next_ += next_->next_work();
     made_->go_on(scene, outlines, settings);
   }
+}
+
+DCEM_INLINE void KeptHalf::see_whether_next_is_met(const Vec3& now_m, const Vec3& step_m) {
+  constexpr int longest_pause = 16;
+  const auto drop = [&] {
+    next_.reset();
+    made_.reset();
+  };
+  if (place_) {
+    frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, detail::most_frames);
+  } else if (next_ && !next_->box().holds(now_m)) {
+    frames_to_next_ = frames_until_in(next_->box(), now_m, step_m, 2 * detail::most_frames_of_looking);
+  } else if (--frames_to_next_ > 0 && next_ &&
+             frames_until_out(next_->box(), now_m, step_m, frames_to_next_) <= frames_to_next_) {
+    drop();  // faster than when it was begun, the device is out again before it is known
+  }
+  if (!next_ || (frames_to_next_ > 0 && leads_by(next_->box(), now_m, frames_to_next_, step_m))) return;
+  drop();
+  pause_ = std::min(1 << misses_++, longest_pause);
 }
 
 DCEM_INLINE void KeptHalf::begin_next(const Vec3& now_m, const Vec3& step_m) {
@@ -177,11 +184,11 @@ DCEM_INLINE int KeptHalf::frames_until_out(const PlaceBox& box, const Vec3& now_
   return frames;
 }
 
-DCEM_INLINE int KeptHalf::frames_of_looking(double turns_by_m) const {
-  constexpr int many = 12;
+DCEM_INLINE int KeptHalf::frames_of_looking() const {
+  constexpr int many = detail::most_frames_of_looking;
   const int few = over_mirrors_ ? 8 : 4;
   constexpr double aside_m = 0.25;  // half of what a place leaves to each side
-  return 0.5 * many * (many + 1) * turns_by_m <= aside_m ? many : few;
+  return 0.5 * many * (many + 1) * turns_by_m_ <= aside_m ? many : few;
 }
 
 DCEM_INLINE int KeptHalf::frames_until_in(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most) {

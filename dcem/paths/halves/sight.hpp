@@ -96,6 +96,7 @@ class Sight {
     }
     // Of two points an outline hides something farther along the leg of one than along that of the other, but by less
     // than twice: it is no nearer to one point than half its distance from the middle.
+    // So from two lifts on; all points of a view are taken at their word farther away alone.
     const double fewest = end_m != nullptr ? 4.0 : 100.0;
     return distance_m > fewest * lift_m ? 1.0 / (1.0 - 2.0 * lift_m / distance_m) : ViewMap::always_seen;
   }
