@@ -1,6 +1,6 @@
 #pragma once
-/// Closest hits of many rays: dense neighbours from one point go together; rays from many points, and all rays where
-/// the tree is large, as a stream; the others one by one.
+/// Closest hits of many rays: dense neighbours from one point go together, others from one point one by one, and rays
+/// from many points as a stream.
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -64,7 +64,7 @@ inline void closest_hits(const WideArrays& tree, std::span<const RayQuery> queri
   const auto trace_alone = [&] {
     while (first_alone < next) {
       const auto rest = queries.subspan(first_alone, next - first_alone);
-      const std::size_t count = fetches_ahead(tree) ? rest.size() : unlike_neighbours(rest);
+      const std::size_t count = unlike_neighbours(rest);
       if (count >= ClosestStream::least) {
         ClosestStream(tree, rest.first(count), hits.subspan(first_alone, count), counters).run();
         first_alone += count;
@@ -73,7 +73,7 @@ inline void closest_hits(const WideArrays& tree, std::span<const RayQuery> queri
       const std::size_t end = first_alone + std::max<std::size_t>(count, 1);
       for (; first_alone < end; ++first_alone) {
         const RayQuery& query = queries[first_alone];
-        hits[first_alone] = closest_hit(tree, query.ray, query.filter, counters);
+        hits[first_alone] = closest_hit_of_one<true>(tree, query.ray, query.filter, counters);
       }
     }
   };

@@ -19,8 +19,10 @@ inline bool fetches_ahead(const WideArrays& tree) {
   return tree.fetch_ahead && tree.leaves.size() * sizeof(QuadLeaf) > 8'000'000;
 }
 
-// Out of line: within the loop over many rays g++ keeps less of a walk in registers, which costs a tenth.
-[[gnu::flatten, gnu::noinline]] inline std::optional<TriangleHit> closest_hit(const WideArrays& tree,
+/// `alike`: as for the walk. Out of line: within the loop over many rays g++ keeps less of a walk in registers, which
+/// costs a tenth.
+template <bool alike>
+[[gnu::flatten, gnu::noinline]] std::optional<TriangleHit> closest_hit_of_one(const WideArrays& tree,
                                                                               const Ray<double>& ray,
                                                                               const HitFilter& filter,
                                                                               TraversalCounters& counters) {
@@ -34,16 +36,23 @@ inline bool fetches_ahead(const WideArrays& tree) {
     candidates.take(tree, ray, filter, leaf, met, hits, limit, counters);
     reached = limit;
   };
-  if (fetches_ahead(tree)) {
-    walk_closest<true>(tree, wide, reached, take, counters);
+  if (!alike && fetches_ahead(tree)) {
+    walk_closest<true, false>(tree, wide, reached, take, counters);
   } else {
-    walk_closest<false>(tree, wide, reached, take, counters);
+    walk_closest<false, alike>(tree, wide, reached, take, counters);
   }
   return candidates.decide(tree, ray, reached, counters);
 }
 
-[[gnu::flatten]] inline bool occluded(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
-                                      TraversalCounters& counters) {
+inline std::optional<TriangleHit> closest_hit(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
+                                              TraversalCounters& counters) {
+  return closest_hit_of_one<false>(tree, ray, filter, counters);
+}
+
+/// Out of line for the same reason: with and without an end, side by side, are slower.
+template <bool endless>
+[[gnu::flatten, gnu::noinline]] bool is_occluded(const WideArrays& tree, const Ray<double>& ray,
+                                                 const HitFilter& filter, TraversalCounters& counters) {
   if (tree.nodes.empty()) return false;
   const WideRay wide(ray, tree.origin_m, tree.extent_m);
   if (!wide.usable()) return closest_hit_of_all(tree, ray, filter, counters).has_value();
@@ -62,7 +71,14 @@ inline bool fetches_ahead(const WideArrays& tree) {
     }
     return false;
   };
-  return walk_any(tree, wide, take, counters);
+  return walk_any<endless>(tree, wide, take, counters);
+}
+
+inline bool occluded(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
+                     TraversalCounters& counters) {
+  constexpr double farthest = 1e30;  // what single precision counts up to
+  return ray.t_max < farthest ? is_occluded<false>(tree, ray, filter, counters)
+                              : is_occluded<true>(tree, ray, filter, counters);
 }
 
 [[gnu::flatten]] inline bool visit_hits(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
@@ -79,7 +95,7 @@ inline bool fetches_ahead(const WideArrays& tree) {
     }
     return false;
   };
-  return walk_any(tree, wide, take, counters);
+  return walk_any<false>(tree, wide, take, counters);
 }
 
 }  // namespace DCEM_ISA
