@@ -1,10 +1,11 @@
 #pragma once
 /// Rays from one point into a narrow cone, through a wide tree together.
 ///
-/// Nodes are tested against the cone as a whole, eight boxes at a time (packet_cone.hpp). At a leaf the rays that meet
-/// its box are found eight at a time (packet_rays.hpp); for each of them the edges of the quads are products with
-/// normals that are worked out once: an edge from p to q, seen from the point, spans a plane with the normal
-/// p × (q − p), and a ray passes on the side that the sign of the product with its direction tells.
+/// Nodes are tested against the cone as a whole, eight boxes at a time (packet_cone.hpp). Whether a ray meets a box
+/// that the cone meets, and which, is asked for eight rays at a time (packet_rays.hpp): of a cone that is wide far out,
+/// most is beside its rays, and most of them end before. At a leaf, for each of them the edges of the quads are
+/// products with normals that are worked out once: an edge from p to q, seen from the point, spans a plane with the
+/// normal p × (q − p), and a ray passes on the side that the sign of the product with its direction tells.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -60,7 +61,11 @@ class RayPacket {
     while (true) {
       ++counters_.nodes_visited;
       bool descends = false;
-      if (!current.is_leaf()) {
+      const bool is_root = current == WideChild::node(0);
+      const std::uint32_t active = is_root ? 1U : rays_.that_meet(tree_.nodes[parent], parent_lane);
+      if (active != 0 && current.is_leaf()) {
+        if (test_leaf(current.index(), active)) reach_m = rays_.farthest_limit_m();
+      } else if (active != 0) {
         Float8 ahead_m;
         const Mask8 missed = cone_.misses(tree_.nodes[current.index()], reach_m, ahead_m);
         const std::uint32_t met = missed.bits() ^ 0xffU;
@@ -75,8 +80,6 @@ class RayPacket {
           current = tree_.nodes[parent].child[parent_lane];
           descends = true;
         }
-      } else if (const std::uint32_t active = rays_.that_meet(tree_.nodes[parent], parent_lane); active != 0) {
-        if (test_leaf(current.index(), active)) reach_m = rays_.farthest_limit_m();
       }
       if (descends) continue;
       std::uint32_t nearest = 0;

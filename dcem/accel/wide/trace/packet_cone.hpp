@@ -21,29 +21,38 @@ class PacketCone {
  public:
   /// The cone as the pyramid over a rectangle across its middle.
   [[gnu::always_inline]] bool surround(PacketRays& rays) {
-    Float4 sum{};
-    for (std::size_t ray = 0; ray < rays.count; ++ray) {
-      sum += Float4{rays.direction[0][ray], rays.direction[1][ray], rays.direction[2][ray], 0.0F} *
-             (1.0F / rays.size[ray]);
+    std::array<Float8, 3> sums{Float8(0.0F), Float8(0.0F), Float8(0.0F)};
+    for (std::size_t ray = 0; ray < rays.count; ray += simd_lanes) {
+      const Float8 by = Float8(1.0F) / Float8::load(&rays.size[ray]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        sums[axis] = sums[axis] + Float8::load(&rays.direction[axis][ray]) * by;
+      }
     }
+    const Float4 sum{total(sums[0]), total(sums[1]), total(sums[2]), 0.0F};
     if (!(dot(sum, sum) > 0.0F)) return false;
     const Float4 ahead = unit(sum), away = absolute(ahead);
     const bool x_least = away[0] <= away[1] && away[0] <= away[2], y_least = !x_least && away[1] <= away[2];
     const Float4 right = unit(
         cross(Float4{x_least ? 1.0F : 0.0F, y_least ? 1.0F : 0.0F, x_least || y_least ? 0.0F : 1.0F, 0.0F}, ahead));
     const Float4 up = cross(ahead, right);
-    float least_cosine = 1.0F;
-    std::array<float, 2> low{1e30F, 1e30F}, high{-1e30F, -1e30F};
-    for (std::size_t ray = 0; ray < rays.count; ++ray) {
-      const Float4 own{rays.direction[0][ray], rays.direction[1][ray], rays.direction[2][ray], 0.0F};
-      rays.ahead[ray] = dot(own, ahead);
-      least_cosine = std::min(least_cosine, rays.ahead[ray] / rays.size[ray]);
-      const std::array<float, 2> beside{dot(own, right) / rays.ahead[ray], dot(own, up) / rays.ahead[ray]};
+    Float8 cosine(1.0F);
+    std::array<Float8, 2> lowest{Float8(1e30F), Float8(1e30F)}, highest{Float8(-1e30F), Float8(-1e30F)};
+    for (std::size_t ray = 0; ray < rays.count; ray += simd_lanes) {
+      const auto along = [&](const Float4& by) __attribute__((always_inline)) {
+        return Float8::load(&rays.direction[0][ray]) * by[0] + Float8::load(&rays.direction[1][ray]) * by[1] +
+               Float8::load(&rays.direction[2][ray]) * by[2];
+      };
+      const Float8 own = along(ahead);
+      PacketRays::put(rays.ahead, ray, own);
+      cosine = simd::minimum(own / Float8::load(&rays.size[ray]), cosine);
+      const std::array<Float8, 2> beside{along(right) / own, along(up) / own};
       for (std::size_t side = 0; side < 2; ++side) {
-        low[side] = std::min(low[side], beside[side]);
-        high[side] = std::max(high[side], beside[side]);
+        lowest[side] = simd::minimum(beside[side], lowest[side]);
+        highest[side] = simd::maximum(beside[side], highest[side]);
       }
     }
+    const float least_cosine = least(cosine);
+    const std::array<float, 2> low{least(lowest[0]), least(lowest[1])}, high{-least(-highest[0]), -least(-highest[1])};
     if (!(least_cosine > 0.5F)) return false;
     constexpr float room = 1e-5F;  // a hundred roundings of a tangent below 2
     set_plane(rays, 0, right - (low[0] - room) * ahead, 1.0F);
@@ -81,6 +90,14 @@ class PacketCone {
     std::array<std::uint32_t, 3> row;  ///< byte offsets in WideNode::bounds_m of the corner of a box that decides
   };
 
+  static float total(const Float8& of) {
+    const Float4 four = of.first_four() + of.last_four();
+    return (four[0] + four[1]) + (four[2] + four[3]);
+  }
+  static float least(const Float8& of) {
+    const Float4 low = of.first_four(), high = of.last_four(), four = low < high ? low : high;
+    return std::min(std::min(four[0], four[1]), std::min(four[2], four[3]));
+  }
   static float dot(const Float4& one, const Float4& other) {
     const Float4 products = one * other;
     return products[0] + products[1] + products[2];

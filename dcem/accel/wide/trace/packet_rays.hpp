@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 #include "dcem/accel/hit_filter.hpp"
@@ -18,7 +19,8 @@ namespace detail {
 inline namespace DCEM_ISA {
 
 /// Rays with a common origin. Left without initial values: each packet would pay for them.
-struct PacketRays {
+class PacketRays {
+ public:
   static constexpr std::size_t capacity = 32;
   static constexpr float rounding = 0x1p-24F;  ///< relative error of one rounding
   using Numbers = std::array<float, capacity>;
@@ -28,6 +30,11 @@ struct PacketRays {
   float extent_m, farthest_m;     ///< of the tree, and of the origin along an axis
   alignas(32) std::array<Numbers, 3> direction, reciprocal;
   alignas(32) Numbers size, ahead, limit;  ///< of the directions: the longest axis, and the way along the cone's middle
+
+  /// Writes eight numbers to a row.
+  [[gnu::always_inline]] static void put(Numbers& row, std::size_t first, const Float8& numbers) {
+    std::memcpy(&row[first], &numbers, sizeof numbers);
+  }
 
   /// Directions as rows of numbers; the last ray fills the rest of the last eight.
   [[gnu::always_inline]] bool prepare(const WideArrays& tree, std::span<const RayQuery> queries) {
@@ -42,18 +49,8 @@ struct PacketRays {
     asked = queries.size();
     count = (queries.size() + simd_lanes - 1) / simd_lanes * simd_lanes;
     bool is_usable = farthest_m <= std::min(1e12F, 1e5F * extent_m);
-    for (std::size_t ray = 0; ray < count; ++ray) {
-      const Ray<double>& own = queries[std::min(ray, queries.size() - 1)].ray;
-      const auto x = static_cast<float>(own.direction.x), y = static_cast<float>(own.direction.y),
-                 z = static_cast<float>(own.direction.z);
-      direction[0][ray] = x;
-      direction[1][ray] = y;
-      direction[2][ray] = z;
-      // A quotient by nothing is infinite, on both sides alike, or no number, which neither minimum nor maximum keeps.
-      for (std::size_t axis = 0; axis < 3; ++axis) reciprocal[axis][ray] = 1.0F / direction[axis][ray];
-      size[ray] = std::max(std::abs(x), std::max(std::abs(y), std::abs(z)));
-      is_usable = is_usable && size[ray] > 1e-12F && size[ray] < 1e12F && own.t_max >= 0.0;
-      limit[ray] = WideRay::padded(own.t_max);
+    for (std::size_t first = 0; first < count; first += simd_lanes) {
+      is_usable = prepare_eight(queries.subspan(first), first) && is_usable;
     }
     return is_usable;
   }
@@ -89,6 +86,34 @@ struct PacketRays {
       met |= (entry <= exit).bits() << ray;
     }
     return met & static_cast<std::uint32_t>((std::uint64_t{1} << asked) - 1);
+  }
+
+ private:
+  /// Eight rays side by side, those of `queries` and then its last one.
+  [[gnu::always_inline]] bool prepare_eight(std::span<const RayQuery> queries, std::size_t first) {
+    std::array<Float4, simd_lanes> ways;
+    std::array<const float*, simd_lanes> places;
+    bool is_usable = true;
+    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+      const Ray<double>& own = queries[std::min(lane, queries.size() - 1)].ray;
+      Double4 way;
+      static_assert(sizeof own == 64);
+      std::memcpy(&way, &own.direction.x, sizeof way);  // x y z, t_min
+      ways[lane] = narrowed(way);
+      places[lane] = reinterpret_cast<const float*>(&ways[lane]);
+      is_usable = is_usable && own.t_max >= 0.0;
+      limit[first + lane] = WideRay::padded(own.t_max);
+    }
+    const std::array<Float8, 4> turned = simd::turned(places);
+    // A quotient by nothing is infinite, on both sides alike, or no number, which neither minimum nor maximum keeps.
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      put(direction[axis], first, turned[axis]);
+      put(reciprocal[axis], first, Float8(1.0F) / turned[axis]);
+    }
+    const Float8 longest =
+        simd::maximum(simd::absolute(turned[0]), simd::maximum(simd::absolute(turned[1]), simd::absolute(turned[2])));
+    put(size, first, longest);
+    return ((longest > Float8(1e-12F)) & (longest < Float8(1e12F))).bits() == 0xffU && is_usable;
   }
 };
 
