@@ -2,6 +2,7 @@
 /// rays one by one, in packets and in a stream.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -118,6 +119,32 @@ TEST_CASE("rays one by one and many at once get the same answers") {
     }
     CHECK(hits > 20);
   }
+}
+
+TEST_CASE("of what only the cone of a packet meets, no more than the boxes in the root are gone to") {
+  std::vector<Vec3> vertices_m;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Aabb<double>> boxes;
+  RandomStream random(7);
+  for (std::uint32_t triangle = 0; triangle < 2000; ++triangle) {
+    const Vec3 at_m(random.uniform() - 0.5, 4.0 * random.uniform() - 2.0, 100.0 + random.uniform());
+    for (const Vec3& aside_m : {Vec3(0.0), Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.1, 0.05)}) {
+      vertices_m.push_back(at_m + aside_m);
+    }
+    triangles.push_back({3 * triangle, 3 * triangle + 1, 3 * triangle + 2});
+    boxes.push_back({at_m, at_m + Vec3(0.1, 0.1, 0.05)});
+  }
+  WideBvh tree;
+  tree.build({vertices_m, triangles}, boxes);
+  // To the left of all triangles and to the right of them, 4 m from them where they are.
+  std::vector<RayQuery> queries;
+  for (int ray = 0; ray < 16; ++ray) queries.push_back({{Vec3(0.0), Vec3(ray % 2 == 0 ? -0.04 : 0.04, 0.0, 1.0)}});
+  std::vector<std::optional<TriangleHit>> hits(queries.size());
+  TraversalCounters counters;
+  tree.closest_hits(queries, hits, &counters);
+  for (const auto& hit : hits) CHECK(!hit);
+  CHECK(counters.nodes_visited > 1);  // the cone does meet them
+  CHECK(counters.nodes_visited <= 1 + simd_lanes);
 }
 
 #if defined(DCEM_ENGINE)
