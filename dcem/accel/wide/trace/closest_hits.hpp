@@ -73,7 +73,8 @@ inline void closest_hits(const WideArrays& tree, std::span<const RayQuery> queri
       const std::size_t end = first_alone + std::max<std::size_t>(count, 1);
       for (; first_alone < end; ++first_alone) {
         const RayQuery& query = queries[first_alone];
-        hits[first_alone] = closest_hit_of_one<true>(tree, query.ray, query.filter, counters);
+        hits[first_alone] = count > 1 ? closest_hit(tree, query.ray, query.filter, counters)
+                                      : closest_hit_of_one<true>(tree, query.ray, query.filter, counters);
       }
     }
   };

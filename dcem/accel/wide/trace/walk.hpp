@@ -67,7 +67,7 @@ template <typename Item>
 
 /// Near children first. Calls `take(leaf_index, met, hits, limit)` for each leaf of which the ray may meet quads, up to
 /// `limit` (padded), which `take` lowers: children beyond it are left out. `fetches`: the second nearest child of a
-/// node is asked for ahead, which pays in trees beyond the caches. `alike`: the ray before came from the same point.
+/// node is asked for ahead, which pays in trees beyond the caches. `alike`: its neighbour comes from the same point.
 template <bool fetches, bool alike, typename Take>
 [[gnu::always_inline]] inline void walk_closest(const WideArrays& tree, const WideRay& ray, float limit, Take&& take,
                                                 TraversalCounters& counters) {
