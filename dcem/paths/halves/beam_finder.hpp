@@ -78,8 +78,9 @@ class BeamFinder {
  private:
   void find_parts_of(std::span<const WedgeId> edges, int most_pieces, std::vector<EdgePart>& parts) const;
   void look_through_block(std::size_t first, std::size_t last, bool bodies, int most_pieces, BeamFinds& finds) const;
-  template <typename Shows, typename Visit>
-  static void for_each_shown(const Wedge& edge, const EdgePart& part, int most_pieces, Shows&& shows, Visit&& visit);
+  template <typename Visit>
+  void for_each_shown(const Sight& sight, WedgeId edge, const EdgePart& part, int most_pieces, Visit&& visit) const;
+  static double least_piece_m(const Sight& sight, const EdgePart& part);
   template <typename ForEach>
   void find_lit_parts(std::uint32_t mirror, std::span<const FacetId> facets, ForEach&& for_each,
                       BeamFinds& finds) const;

@@ -17,23 +17,39 @@
 
 namespace dcem {
 
-/// Pieces of a stretch of an edge, half a metre long, are looked up one by one: calls `visit(from, to)` for what shows,
-/// neighbours in one.
-template <typename Shows, typename Visit>
-void BeamFinder::for_each_shown(const Wedge& edge, const EdgePart& part, int most_pieces, Shows&& shows,
-                                Visit&& visit) {
-  constexpr double piece_m = 0.5;
+/// Pieces of a stretch of an edge, half a metre long or a pixel of the view, are looked up one by one, unless nothing
+/// of a longer piece shows: calls `visit(from, to)` for what does, neighbours in one.
+template <typename Visit>
+void BeamFinder::for_each_shown(const Sight& sight, WedgeId id, const EdgePart& part, int most_pieces,
+                                Visit&& visit) const {
+  const Wedge& edge = source_.scene.wedge(id).edge;
   const double from_m = part.from, to_m = part.to;
   const Vec3 direction = edge_direction(edge);
-  const int pieces = static_cast<int>(std::clamp<double>(std::ceil((to_m - from_m) / piece_m), 1.0, most_pieces));
+  const int pieces =
+      static_cast<int>(std::clamp<double>(std::ceil((to_m - from_m) / least_piece_m(sight, part)), 1.0, most_pieces));
   const auto place_m = [&](int piece) { return from_m + (to_m - from_m) * piece / pieces; };
-  for (int first = 0, piece = 0; piece <= pieces; ++piece) {
-    const bool shown = piece < pieces &&
-                       shows(edge.start_m + place_m(piece) * direction, edge.start_m + place_m(piece + 1) * direction);
-    if (shown) continue;
-    if (first < piece) visit(static_cast<float>(place_m(first)), static_cast<float>(place_m(piece)));
-    first = piece + 1;
-  }
+  int first = 0;  // of those that show, up to where it has been looked
+  const auto ask = [&](const auto& ask_again, int begin, int end) -> void {
+    const bool shows = sight.shows(source_.scene, source_.outlines, id, edge.start_m + place_m(begin) * direction,
+                                   edge.start_m + place_m(end) * direction);
+    if (shows && end - begin > 1) {
+      const int middle = (begin + end) / 2;
+      ask_again(ask_again, begin, middle);
+      return ask_again(ask_again, middle, end);
+    }
+    if (shows) return;
+    if (first < begin) visit(static_cast<float>(place_m(first)), static_cast<float>(place_m(begin)));
+    first = end;
+  };
+  ask(ask, 0, pieces);
+  if (first < pieces) visit(static_cast<float>(place_m(first)), static_cast<float>(place_m(pieces)));
+}
+
+/// Where a part is nearest.
+DCEM_INLINE double BeamFinder::least_piece_m(const Sight& sight, const EdgePart& part) {
+  constexpr double shortest_m = 0.5;
+  const double aside_m = std::max({part.from - part.place, part.place - part.to, 0.0F});
+  return std::max(shortest_m, sight.map().pixel_width() * std::hypot(static_cast<double>(part.distance), aside_m));
 }
 
 DCEM_INLINE void BeamFinder::find_parts(const HalfLayer& layer, int most_pieces, BeamFinds& finds) const {
@@ -57,10 +73,7 @@ DCEM_INLINE void BeamFinder::find_parts_of(std::span<const WedgeId> edges, int m
     EdgePart part = whole_edge(id.value, edge, source_.half.position_m());
     cut_to_contact(part, contact_at(id, source_.settings.rules));
     if (part.from > part.to) continue;
-    const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
-      return sight.shows(source_.scene, source_.outlines, id, from_m, to_m);
-    };
-    for_each_shown(edge, part, most_pieces, shows, [&](float from, float to) {
+    for_each_shown(sight, id, part, most_pieces, [&](float from, float to) {
       part.from = from;
       part.to = to;
       parts.push_back(part);
@@ -70,7 +83,7 @@ DCEM_INLINE void BeamFinder::find_parts_of(std::span<const WedgeId> edges, int m
 
 DCEM_INLINE void BeamFinder::look_over_edges(std::span<const EdgePart> parts, std::size_t first, std::size_t last,
                                              std::vector<std::array<std::uint32_t, 2>>& lit) const {
-  constexpr std::size_t block = 16;  // and as many more as the last edge has
+  const std::size_t block = std::clamp<std::size_t>((last - first) / 16, 1, 16);  // and what else is of its last edge
   std::vector<std::size_t> starts{first};
   for (std::size_t at = first; at < last; ++at) {
     if (at - starts.back() >= block && parts[at].edge != parts[at - 1].edge) starts.push_back(at);
@@ -131,7 +144,7 @@ void BeamFinder::find_lit_parts(std::uint32_t mirror, std::span<const FacetId> f
 
 DCEM_INLINE void BeamFinder::look_through(std::size_t first, std::size_t last, bool bodies, int most_pieces,
                                           BeamFinds& finds) const {
-  constexpr std::size_t block = 64;
+  const std::size_t block = std::clamp<std::size_t>((last - first) / 16, 2, 16);
   const std::size_t blocks = (last - first + block - 1) / block;
   if (source_.pool == nullptr || blocks <= 1) return look_through_block(first, last, bodies, most_pieces, finds);
   std::vector<BeamFinds> found(blocks);
@@ -147,10 +160,7 @@ DCEM_INLINE void BeamFinder::look_through_block(std::size_t first, std::size_t l
   Sight sight(view_pixels);
   std::vector<FacetId> facets;
   const auto show = [&](WedgeId id, const EdgePart& part, auto&& visit) {
-    const auto shows = [&](const Vec3& from_m, const Vec3& to_m) {
-      return sight.shows(source_.scene, source_.outlines, id, from_m, to_m);
-    };
-    for_each_shown(source_.scene.wedge(id).edge, part, most_pieces, shows, visit);
+    for_each_shown(sight, id, part, most_pieces, visit);
   };
   for (std::size_t at = first; at < last; ++at) {
     const auto mirror = static_cast<std::uint32_t>(at);

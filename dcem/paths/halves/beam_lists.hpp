@@ -26,12 +26,12 @@ class BeamLists {
   /// Of an end that stands, what does not change while bodies move …
   void find_scenery(const BeamSource& source);
   /// … or a part of it after the other: what is seen directly, and then, until it says that all is there, what is seen
-  /// over so many mirrors more …
+  /// over some mirrors more: as many as take about so long, in µs, as measured in Munich …
   void begin_scenery(const BeamSource& source);
-  bool go_on(const BeamSource& source, std::size_t mirrors);
-  /// … then, as well, which facets of the scenery are lit over so many more of the parts of edges that are seen. Where
+  bool go_on(const BeamSource& source, double work_us);
+  /// … then, as well, which facets of the scenery are lit over some more of the parts of edges that are seen. Where
   /// there would be more than `most_lit_over` of them, it says that all is there, and nothing is known.
-  bool go_on_over_edges(const BeamSource& source, std::size_t parts);
+  bool go_on_over_edges(const BeamSource& source, double work_us);
   static constexpr std::size_t most_lit_over = 16'000'000;  ///< they take four bytes each, and three times that before
   /// … and the rest. The scenery's must be known. `moved` as in `PathHalf::find_bodies`; `follows`: what was listed of
   /// bodies is that of the frame before, and stays true of those that have not moved.
@@ -100,6 +100,8 @@ class BeamLists {
 
  private:
   void note_mirrors(const BeamSource& source, std::size_t first_layer, std::size_t layers);
+  double look_through_more(const BeamSource& source, std::size_t mirrors);
+  double look_over_more(const BeamSource& source, std::size_t parts);
   BeamFinds find_moved(const BeamSource& source, std::span<const char> moved) const;
   BeamFinds find_others(const BeamSource& source, std::span<const char> moved) const;
   void keep_standing(const BeamSource& source, std::span<const char> moved, std::span<const FacetId> before);

@@ -98,6 +98,12 @@ class ViewFaces {
     if (window_) return steepness_;
     return cube_[static_cast<std::size_t>(face)] / 2 < 2 ? 1.03 : std::numeric_limits<double>::infinity();
   }
+  /// How wide a face is at a distance of one, along the axis on which that is less.
+  double least_width() const {
+    if (!window_) return 2.0;
+    return 2.0 /
+           std::sqrt(std::max(glm::dot(window_->across, window_->across), glm::dot(window_->along, window_->along)));
+  }
   /// Those of a span that are there.
   FaceSpan in(const FaceSpan& faces) const { return {faces.first, std::min(faces.last, count_)}; }
   FacePoint point(int face, const Vec3& offset_m) const {

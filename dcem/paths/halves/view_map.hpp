@@ -82,6 +82,8 @@ class ViewMap {
   const Vec3& from_m() const { return from_m_; }
   int pixels() const { return pixels_; }
   int faces() const { return faces_.count(); }
+  /// How wide a pixel is at a distance of one.
+  double pixel_width() const { return faces_.least_width() / pixels_; }
   /// Whether it is that of one point alone.
   bool is_of_one_point() const { return offsets_m_.empty(); }
 

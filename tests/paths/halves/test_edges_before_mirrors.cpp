@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,6 +20,8 @@ using namespace dcem::test;
 
 namespace {
 
+constexpr double all_of_it = std::numeric_limits<double>::infinity();
+
 /// A transmitter, and what it has listed. It stays where it is in memory.
 class Mast {
  public:
@@ -33,13 +36,13 @@ class Mast {
   Mast(const Mast&) = delete;
   Mast& operator=(const Mast&) = delete;
 
-  /// Lists what is lit over edges, so many parts of them at a time; returns how often it had to go on.
-  std::size_t look_over_edges(std::size_t parts, ThreadPool* pool = nullptr) {
+  /// Lists what is lit over edges, so much of it at a time; returns how often it had to go on.
+  std::size_t look_over_edges(double work_us = all_of_it, ThreadPool* pool = nullptr) {
     std::size_t times = 1;
-    while (!lists_.go_on_over_edges(source(pool), parts)) ++times;
+    while (!lists_.go_on_over_edges(source(pool), work_us)) ++times;
     return times;
   }
-  bool go_on_over_edges(std::size_t parts) { return lists_.go_on_over_edges(source(nullptr), parts); }
+  bool go_on_over_edges(double work_us) { return lists_.go_on_over_edges(source(nullptr), work_us); }
 
   /// The parts of edges that are asked about over each of a receiver's mirrors.
   std::vector<std::vector<EdgePart>> asked_for(const LinkEnd& to) const {
@@ -181,7 +184,7 @@ LinkEnd some_end(TracedScene<>& traced, Draw& draw) {
 bool is_same_link(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to, const Asked& asked, bool lists_bodies,
                   Counts& counts) {
   Mast without(traced, from, asked, 64, lists_bodies), with(traced, from, asked, 64, lists_bodies);
-  with.look_over_edges(1000);
+  with.look_over_edges();
   const std::vector<SequenceList> all = without.proposed(to), fewer = with.proposed(to);
   const std::vector<Path> expected = all_sequences(traced, from, to, asked);
   counts.paths += expected.size();
@@ -196,7 +199,7 @@ bool is_same_link(TracedScene<>& traced, const LinkEnd& from, const LinkEnd& to,
 bool is_same_crowd(TracedScene<>& traced, const LinkEnd& from, const std::vector<Vec3>& points_m, const Asked& asked,
                    Counts& counts) {
   Mast without(traced, from, asked, 64, true), with(traced, from, asked, 64, true);
-  with.look_over_edges(1000);
+  with.look_over_edges();
   const auto all = without.found_by(points_m, counts.before), fewer = with.found_by(points_m, counts.after);
   bool is_same = true;
   for (std::size_t point = 0; point < points_m.size(); ++point) {
@@ -284,17 +287,17 @@ TEST_CASE("edges that are looked over a few at a time, or by several threads, ar
     Draw draw(seed);
     TracedScene<> traced(large_town(draw));
     const LinkEnd from = somewhere(traced, draw), to = somewhere(traced, draw);
-    const auto proposed = [&](std::size_t parts, ThreadPool* threads, std::size_t least_times) {
+    const auto proposed = [&](double work_us, ThreadPool* threads, std::size_t least_times) {
       Mast mast(traced, from, {}, 64, true);
-      CHECK(mast.look_over_edges(parts, threads) >= least_times);
+      CHECK(mast.look_over_edges(work_us, threads) >= least_times);
       return mast.proposed(to);
     };
-    const std::vector<SequenceList> at_once = proposed(100'000, nullptr, 1);
+    const std::vector<SequenceList> at_once = proposed(all_of_it, nullptr, 1);
     CHECK(at_once[0].size() > 0);
-    CHECK(same_sequences(proposed(1, nullptr, 20)[0], at_once[0]));
-    CHECK(same_sequences(proposed(3, nullptr, 10)[0], at_once[0]));
-    CHECK(same_sequences(proposed(1, &pool, 20)[0], at_once[0]));
-    CHECK(same_sequences(proposed(100'000, &pool, 1)[0], at_once[0]));
+    CHECK(same_sequences(proposed(1.0, nullptr, 20)[0], at_once[0]));
+    CHECK(same_sequences(proposed(600.0, nullptr, 10)[0], at_once[0]));
+    CHECK(same_sequences(proposed(1.0, &pool, 20)[0], at_once[0]));
+    CHECK(same_sequences(proposed(all_of_it, &pool, 1)[0], at_once[0]));
   }
 }
 
@@ -309,7 +312,7 @@ TEST_CASE("no part is asked about that is not listed, not from where numbers cou
   const LinkEnd from = traced.end(Vec3(-5, -4, 2)), to = traced.end(mirrored(traced.scene.facet(wall).plane, middle_m));
   REQUIRE(mirrored(traced.scene.facet(wall).plane, to.position_m) == middle_m);  // there is its image
   Mast mast(traced, from, {}, 64, true);
-  mast.look_over_edges(1000);
+  mast.look_over_edges();
   const std::vector<EdgePart> listed = mast.parts();
   const auto count_in = [](const std::vector<EdgePart>& parts, const EdgePart& one) {
     return std::ranges::count_if(parts, [&](const EdgePart& part) {
@@ -333,9 +336,9 @@ TEST_CASE("until all edges are looked over nothing is said to be dark") {
   const LinkEnd from = somewhere(traced, draw), to = somewhere(traced, draw);
   Mast mast(traced, from, {}, 64, true);
   const std::vector<SequenceList> before = mast.proposed(to);
-  REQUIRE_FALSE(mast.go_on_over_edges(3));
+  REQUIRE_FALSE(mast.go_on_over_edges(1000.0));
   CHECK(same_sequences(mast.proposed(to)[0], before[0]));
-  mast.look_over_edges(3);
+  mast.look_over_edges(1000.0);
   CHECK(mast.proposed(to)[0].size() <= before[0].size());
 }
 
