@@ -28,6 +28,10 @@ class BeamTable {
   }
   template <typename Visit>
   void for_each_mirror_before(FacetId facet, std::span<const HalfSpace> cone, Visit&& visit) const;
+  /// Of those whose images, mirrored in the facet, may see some of the boxes through it.
+  template <typename Visit>
+  void for_each_mirror_before(FacetId facet, const WindowOutline& window, std::span<const CentredBox> boxes,
+                              Visit&& visit) const;
   /// Edges that are lit over mirrors, ascending.
   std::span<const std::uint32_t> lit_edges() const { return lit_rows_.used(); }
   /// Calls `visit(part, mirror)` for the parts of an edge that mirrors may light, where the point that diffracts
@@ -49,8 +53,8 @@ class BeamTable {
   void list_parts_before(const Scene& scene, std::span<const std::array<std::uint32_t, 2>> lit);
   bool knows_parts_before() const { return listed_facets_ > 0; }
   /// Boxes that hold all parts: of bodies one for each of them.
-  std::span<const ConeClusters::Box> boxes_of_parts() const {
-    return body_boxes_.empty() ? part_clusters_.boxes() : std::span<const ConeClusters::Box>(body_boxes_);
+  std::span<const CentredBox> boxes_of_parts() const {
+    return body_boxes_.empty() ? part_clusters_.boxes() : std::span<const CentredBox>(body_boxes_);
   }
   /// Whether the end may light a facet over a mirror or an edge.
   bool lights(FacetId facet) const {
@@ -88,6 +92,16 @@ class BeamTable {
     Lanes from{}, to{}, place{}, distance{};
     std::array<std::uint32_t, simd_lanes> mirror{};
   };
+  PointRow images_in(const RowIndex::Row& row) const {
+    return {{&images_[0][row.first], &images_[1][row.first], &images_[2][row.first]}, row.last - row.first};
+  }
+  /// Calls `visit(mirror)` for those of a row that a walk tells of.
+  template <typename Visit>
+  auto told_of_mirrors(const RowIndex::Row& row, Visit& visit) const {
+    return [&visit, before = before_.data() + row.first](std::size_t first, std::uint32_t lanes) {
+      for (; lanes != 0; lanes &= lanes - 1) visit(before[first + static_cast<std::size_t>(std::countr_zero(lanes))]);
+    };
+  }
   void lay_out_parts(const Scene& scene, const BeamFinds& finds);
   void find_body_boxes(const Scene& scene);
   void lay_out_lit_parts(const Scene& scene, const BeamFinds& finds);
@@ -104,8 +118,8 @@ class BeamTable {
   std::uint32_t listed_facets_ = 0;  ///< of so many it is known over which parts they may be lit
   RowIndex before_part_rows_;        ///< in eights, by facet
   std::vector<std::uint32_t> before_parts_;
-  std::vector<PartRecord> part_records_;       ///< all parts, and one that is nowhere
-  std::vector<ConeClusters::Box> body_boxes_;  ///< none where there are parts of the scenery
+  std::vector<PartRecord> part_records_;  ///< all parts, and one that is nowhere
+  std::vector<CentredBox> body_boxes_;    ///< none where there are parts of the scenery
   std::vector<LitLanes> lit_;
 };
 
@@ -115,13 +129,17 @@ template <typename Visit>
 void BeamTable::for_each_mirror_before(FacetId facet, std::span<const HalfSpace> cone, Visit&& visit) const {
   const RowIndex::Row row = before_rows_.row(facet.value);
   if (row.first == row.last) return;
-  const auto visit_eight = [&](std::size_t first, std::uint32_t lanes) {
-    for (; lanes != 0; lanes &= lanes - 1) {
-      visit(before_[row.first + first + static_cast<std::size_t>(std::countr_zero(lanes))]);
-    }
-  };
-  const PointRow images{{&images_[0][row.first], &images_[1][row.first], &images_[2][row.first]}, row.last - row.first};
-  detail::cone_kernels().points(images, cone, told_to(visit_eight));
+  const auto visit_eight = told_of_mirrors(row, visit);
+  detail::cone_kernels().points(images_in(row), cone, told_to(visit_eight));
+}
+
+template <typename Visit>
+void BeamTable::for_each_mirror_before(FacetId facet, const WindowOutline& window, std::span<const CentredBox> boxes,
+                                       Visit&& visit) const {
+  const RowIndex::Row row = before_rows_.row(facet.value);
+  if (row.first == row.last) return;
+  const auto visit_eight = told_of_mirrors(row, visit);
+  detail::cone_kernels().mirrored(images_in(row), window, boxes, told_to(visit_eight));
 }
 
 template <typename Visit>

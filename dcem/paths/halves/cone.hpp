@@ -133,13 +133,9 @@ class ConeClusters {
   }
 
   static constexpr std::uint32_t nothing = 0xffffffffU;
-  /// A box as centre and half sizes.
-  struct Box {
-    std::array<float, 3> centre{}, half{};
-  };
   /// With room for rounding.
-  static Box box_of(const Aabb<double>& box) {
-    Box result;
+  static CentredBox box_of(const Aabb<double>& box) {
+    CentredBox result{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<std::size_t>(axis);
       result.centre[at] = static_cast<float>(0.5 * (box.min[axis] + box.max[axis]));
@@ -149,7 +145,7 @@ class ConeClusters {
     return result;
   }
   /// Boxes of 64 items each.
-  std::span<const Box> boxes() const { return boxes_; }
+  std::span<const CentredBox> boxes() const { return boxes_; }
   /// The items in the order of the clusters, eight to a cluster, the last places of which may hold `nothing`.
   std::span<const std::uint32_t> items() const { return items_; }
 
@@ -173,7 +169,7 @@ class ConeClusters {
 
  private:
   static void set(EightBoxes& boxes, std::size_t lane, const Aabb<double>& box) {
-    const Box own = box_of(box);
+    const CentredBox own = box_of(box);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       boxes.corner[axis][lane] = own.centre[axis] - own.half[axis];
       boxes.corner[axis + 3][lane] = own.centre[axis] + own.half[axis];
@@ -219,7 +215,7 @@ class ConeClusters {
 
   std::vector<std::uint32_t> items_;
   std::vector<EightBoxes> clusters_, groups_, blocks_, item_boxes_;
-  std::vector<Box> boxes_;
+  std::vector<CentredBox> boxes_;
 };
 
 }  // namespace dcem

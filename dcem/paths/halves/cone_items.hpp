@@ -24,6 +24,22 @@ struct EightBoxes {
   std::uint32_t used = 0;               ///< bit i: lane i holds a box
 };
 
+/// A box by its middle.
+struct CentredBox {
+  std::array<float, 3> centre, half;
+};
+
+/// A convex window in the plane of `plane`, side by side. `turn`: 1 where these run counterclockwise, seen from where
+/// the normal points to; otherwise −1.
+struct WindowSide {
+  std::array<float, 3> from, along;
+};
+struct WindowOutline {
+  HalfSpace plane;
+  float turn;
+  std::span<const WindowSide> sides;
+};
+
 /// Clusters of eight items, groups of eight clusters, and blocks of eight groups, by their boxes.
 struct BoxTree {
   std::span<const EightBoxes> blocks, groups, clusters;

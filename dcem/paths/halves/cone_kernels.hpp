@@ -1,11 +1,12 @@
 #pragma once
-/// The walks of cone_walk.hpp as a table of functions: there is one for each level of instructions that they are
-/// compiled for, and all give the same answers, to the last bit.
+/// The walks of cone_walk.hpp and window_walk.hpp as a table of functions: there is one for each level of instructions
+/// that they are compiled for, and all give the same answers, to the last bit.
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "dcem/paths/halves/cone_walk.hpp"
+#include "dcem/paths/halves/window_walk.hpp"
 
 namespace dcem {
 
@@ -24,13 +25,16 @@ struct ConeKernels {
   void (*listed_parts)(std::span<const PartRecord> all, std::span<const std::uint32_t> numbers,
                        std::span<const HalfSpace> cone, const ConeTarget& target, const EightsVisitor& visit);
   void (*points)(const PointRow& row, std::span<const HalfSpace> cone, const EightsVisitor& visit);
+  void (*mirrored)(const PointRow& row, const WindowOutline& window, std::span<const CentredBox> boxes,
+                   const EightsVisitor& visit);
 };
 
 inline namespace DCEM_ISA {
 
 /// For the level of instructions that this is compiled for.
-inline constexpr ConeKernels cone_kernel_table{&visit_boxes,  &visit_parts<false>, &visit_parts<true>,
-                                               &visit_images, &visit_listed_parts, &visit_points};
+inline constexpr ConeKernels cone_kernel_table{&visit_boxes,   &visit_parts<false>, &visit_parts<true>,
+                                               &visit_images,  &visit_listed_parts, &visit_points,
+                                               &visit_mirrored};
 
 #if !defined(DCEM_ENGINE)
 inline const ConeKernels& cone_kernels() {

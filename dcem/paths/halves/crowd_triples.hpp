@@ -132,10 +132,9 @@ class CrowdTriples {
   void edge_to_two_mirrors(FacetId middle, Visit& visit) {
     if (edge_numbers_.empty()) return;
     for (const BeamTable& table : mast().tables()) {
-      const std::span<const std::uint32_t> mirrors = table.mirrors_before(middle);
-      if (mirrors.empty()) continue;
+      if (table.mirrors_before(middle).empty()) continue;
       double_images_.for_each(
-          mast(), mirrors, middle, edges_.boxes(),
+          mast(), table, middle, edges_.boxes(),
           [&](const BeamMirror& mirror, const Vec3& twice_m) { edges_over(mirror, middle, twice_m, visit); });
     }
   }

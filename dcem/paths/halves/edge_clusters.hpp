@@ -41,7 +41,7 @@ class EdgeClusters {
   }
 
   /// Boxes that hold all parts.
-  std::span<const ConeClusters::Box> boxes() const { return clusters_.boxes(); }
+  std::span<const CentredBox> boxes() const { return clusters_.boxes(); }
 
   /// Calls `visit(part)` for parts on which the point that diffracts between the end and an apex may lie in a cone: as
   /// `parts_met` has it.

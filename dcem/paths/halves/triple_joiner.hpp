@@ -155,7 +155,7 @@ class TripleJoiner {
           }
         });
       };
-      images_.for_each(over.lists, over.table.mirrors_before(middle), middle, beside.table.boxes_of_parts(), meet);
+      images_.for_each(over.lists, over.table, middle, beside.table.boxes_of_parts(), meet);
     }
   }
 

@@ -112,9 +112,8 @@ struct TriplePool::Finder {
 
   /// The device's last point is on an edge, the two before it on mirrors of the standing end.
   void edge_to_two_mirrors(FacetId middle) {
-    const std::span<const std::uint32_t> mirrors = listed.mirrors_before(middle);
-    if (mirrors.empty() || place.scenery().edges.empty()) return;
-    double_images.for_each(reached, mirrors, middle, seen_edges.boxes(),
+    if (listed.mirrors_before(middle).empty() || place.scenery().edges.empty()) return;
+    double_images.for_each(reached, listed, middle, seen_edges.boxes(),
                            [&](const BeamMirror& far, const Vec3& twice_m) {
                              const std::span<const HalfSpace> seen = double_images.cone(far, middle, twice_m);
                              const Vec3 from = twice_m - lanes.origin_m();
