@@ -18,6 +18,7 @@
 #include "dcem/paths/halves/link_halves_bodies.hpp"
 #include "dcem/paths/halves/path_half_bodies.hpp"
 #include "dcem/paths/halves/place_bodies.hpp"
+#include "dcem/paths/halves/plane_index_bodies.hpp"
 #include "dcem/paths/halves/shared_beams_bodies.hpp"
 #include "dcem/paths/halves/sight_bodies.hpp"
 #include "dcem/paths/halves/sight_closer_bodies.hpp"

@@ -23,7 +23,7 @@ DCEM_INLINE void EdgeLooker::look_over(std::span<const EdgePart> all, std::size_
   const auto hidden = [&](const Aabb<double>& box) { return view_.hides(box); };
   const auto ask_one = [&](FacetId id) { ask(id, wedge); };
   outlines_.visit_from(scene_, 0.5 * (view_.first_m() + view_.last_m()), hidden, ask_one);
-  outlines_.for_each_grazed_between(view_.first_m(), view_.last_m(), 1.0 / nearer_boxes_share, [&](FacetId id) {
+  outlines_.planes().for_each_between(view_.first_m(), view_.last_m(), 1.0 / nearer_boxes_share, [&](FacetId id) {
     if (is_asked_[id.value] != 0) return;
     outlines_.fetch(scene_, id);
     grazed_.push_back(id);

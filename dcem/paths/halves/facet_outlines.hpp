@@ -17,6 +17,7 @@
 #include "dcem/paths/halves/facet_feet.hpp"
 #include "dcem/paths/halves/facet_joints.hpp"
 #include "dcem/paths/halves/hull_sides.hpp"
+#include "dcem/paths/halves/plane_index.hpp"
 #include "dcem/scene/scene.hpp"
 
 namespace dcem {
@@ -94,27 +95,8 @@ class FacetOutlines {
     return std::all_of(all.begin(), all.end(), inside);
   }
 
-  /// Calls `visit(facet)` for facets of the scenery whose plane may be no farther than `times` their lift from a point,
-  /// or from what is within `radius_m` of it, and for some more.
-  template <typename Visit>
-  void for_each_grazed(const Vec3& point_m, double radius_m, double times, Visit&& visit) const {
-    const auto room_m = static_cast<float>(radius_m + slack_m(point_m));
-    const auto share = static_cast<float>(1.001 * times);
-    for_each_plane(visit, [&](const PlaneLanes& eight) {
-      return simd::absolute(off_planes(eight, point_m)) <= Float8(eight.lift) * share + room_m;
-    });
-  }
-  /// The same for the nearest point between two.
-  template <typename Visit>
-  void for_each_grazed_between(const Vec3& from_m, const Vec3& to_m, double times, Visit&& visit) const {
-    const auto room_m = static_cast<float>(std::max(slack_m(from_m), slack_m(to_m)));
-    const auto share = static_cast<float>(1.001 * times);
-    for_each_plane(visit, [&](const PlaneLanes& eight) {
-      const Float8 first = off_planes(eight, from_m), last = off_planes(eight, to_m);
-      const Float8 reach = Float8(eight.lift) * share + room_m;
-      return (simd::minimum(first, last) <= reach) & (-reach <= simd::maximum(first, last));
-    });
-  }
+  /// The planes of the facets of the scenery, with their lifts.
+  const PlaneIndex& planes() const { return planes_; }
 
   /// Calls `visit(facet)` for all facets of the scenery but those in boxes of which `hidden(box)` is true when their
   /// turn comes: boxes near to the point come before those behind them.
@@ -159,11 +141,6 @@ class FacetOutlines {
     std::uint32_t right = 0;             ///< the second child; the first one follows the node. 0: a leaf
   };
 
-  /// Eight planes in single precision, counted from the middle, with the lift.
-  struct PlaneLanes {
-    std::array<float, simd_lanes> x{}, y{}, z{}, offset{}, lift{};
-  };
-
   /// Nearest first; of equals the one with the smaller number, so that the order is that of the scene alone.
   struct Waiting {
     double distance_squared;
@@ -172,24 +149,6 @@ class FacetOutlines {
       return distance_squared != other.distance_squared ? distance_squared > other.distance_squared : node > other.node;
     }
   };
-
-  /// How far planes may be off in single precision.
-  double slack_m(const Vec3& point_m) const { return 1e-2 + 1e-6 * glm::length(point_m - middle_m_); }
-  Float8 off_planes(const PlaneLanes& eight, const Vec3& point_m) const {
-    const Vec3 from = point_m - middle_m_;
-    const auto x = static_cast<float>(from.x), y = static_cast<float>(from.y), z = static_cast<float>(from.z);
-    return Float8(eight.x) * x + Float8(eight.y) * y + Float8(eight.z) * z - Float8(eight.offset);
-  }
-  /// Visits the facets of the scenery whose planes are asked for, eight at a time.
-  template <typename Visit, typename Asked>
-  void for_each_plane(Visit& visit, Asked&& asked) const {
-    for (std::size_t first = 0; first < items_.size(); first += simd_lanes) {
-      for (std::uint32_t left = asked(planes_[first / simd_lanes]).bits(); left != 0; left &= left - 1) {
-        const std::size_t at = first + static_cast<std::size_t>(std::countr_zero(left));
-        if (at < items_.size()) visit(items_[at]);
-      }
-    }
-  }
 
   [[gnu::always_inline]] static void fetch_hull(const Scene& scene, FacetId facet) {
     dcem::fetch(scene.hull_m(scene.facet(facet)));
@@ -217,9 +176,9 @@ class FacetOutlines {
 
   std::vector<FacetOutline> outlines_;
   std::vector<HullSide> sides_;
-  std::vector<FacetId> items_;      ///< facets of the scenery, in the order of the leaves
-  std::vector<Node> nodes_;         ///< the root first
-  std::vector<PlaneLanes> planes_;  ///< in the order of `items_`
+  std::vector<FacetId> items_;  ///< facets of the scenery, in the order of the leaves
+  std::vector<Node> nodes_;     ///< the root first
+  PlaneIndex planes_;
   std::vector<BodyFacets> bodies_;
   std::vector<BodyId> bodies_there_;  ///< those that are not absent …
   ConeClusters body_clusters_;        ///< … and their boxes

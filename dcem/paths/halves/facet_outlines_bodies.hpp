@@ -120,17 +120,9 @@ DCEM_INLINE void FacetOutlines::measure(const Scene& scene, std::uint32_t index)
 }
 
 DCEM_INLINE void FacetOutlines::lay_out_planes(const Scene& scene) {
-  planes_.resize((items_.size() + simd_lanes - 1) / simd_lanes);
-  for (std::size_t at = 0; at < items_.size(); ++at) {
-    PlaneLanes& eight = planes_[at / simd_lanes];
-    const std::size_t lane = at % simd_lanes;
-    const Plane& plane = scene.facet(items_[at]).plane;
-    eight.x[lane] = static_cast<float>(plane.normal.x);
-    eight.y[lane] = static_cast<float>(plane.normal.y);
-    eight.z[lane] = static_cast<float>(plane.normal.z);
-    eight.offset[lane] = static_cast<float>(glm::dot(plane.normal, plane.point_m - middle_m_));
-    eight.lift[lane] = static_cast<float>(of(items_[at]).lift_m);
-  }
+  std::vector<PlaneIndex::Item> planes;
+  for (const FacetId facet : items_) planes.push_back({facet, scene.facet(facet).plane, of(facet).lift_m});
+  planes_.build(planes, middle_m_);
 }
 
 DCEM_INLINE void FacetOutlines::fit(BodyFacets& facets) const {

@@ -103,7 +103,7 @@ DCEM_INLINE void Sight::begin_looking(const Scene& scene, const FacetOutlines& o
   hide_nothing_below_feet(outlines, map_);
   reach_m_ = settings.reach_m + radius_m_ + in_reach_m;
   grazed_.clear();
-  outlines.for_each_grazed(position_m(), radius_m_, lift_share() / longest_lift_share, [&](FacetId id) {
+  outlines.planes().for_each_near(position_m(), radius_m_, lift_share() / longest_lift_share, [&](FacetId id) {
     outlines.fetch(scene, id);
     grazed_.push_back(id);
   });
