@@ -64,13 +64,15 @@ DCEM_INLINE void Place::go_on(const Scene& scene, const FacetOutlines& outlines,
   take_mirrors(scene, outlines);
 }
 
-/// One of `beam_steps` parts of them.
+/// One of `beam_steps` parts of them. The first one, in which the ground is, has half as many as the others.
 DCEM_INLINE void Place::look_through_mirrors(const Scene& scene, const FacetOutlines& outlines,
                                              const HalfSettings& settings, int step) {
-  const auto part = static_cast<std::size_t>(step);
-  const std::size_t first = mirrors_.size() * part / beam_steps, last = mirrors_.size() * (part + 1) / beam_steps;
+  constexpr std::size_t halves = 2 * beam_steps - 1;
+  const auto before = [&](int part) {
+    return part == 0 ? 0 : mirrors_.size() * (2 * static_cast<std::size_t>(part) - 1) / halves;
+  };
   std::vector<Vec3> images_m;
-  for (std::size_t at = first; at < last; ++at) {
+  for (std::size_t at = before(step); at < before(step + 1); ++at) {
     const PlaceMirror& mirror = mirrors_[at];
     find_images(scene.facet(mirror.facet).plane, mirror, images_m);
     const SharedMirror shared{mirror.facet, mirror.cone, images_m};
