@@ -18,8 +18,8 @@ inline constexpr double least_behind_m = 0.25;
 /// Frames over which the work on the next place is spread: of a device in a place, and of one that looks itself.
 inline constexpr int most_frames = 8, most_frames_of_looking = 12;
 /// What an end that stands spends on its lists in a frame, for each of its links: about what one takes from scratch in
-/// Munich; over edges, which spares less, a quarter of that.
-inline constexpr double list_work_us = 2000.0, edge_list_work_us = 500.0;
+/// Munich.
+inline constexpr double list_work_us = 2000.0;
 
 }  // namespace detail
 
@@ -86,8 +86,8 @@ DCEM_INLINE void KeptHalf::go_on_over_edges(const BeamSource& source, std::size_
   const std::size_t parts = lists_.tables()[BeamLists::of_scenery].parts().size();
   if (2 * joins_ < parts) return;
   const bool at_once = 2 * receivers >= parts;
-  has_edges_ = lists_.go_on_over_edges(source, at_once ? std::numeric_limits<double>::infinity()
-                                                       : detail::edge_list_work_us * static_cast<double>(receivers));
+  const double work_us = detail::list_work_us * static_cast<double>(receivers);
+  has_edges_ = lists_.go_on_over_edges(source, at_once ? std::numeric_limits<double>::infinity() : work_us);
 }
 
 DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
