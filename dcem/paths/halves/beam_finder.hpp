@@ -53,8 +53,8 @@ class BeamFinder {
  public:
   /// Of the view through a mirror that is too wide to be looked through along one axis.
   static constexpr int view_pixels = 128;
-  /// Edges are looked up in pieces of half a metre, as many as this at most: more of them find less of each edge, once
-  /// for all receivers; for one receiver looking takes longer than that saves.
+  /// Edges are looked up in pieces of half a metre, or of a pixel of the view, as many as this at most: more of them
+  /// find less of each edge, once for all receivers; for one receiver looking takes longer than that saves.
   static constexpr int many_pieces = 64, few_pieces = 1;
 
   BeamFinder(const BeamSource& source, std::span<const BeamMirror> mirrors) : source_(source), mirrors_(mirrors) {}

@@ -17,8 +17,8 @@
 
 namespace dcem {
 
-/// Pieces of a stretch of an edge, half a metre long or a pixel of the view, are looked up one by one, unless nothing
-/// of a longer piece shows: calls `visit(from, to)` for what does, neighbours in one.
+/// Halves a stretch of an edge again and again, as long as something of it shows, down to pieces of half a metre or a
+/// pixel of the view: calls `visit(from, to)` for what shows, neighbours in one.
 template <typename Visit>
 void BeamFinder::for_each_shown(const Sight& sight, WedgeId id, const EdgePart& part, int most_pieces,
                                 Visit&& visit) const {
@@ -45,7 +45,8 @@ void BeamFinder::for_each_shown(const Sight& sight, WedgeId id, const EdgePart& 
   if (first < pieces) visit(static_cast<float>(place_m(first)), static_cast<float>(place_m(pieces)));
 }
 
-/// Where a part is nearest.
+/// The shortest piece that is worth asking about: half a metre, or what a pixel holds where the part is nearest to the
+/// point that looks.
 DCEM_INLINE double BeamFinder::least_piece_m(const Sight& sight, const EdgePart& part) {
   constexpr double shortest_m = 0.5;
   const double aside_m = std::max({part.from - part.place, part.place - part.to, 0.0F});

@@ -81,8 +81,9 @@ DCEM_INLINE double BeamLists::look_through_more(const BeamSource& source, std::s
 }
 
 DCEM_INLINE bool BeamLists::go_on_over_edges(const BeamSource& source, double work_us) {
-  constexpr double usual_us = 400.0;                 // for a part
-  constexpr std::size_t some = 256, at_once = 1024;  // parts, of which it is told how many will be lit
+  constexpr double usual_us = 400.0;     // for a part
+  constexpr std::size_t some = 256;      // parts, of which it is told how many will be lit
+  constexpr std::size_t at_once = 1024;  // before that is asked again
   const std::size_t all = tables_[of_scenery].parts().size();
   while (looked_over_ < all && work_us > 0.0) {
     work_us -= look_over_more(source, std::min(at_once, detail::half_of(work_us, usual_us, all - looked_over_)));

@@ -29,11 +29,13 @@ struct CentredBox {
   std::array<float, 3> centre, half;
 };
 
-/// A convex window in the plane of `plane`, side by side. `turn`: 1 where these run counterclockwise, seen from where
-/// the normal points to; otherwise −1.
+/// A side of a window: its first corner, and the way to the next one.
 struct WindowSide {
   std::array<float, 3> from, along;
 };
+
+/// A convex window in the plane normal·x = offset, with its sides in order. `turn`: 1 where they run counterclockwise,
+/// seen from where the normal points to; otherwise −1.
 struct WindowOutline {
   HalfSpace plane;
   float turn;

@@ -2,8 +2,6 @@
 /// What the exact search asks of the facets of a scene: where they lie, what they hide, and in which order they come
 /// from a point.
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,7 +9,6 @@
 #include <vector>
 
 #include "dcem/core/fetch.hpp"
-#include "dcem/core/simd.hpp"
 #include "dcem/geometry/aabb.hpp"
 #include "dcem/paths/halves/cone.hpp"
 #include "dcem/paths/halves/facet_feet.hpp"

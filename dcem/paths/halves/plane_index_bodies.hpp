@@ -9,7 +9,7 @@
 namespace dcem {
 
 DCEM_INLINE void PlaneIndex::build(std::span<const Item> items, const Vec3& middle_m) {
-  constexpr double usual_distance_m = 300.0;  // of points that look: so far a turn of the normal moves the plane there
+  constexpr double usual_distance_m = 300.0;  // of points that look: there a turned normal is held against offsets
   middle_m_ = middle_m;
   std::vector<Plane> planes;
   std::vector<Place> places;
