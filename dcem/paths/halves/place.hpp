@@ -102,22 +102,23 @@ class Place {
   double radius_m() const { return glm::length(box_.half_m); }
 
  private:
-  void take_mirrors(const Scene& scene, const FacetOutlines& outlines);
+  void take_mirrors(const Scene& scene, const FacetOutlines& outlines, int step);
   void look_through_mirrors(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int step);
 
-  static constexpr int beam_steps = 8;
+  static constexpr int mirror_steps = 2, beam_steps = 8, steps_without_beams = Sight::scenery_steps + mirror_steps;
   /// Four faces of the map, two of them, what is seen in it, its mirrors; then what is seen through these.
-  static constexpr std::array<int, Sight::scenery_steps + 1 + beam_steps> step_work{
-      7, 9, 4, 8, 2, 8, 7, 200, 200, 200, 200, 200, 200, 200, 200};
+  static constexpr std::array<int, steps_without_beams + beam_steps> step_work{8,   8,   6,   5,   2,   6,   5,   5,
+                                                                               200, 200, 200, 200, 200, 200, 200, 200};
   WorkSteps work() const { return WorkSteps(std::span(step_work).first(step_work.size() - (beams_ ? 0 : beam_steps))); }
 
   PlaceBox box_;
   std::array<Vec3, 8> corners_m_;
   Sight sight_;
-  int steps_left_ = Sight::scenery_steps + 1;  ///< then mirrors
+  int steps_left_ = steps_without_beams;
   SeenLayer scenery_;
   std::vector<HalfSpace> planes_;
   std::vector<PlaceMirror> mirrors_;
+  std::vector<std::size_t> cone_ends_;  ///< in `planes_`, until all mirrors are known
   std::unique_ptr<SharedBeams> beams_;
 };
 

@@ -54,14 +54,11 @@ DCEM_INLINE std::array<Vec3, 8> PlaceBox::corners_m() const {
 }
 
 DCEM_INLINE void Place::go_on(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings) {
-  const int later = beams_ ? beam_steps : 0, step = Sight::scenery_steps + 1 + later - steps_left_;
+  const int step = work().count() - steps_left_;
   --steps_left_;
   if (step < Sight::scenery_steps) return sight_.find_scenery_step(step, scene, outlines, settings, scenery_);
-  if (step > Sight::scenery_steps) {
-    return look_through_mirrors(scene, outlines, settings, step - Sight::scenery_steps - 1);
-  }
-  sight_.settle();
-  take_mirrors(scene, outlines);
+  if (step < steps_without_beams) return take_mirrors(scene, outlines, step - Sight::scenery_steps);
+  look_through_mirrors(scene, outlines, settings, step - steps_without_beams);
 }
 
 /// One of `beam_steps` parts of them. The first one, in which the ground is, has half as many as the others.
@@ -88,26 +85,30 @@ DCEM_INLINE void Place::find_images(const Plane& plane, const PlaceMirror& mirro
   for (Vec3& point_m : result_m) point_m = mirrored(plane, point_m);
 }
 
-DCEM_INLINE void Place::take_mirrors(const Scene& scene, const FacetOutlines& outlines) {
+/// One of `mirror_steps` parts of them.
+DCEM_INLINE void Place::take_mirrors(const Scene& scene, const FacetOutlines& outlines, int step) {
+  if (step == 0) sight_.settle();
+  const auto before = [&](int part) { return scenery_.mirrors.size() * static_cast<std::size_t>(part) / mirror_steps; };
   std::vector<Vec3> corners_m;
   std::vector<HalfSpace> cone;
-  std::vector<std::size_t> ends;
-  for (std::uint32_t number = 0; number < scenery_.mirrors.size(); ++number) {
-    const FacetId facet = scenery_.mirrors[number];
+  for (std::size_t at = before(step); at < before(step + 1); ++at) {
+    const FacetId facet = scenery_.mirrors[at];
     const Plane& plane = scene.facet(facet).plane;
     for (const double side : {1.0, -1.0}) {
       box_.corners_beside(plane, side, corners_m);
       if (corners_m.empty()) continue;
       common_cone(outlines.sides(facet), plane, side * plane.normal, corners_m, outlines.middle_m(), cone);
       planes_.insert(planes_.end(), cone.begin(), cone.end());
-      ends.push_back(planes_.size());
-      mirrors_.push_back({facet, number, side, mirrored(plane, box_.middle_m), {}});
+      cone_ends_.push_back(planes_.size());
+      mirrors_.push_back({facet, static_cast<std::uint32_t>(at), side, mirrored(plane, box_.middle_m), {}});
     }
   }
-  for (std::size_t at = 0; at < ends.size(); ++at) {
-    const std::size_t first = at == 0 ? 0 : ends[at - 1];
-    mirrors_[at].cone = std::span(planes_).subspan(first, ends[at] - first);
+  if (step < mirror_steps - 1) return;
+  for (std::size_t at = 0; at < cone_ends_.size(); ++at) {
+    const std::size_t first = at == 0 ? 0 : cone_ends_[at - 1];
+    mirrors_[at].cone = std::span(planes_).subspan(first, cone_ends_[at] - first);
   }
+  cone_ends_ = {};
 }
 
 }  // namespace dcem

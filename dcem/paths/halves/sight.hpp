@@ -51,7 +51,7 @@ class Sight {
   /// calling thread does.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer,
                     ThreadPool* pool = nullptr);
-  /// The same, looking all around, in so many steps of much the same length, numbered from 0, one after the other.
+  /// The same, looking all around, in so many steps, numbered from 0, one after the other.
   static constexpr int scenery_steps = 6;
   void find_scenery_step(int step, const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                          SeenLayer& layer);
@@ -235,6 +235,7 @@ class Sight {
   double radius_m_ = 0.0;                                     ///< how far points are from the middle
   double reach_m_ = std::numeric_limits<double>::infinity();  ///< from `position_m()`, with what points may be off by
   bool hides_under_feet_ = false;                             ///< nothing is seen there
+  bool faces_are_old_ = false;                                ///< each is emptied before it is looked at
   bool is_body_ = false;  ///< the points are the corners of a body that is looked from
   std::optional<BodyId> ignored_body_;
   std::vector<FacetId> mounted_on_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/core/fetch.hpp"
@@ -21,7 +22,7 @@ DCEM_INLINE void Sight::look_from(const LinkEnd& end, ThreadPool* pool) {
   }
   points_m_.assign(1, end.position_m);
   radius_m_ = 0.0;
-  is_body_ = false;
+  is_body_ = faces_are_old_ = false;
   ignored_body_ = end.ignored_body;
   mounted_on_ = end.mounted_on;
   beam_.reset();
@@ -31,8 +32,9 @@ DCEM_INLINE void Sight::look_from(std::span<const Vec3> points_m) {
   Aabb<double> box;
   for (const Vec3& point_m : points_m) box.extend(point_m);
   take_points(points_m, points_m.size() == 1 ? points_m[0] : box.center());
-  map_.look_from(middle_m_, offsets_m_);
+  map_.look_from_by_face(middle_m_, offsets_m_);
   beam_.reset();
+  faces_are_old_ = true;
 }
 
 /// A side is moved in by the largest of quotients of two linear functions, which is that of a corner; a plane that all
@@ -52,7 +54,7 @@ DCEM_INLINE void Sight::take_points(std::span<const Vec3> points_m, const Vec3& 
     radius_m_ = std::max(radius_m_, 1e-6 + glm::length(offsets_m_.back()));
   }
   if (points_m.size() == 1) offsets_m_.clear();
-  is_body_ = false;
+  is_body_ = faces_are_old_ = false;
   points_m_.assign(points_m.begin(), points_m.end());
   ignored_body_.reset();
   mounted_on_.clear();
@@ -64,7 +66,7 @@ DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& ou
   const std::span<const Vec3> window_m = scene.hull_m(facet);
   points_m_.assign(1, image_m);
   radius_m_ = 0.0;
-  is_body_ = false;
+  is_body_ = faces_are_old_ = false;
   ignored_body_ = ignored_body;
   mounted_on_.clear();
   beam_.emplace(mirror, facet.plane, image_m, window_m, outlines.of(mirror).lift_m);
@@ -86,6 +88,9 @@ DCEM_INLINE void Sight::look_through(const Scene& scene, const FacetOutlines& ou
 DCEM_INLINE void Sight::look_at_scenery(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
                                         std::vector<FacetId>& seen, ThreadPool* pool) {
   begin_looking(scene, outlines, settings);
+  if (std::exchange(faces_are_old_, false)) {
+    for (int face = 0; face < map_.faces(); ++face) map_.empty(face);
+  }
   if (map_.faces() == 1 || !map_.is_of_one_point()) {
     look_at_faces(scene, outlines, settings, {}, seen);
     if (pool != nullptr) map_.settle();
@@ -188,11 +193,16 @@ DCEM_INLINE void Sight::find_scenery_step(int step, const Scene& scene, const Fa
                                           const HalfSettings& settings, SeenLayer& layer) {
   constexpr int last_look = scenery_steps - 2;
   DCEM_ASSERT(map_.faces() == last_look + 2);
+  const auto look_at = [&](int face) {
+    map_.empty(face);
+    look_at_face(scene, outlines, settings, face);
+  };
+  faces_are_old_ = false;
   if (step == 0) begin_looking(scene, outlines, settings);
-  if (step < last_look) look_at_face(scene, outlines, settings, step);
+  if (step < last_look) look_at(step);
   if (step == last_look) {
-    look_at_face(scene, outlines, settings, step);
-    look_at_face(scene, outlines, settings, step + 1);
+    look_at(step);
+    look_at(step + 1);
     layer.mirrors.clear();
     gather_faces(layer.mirrors);
     map_.forget_sheets();

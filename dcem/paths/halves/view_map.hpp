@@ -47,17 +47,31 @@ class ViewMap {
     DCEM_ASSERT(pixels > 0 && pixels % tile_pixels == 0 && pixels <= detail::FaceRows::most_pixels);
   }
 
-  /// Empties the map, which from now on is that of another point. With `offsets_m` it is that of all points
-  /// `point_m + offsets_m[i]`, too, seen from `point_m`: outlines hide only what they hide from all of them.
-  void look_from(const Vec3& point_m, std::span<const Vec3> offsets_m = {}) {
+  /// Empties the map, which from now on is that of another point.
+  void look_from(const Vec3& point_m) {
     from_m_ = point_m;
-    take_extreme_points(offsets_m, offsets_m_);
+    offsets_m_.clear();
     faces_ = {};
     clear(cube_pixels_);
   }
-  /// The same of one point, emptied by several threads: what is several megabytes large takes longest where it has
+  /// The same, emptied by several threads: what is several megabytes large takes longest where it has
   /// never been used.
   void look_from(const Vec3& point_m, ThreadPool& pool);
+  /// From now on it is the map of all points `point_m + offsets_m[i]`, seen from `point_m`: outlines hide only what
+  /// they hide from all of them. Face by face: `empty` each before anything is noted or asked about on it.
+  void look_from_by_face(const Vec3& point_m, std::span<const Vec3> offsets_m) {
+    from_m_ = point_m;
+    take_extreme_points(offsets_m, offsets_m_);
+    faces_ = {};
+    make_room(cube_pixels_);
+  }
+  void empty(int face) {
+    const std::size_t tiles = static_cast<std::size_t>(tiles_) * static_cast<std::size_t>(tiles_),
+                      first = static_cast<std::size_t>(face) * tiles;
+    std::fill_n(pixels_of(face), pixels_ * pixels_, 0.0F);
+    std::ranges::fill(std::span(tile_nearness_).subspan(first, tiles), 0.0F);
+    std::ranges::fill(std::span(tile_is_old_).subspan(first, tiles), char{0});
+  }
   /// The same of points that look through a convex window, and `room_m` around it: there is nothing else to be seen.
   /// `inwards`: the normals of planes by the point which all of it is inside.
   void look_through(const Vec3& point_m, std::span<const Vec3> window_m, double room_m, std::span<const Vec3> inwards,

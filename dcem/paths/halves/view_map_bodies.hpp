@@ -19,9 +19,7 @@ DCEM_INLINE void ViewMap::look_from(const Vec3& point_m, ThreadPool& pool) {
   offsets_m_.clear();
   faces_ = {};
   make_room(cube_pixels_);
-  pool.for_each(static_cast<std::size_t>(faces()), [&](std::size_t face, unsigned) {
-    std::fill_n(pixels_of(static_cast<int>(face)), pixels_ * pixels_, 0.0F);
-  });
+  pool.for_each(static_cast<std::size_t>(faces()), [&](std::size_t face, unsigned) { empty(static_cast<int>(face)); });
 }
 
 DCEM_INLINE void ViewMap::cover(std::span<const Vec3> corners_m, const Plane& plane, const FaceSpan& on,
