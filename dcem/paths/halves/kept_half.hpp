@@ -25,21 +25,21 @@ struct HalfLists {
   int most_pieces = BeamFinder::many_pieces;  ///< the same
 };
 
+/// How a device makes use of places.
+struct PlaceUse {
+  double longest_step_m = 0.0;         ///< one that moves by more from frame to frame does not
+  bool images_at_once = false;         ///< images are laid out at once, or when they are asked for
+  bool over_mirrors = false;           ///< places know what is seen through their mirrors, too
+  bool candidates = true;              ///< of links are found meanwhile: work is shared out with them
+  const KnownPlaces* known = nullptr;  ///< the device takes over those that lie on its way; they must outlive it
+};
+
 class KeptHalf {
  public:
   explicit KeptHalf(int map_pixels = PathHalf::default_pixels) : half_(map_pixels) {}
 
-  /// From now on a device that moves by no more than this from frame to frame takes what it may see from the place that
-  /// it is in; its images are laid out at once or when they are asked for. `over_mirrors`: places know what is seen
-  /// through their mirrors, too. The device takes over those among `known` that lie on its way; they must outlive it.
-  void keep_places(double longest_step_m, bool images_at_once, bool over_mirrors = false,
-                   const KnownPlaces* known = nullptr) {
-    keeps_places_ = true;
-    over_mirrors_ = over_mirrors;
-    longest_step_m_ = longest_step_m;
-    images_at_once_ = images_at_once;
-    known_ = known;
-  }
+  /// From now on a device that moves takes what it may see from the places that it is in.
+  void keep_places(const PlaceUse& use) { places_ = use; }
   /// As `PathHalf` has it.
   void lay_out_images(const Scene& scene, const FacetOutlines& outlines) { half_.lay_out_images(scene, outlines); }
 
@@ -47,6 +47,11 @@ class KeptHalf {
   /// `moved`, by body: which of them have moved since then; empty: that is not known.
   void update(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const HalfSettings& settings,
               const HalfLists& wanted = {}, std::span<const char> moved = {});
+
+  /// The same of a device that has moved, and of which nothing is kept but the places on its way. False: it is in none,
+  /// and nothing has been looked at.
+  bool update_in_place(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
+                       const HalfSettings& settings, std::span<const char> moved = {});
 
   /// Notes a frame whose links are known already: what `update` would do for it is left to the next `update`, which
   /// then finds what it would have found.
@@ -60,12 +65,14 @@ class KeptHalf {
   void forget();
 
   const PathHalf& half() const { return half_; }
+  /// Whether it is known where the device was in the frame before.
+  bool is_followed() const { return end_.has_value(); }
   /// Whether it has been brought to where device and bodies are, since somebody has said that they moved.
   bool is_of_frame() const { return has_scenery_ && has_bodies_; }
   /// What the device reaches; none where that is not known.
   const BeamLists* lists() const { return has_lists_ ? &lists_ : nullptr; }
   /// Whether the device takes what it sees from places, or will soon.
-  bool is_in_places() const { return keeps_places_ && end_ && step_m_ <= longest_step_m_; }
+  bool is_in_places() const { return places_ && end_ && step_m_ <= places_->longest_step_m; }
   /// Where the device is on its way; none where it looks itself.
   const std::shared_ptr<const Place>& place() const { return place_; }
   /// Where it will be soon, and in how many frames; none where that is not known.
@@ -79,12 +86,13 @@ class KeptHalf {
  private:
   void note(const LinkEnd& end, std::size_t receivers) {
     const bool stands = end_ == end;
-    if (!stands) {
-      has_scenery_ = has_bodies_ = has_lists_ = has_listed_bodies_ = has_edges_ = false;
-      joins_ = frames_standing_ = 0;
-    }
+    if (!stands) forget_views();
     joins_ += receivers;
     end_ = end;
+  }
+  void forget_views() {
+    has_scenery_ = has_bodies_ = has_lists_ = has_listed_bodies_ = has_edges_ = false;
+    joins_ = frames_standing_ = 0;
   }
 
   /// Whether lists would have paid by now: they cost 13 ms, most of that for the ground, and 60 µs for each mirror, and
@@ -105,8 +113,8 @@ class KeptHalf {
   /// for very many of these, all of it at once.
   void go_on_over_edges(const BeamSource& source, std::size_t receivers);
 
-  /// Of a device that has moved a little. Until the first place is ready it looks itself.
-  void follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const Vec3& step_m,
+  /// Of a device that has moved a little: whether it is in a place, from which it takes what it sees.
+  bool follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const Vec3& step_m,
               const HalfSettings& settings);
 
   /// Works on the next place, as much in each frame, so that it is known, with time for what others prepare, when the
@@ -135,7 +143,7 @@ class KeptHalf {
   static bool leads_by(const PlaceBox& box, const Vec3& now_m, int frames, const Vec3& step_m);
 
   /// Whether a device that has moved so far will be in a place for some frames.
-  bool pays(const Vec3& moved_m) const { return keeps_places_ && glm::length(moved_m) <= longest_step_m_; }
+  bool pays(const Vec3& moved_m) const { return places_ && glm::length(moved_m) <= places_->longest_step_m; }
 
   /// A place that begins so far behind a device and lies where it is going.
   static PlaceBox place_ahead(const Vec3& before_m, const Vec3& now_m, double behind_m);
@@ -144,28 +152,28 @@ class KeptHalf {
   double behind_m(const Vec3& now_m, const Vec3& then_m) const;
 
   HalfSettings looked_at_twice_from(HalfSettings settings, bool closer) const {
-    if (over_mirrors_) return settings;
-    if (closer || !keeps_places_) settings.closer_from = closer ? 0 : very_many;
+    if (places_ && places_->over_mirrors) return settings;
+    if (closer || !places_) settings.closer_from = closer ? 0 : very_many;
     return settings;
   }
 
-  /// `closer`: for lists, which take so long for each mirror that it pays to look twice. Others look twice where they
-  /// see very much, from above large cities.
+  /// Looks from where the device is. `closer`: for lists, which take so long for each mirror that it pays to look
+  /// twice. Others look twice where they see very much, from above large cities.
   void find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end, const HalfSettings& settings,
                     bool closer, ThreadPool* pool);
+  /// Of a device that is new, has jumped or moves too fast for places, or makes lists where it stands.
+  void leave_places();
 
   static constexpr std::size_t very_many = 20'000;  ///< small facets: more than there are in view over one city
 
   PathHalf half_;
   BeamLists lists_;
   bool has_scenery_ = false, has_bodies_ = false, has_lists_ = false, has_edges_ = false, is_closer_ = false,
-       keeps_places_ = false;
-  bool images_at_once_ = false, over_mirrors_ = false, has_listed_bodies_ = false;
-  double longest_step_m_ = 0.0;
+       has_listed_bodies_ = false;
+  std::optional<PlaceUse> places_;   ///< none: it looks itself
   std::size_t joins_ = 0;            ///< since the device stands
   std::size_t frames_standing_ = 0;  ///< in which lists have been worked on
   std::optional<LinkEnd> end_;       ///< whose half it is; none yet: nobody's
-  const KnownPlaces* known_ = nullptr;
   std::shared_ptr<const Place> place_, next_;
   std::shared_ptr<Place> made_;  ///< the next one, as long as it is being made
   bool has_entered_ = false;

@@ -28,6 +28,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   HalfSettings settings = asked;
   settings.pairs = settings.pairs || wanted.lanes != nullptr;  // lists are of what images may see
   const bool is_followed = end_.has_value();
+  const bool stands = end_ == end;
   const Vec3 step_m = is_followed ? end.position_m - end_->position_m : Vec3(0.0);
   note(end, wanted.receivers);
   const bool is_known =
@@ -35,14 +36,14 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   const bool closer = wanted.lanes != nullptr && wanted.at_once;
   if (!has_lists_ && frames_standing_ == 0 && !wanted.at_once) lists_ = {};  // those of where it stood
   const bool lists_follow = has_bodies_ && has_listed_bodies_ && !moved.empty();
-  if (!has_scenery_ && is_followed && !closer && pays(step_m)) {
-    follow(scene, outlines, end, step_m, settings);
-  } else if (!has_scenery_) {
-    step_m_ = glm::length(step_m);
-    find_scenery(scene, outlines, end, settings, closer, wanted.pool);
+  if (!stands) step_m_ = glm::length(step_m);
+  const bool goes_on = !stands && is_followed && !closer && pays(step_m);
+  if (!stands && !goes_on) leave_places();
+  if (!has_scenery_ && !(goes_on && follow(scene, outlines, end, step_m, settings))) {
+    find_scenery(scene, outlines, end, settings, closer, goes_on ? nullptr : wanted.pool);
   }
-  const bool makes_lists =
-      wanted.lanes != nullptr && !has_lists_ && (wanted.at_once || (!keeps_places_ && pay(joins_)));
+  const bool makes_lists = wanted.lanes != nullptr && !has_lists_ && (wanted.at_once || (!places_ && pay(joins_)));
+  if (makes_lists) leave_places();
   if (makes_lists && !is_closer_) find_scenery(scene, outlines, end, settings, true, wanted.pool);
   if (!is_known) half_.find_bodies(scene, outlines, settings, moved, wanted.pool);
   has_bodies_ = true;
@@ -56,7 +57,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   }
   has_lists_ = has_lists_ || makes_lists;
   has_edges_ = has_edges_ && !makes_lists;
-  if (keeps_places_ && !has_lists_) go_on_with_lists(source, wanted.receivers);
+  if (places_ && !has_lists_) go_on_with_lists(source, wanted.receivers);
   if (has_lists_ && !has_edges_ && wanted.over_mirrors) go_on_over_edges(source, wanted.receivers);
   if (!wanted.at_once || outlines.bodies().empty() || (!makes_lists && is_known && has_listed_bodies_)) return;
   half_.settle();
@@ -64,10 +65,29 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   has_listed_bodies_ = true;
 }
 
+DCEM_INLINE bool KeptHalf::update_in_place(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
+                                           const HalfSettings& settings, std::span<const char> moved) {
+  const bool is_followed = end_.has_value();
+  const Vec3 step_m = is_followed ? end.position_m - end_->position_m : Vec3(0.0);
+  note(end, 0);
+  forget_views();  // those from where it stood, too, if it has gone away and come back since it was asked about
+  lists_ = {};
+  step_m_ = glm::length(step_m);
+  if (!is_followed || !pays(step_m)) {
+    leave_places();
+  } else if (follow(scene, outlines, end, step_m, settings)) {
+    half_.find_bodies(scene, outlines, settings, moved);
+    has_bodies_ = true;
+    return true;
+  }
+  half_ = PathHalf(half_.map_pixels());
+  return false;
+}
+
 DCEM_INLINE void KeptHalf::forget() {
   if (!end_) return;
   KeptHalf nothing(half_.map_pixels());
-  if (keeps_places_) nothing.keep_places(longest_step_m_, images_at_once_, over_mirrors_, known_);
+  nothing.places_ = places_;
   *this = std::move(nothing);
 }
 
@@ -90,21 +110,21 @@ DCEM_INLINE void KeptHalf::go_on_over_edges(const BeamSource& source, std::size_
   has_edges_ = lists_.go_on_over_edges(source, at_once ? std::numeric_limits<double>::infinity() : work_us);
 }
 
-DCEM_INLINE void KeptHalf::follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
+DCEM_INLINE bool KeptHalf::follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
                                   const Vec3& step_m, const HalfSettings& settings) {
   const Vec3 before_m = std::exchange(moved_m_, step_m);
-  step_m_ = glm::length(step_m);
   turns_by_m_ = step_m_ > 0.0 ? glm::length(glm::cross(before_m, step_m)) / step_m_ : 0.0;
   HalfSettings of_place = settings;
-  if (!over_mirrors_) of_place.closer_from = very_many;  // it takes as long as it saves, or longer
+  if (!places_->over_mirrors) of_place.closer_from = very_many;  // it takes as long as it saves, or longer
   const bool enters = enter(scene, outlines, end.position_m, step_m, of_place);
   has_entered_ = has_entered_ || enters;
   prepare_next(scene, outlines, end.position_m, step_m, enters, of_place);
+  if (!place_) return false;
   is_closer_ = false;
   has_scenery_ = true;
-  if (!place_) return half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, false));
   half_.take_scenery(scene, outlines, end, of_place, *place_);
-  if (images_at_once_) half_.lay_out_images(scene, outlines);
+  if (places_->images_at_once) half_.lay_out_images(scene, outlines);
+  return true;
 }
 
 DCEM_INLINE bool KeptHalf::enter(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
@@ -116,8 +136,8 @@ DCEM_INLINE bool KeptHalf::enter(const Scene& scene, const FacetOutlines& outlin
   if (is_in(next_) && frames_to_next_ <= 1) {
     while (!next_->is_known()) made_->go_on(scene, outlines, settings);
     place_ = std::move(next_);
-  } else if (known_ != nullptr) {
-    place_ = known_->find(now_m, step_m, over_mirrors_);
+  } else if (places_->known != nullptr) {
+    place_ = places_->known->find(now_m, step_m, places_->over_mirrors);
   }
   if (!place_) return false;
   next_.reset();
@@ -128,8 +148,8 @@ DCEM_INLINE bool KeptHalf::enter(const Scene& scene, const FacetOutlines& outlin
 DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m,
                                         const Vec3& step_m, bool enters, const HalfSettings& settings) {
   // What pools of candidates take, and to go over to those of the place that is entered.
-  const int work_of_others = candidates_work + (over_mirrors_ ? triples_work : 0);
-  const int work_of_entering = over_mirrors_ ? 350 : 7;
+  const int work_of_others = places_->candidates ? candidates_work + (places_->over_mirrors ? triples_work : 0) : 0;
+  const int work_of_entering = places_->over_mirrors ? 350 : 7;
   if (enters) pause_ = misses_ = 0;
   see_whether_next_is_met(now_m, step_m);
   work_on_next_ = enters ? work_of_entering : 0;
@@ -153,7 +173,8 @@ DCEM_INLINE void KeptHalf::see_whether_next_is_met(const Vec3& now_m, const Vec3
   if (place_) {
     frames_to_next_ = frames_until_out(place_->box(), now_m, step_m, detail::most_frames);
   } else if (next_ && !next_->box().holds(now_m)) {
-    frames_to_next_ = frames_until_in(next_->box(), now_m, step_m, 2 * detail::most_frames_of_looking);
+    const int until_in = frames_until_in(next_->box(), now_m, step_m, 2 * detail::most_frames_of_looking);
+    frames_to_next_ = until_in > 0 ? std::max(until_in, frames_to_next_ - 1) : 0;  // it may wait in it
   } else if (--frames_to_next_ > 0 && next_ &&
              frames_until_out(next_->box(), now_m, step_m, frames_to_next_) <= frames_to_next_) {
     drop();  // faster than when it was begun, the device is out again before it is known
@@ -165,15 +186,15 @@ DCEM_INLINE void KeptHalf::see_whether_next_is_met(const Vec3& now_m, const Vec3
 
 DCEM_INLINE void KeptHalf::begin_next(const Vec3& now_m, const Vec3& step_m) {
   const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
-  if (known_ != nullptr) next_ = known_->find(then_m, step_m, over_mirrors_);
+  if (places_->known != nullptr) next_ = places_->known->find(then_m, step_m, places_->over_mirrors);
   if (next_) return;
-  made_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m, behind_m(now_m, then_m)), over_mirrors_);
+  made_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m, behind_m(now_m, then_m)), places_->over_mirrors);
   next_ = made_;
 }
 
 DCEM_INLINE double KeptHalf::behind_m(const Vec3& now_m, const Vec3& then_m) const {
   const double way_m = glm::distance(now_m, then_m);
-  const bool leaves_gaps = known_ == nullptr || !known_->are_shared();
+  const bool leaves_gaps = places_->known == nullptr || !places_->known->are_shared();
   if (!place_ || leaves_gaps || !(way_m > 0.0)) return detail::least_behind_m;
   const double out_m = place_->box().way_out_m(now_m, (then_m - now_m) / way_m);
   return std::max(detail::least_behind_m, way_m - out_m + 0.1);
@@ -187,7 +208,7 @@ DCEM_INLINE int KeptHalf::frames_until_out(const PlaceBox& box, const Vec3& now_
 
 DCEM_INLINE int KeptHalf::frames_of_looking() const {
   constexpr int many = detail::most_frames_of_looking;
-  const int few = over_mirrors_ ? 8 : 4;
+  const int few = places_->over_mirrors ? 8 : 4;
   constexpr double aside_m = 0.25;  // half of what a place leaves to each side
   return 0.5 * many * (many + 1) * turns_by_m_ <= aside_m ? many : few;
 }
@@ -219,13 +240,17 @@ DCEM_INLINE PlaceBox KeptHalf::place_ahead(const Vec3& before_m, const Vec3& now
 DCEM_INLINE void KeptHalf::find_scenery(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
                                         const HalfSettings& settings, bool closer, ThreadPool* pool) {
   place_.reset();
+  half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, closer), pool);
+  is_closer_ = closer;
+  has_scenery_ = true;
+}
+
+DCEM_INLINE void KeptHalf::leave_places() {
+  place_.reset();
   next_.reset();
   made_.reset();
   moved_m_ = Vec3(0.0);
   has_entered_ = false;
-  half_.find_scenery(scene, outlines, end, looked_at_twice_from(settings, closer), pool);
-  is_closer_ = closer;
-  has_scenery_ = true;
 }
 
 DCEM_INLINE std::vector<KeptHalf> kept_halves(std::size_t count, int map_pixels) {

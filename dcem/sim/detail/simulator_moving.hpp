@@ -26,10 +26,16 @@ void BasicSimulator<Surface, Index>::look_from_receiver(Following& following, de
     following.half = &following.as_transmitter->half();
     return;
   }
-  memory.half.keep_places(
-      pools ? detail::longest_pooled_step_m(change_->bodies_there()) : detail::longest_step_in_place_m, false, false,
-      known_places_.get());
-  memory.half.update(scene_, *outlines_, following.end, half_settings(search), {}, change_->moved());
+  const double longest_step_m =
+      pools ? detail::longest_pooled_step_m(change_->bodies_there()) : detail::longest_step_in_place_m;
+  memory.half.keep_places({longest_step_m, false, false, pools, known_places_.get()});
+  following.goes_through_places = true;
+  const HalfSettings settings = half_settings(search);
+  if (stands || !memory.half.is_followed()) {
+    memory.half.update(scene_, *outlines_, following.end, settings, {}, change_->moved());
+  } else if (!memory.half.update_in_place(scene_, *outlines_, following.end, settings, change_->moved())) {
+    return look_from(scene_, search, *outlines_, *lanes_, following.end, room);
+  }
   following.half = &memory.half.half();
 }
 
@@ -56,22 +62,24 @@ void BasicSimulator<Surface, Index>::look_for_triples(Following& following, deta
     return;
   }
   const HalfSettings settings = half_settings(search);
-  memory.half.keep_places(detail::longest_step_of_triples_m, false, true, known_places_.get());
-  HalfLists lists;
-  if (stands) lists = {lanes_.get(), true, true, 0, nullptr, BeamFinder::few_pieces};
-  memory.half.update(scene_, *outlines_, following.end, settings, lists, change_->moved());
-  following.half = &memory.half.half();
-  if (stands || !memory.half.is_in_places()) memory.forget_pools();  // it looks itself
+  memory.half.keep_places({detail::longest_step_of_triples_m, false, true, true, known_places_.get()});
+  following.goes_through_places = true;
   if (stands) {
+    memory.forget_pools();
+    const HalfLists lists{lanes_.get(), true, true, 0, nullptr, BeamFinder::few_pieces};
+    memory.half.update(scene_, *outlines_, following.end, settings, lists, change_->moved());
+    following.half = &memory.half.half();
     following.lists = memory.half.lists();
     return;
   }
-  const BeamSource source{scene_, *outlines_, *lanes_, memory.half.half(), settings, true};
-  const Place* const place = memory.half.place().get();
-  if (place == nullptr) return room.lists.find_all(source);
+  const bool is_in_place = memory.half.update_in_place(scene_, *outlines_, following.end, settings, change_->moved());
+  if (!memory.half.is_in_places()) memory.forget_pools();  // it moves too fast
+  if (!is_in_place) return look_from(scene_, search, *outlines_, *lanes_, following.end, room);
+  following.half = &memory.half.half();
   if (outlines_->bodies().empty() && all_rest(following.transmitters)) return;
   memory.half.lay_out_images(scene_, *outlines_);
-  room.lists.find_from(source, *place, change_->moved());
+  const BeamSource source{scene_, *outlines_, *lanes_, memory.half.half(), settings, true};
+  room.lists.find_from(source, *memory.half.place(), change_->moved());
 }
 
 /// Whether all transmitters are where they were in the frame before.
@@ -124,7 +132,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 bool BasicSimulator<Surface, Index>::may_pool(const Following& following, const KeptHalf& half, std::size_t transmitter,
                                               bool rests) const {
   const bool stands = transmitter_rests_[following.transmitters.number(transmitter)] != 0;
-  return pools_cover(following.search) && !rests && stands && following.half == &half.half() && half.is_in_places() &&
+  return pools_cover(following.search) && !rests && stands && following.goes_through_places && half.is_in_places() &&
          following.transmitters.halves[transmitter].lists() != nullptr;
 }
 

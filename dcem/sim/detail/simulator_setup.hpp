@@ -50,7 +50,8 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   halves_ =
       kept_halves(transmitters, detail::pixels_for_facets(detail::view_pixels_for(transmitters), outlines_->size()));
   if (cache_ != CacheMode::exact) return;
-  for (KeptHalf& half : halves_) half.keep_places(detail::longest_step_in_place_m, true, false, known_places_.get());
+  for (KeptHalf& half : halves_)
+    half.keep_places({detail::longest_step_in_place_m, true, false, false, known_places_.get()});
 }
 
 /// What a model of the caller's own cannot do would otherwise be left out in silence.

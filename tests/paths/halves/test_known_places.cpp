@@ -49,7 +49,7 @@ struct Column {
         halves(kept_halves(count, 64)),
         at_m(count),
         entered(count) {
-    for (KeptHalf& half : halves) half.keep_places(2.0, false, false, &known);
+    for (KeptHalf& half : halves) half.keep_places({2.0, false, false, true, &known});
   }
 
   static Scene ground() {

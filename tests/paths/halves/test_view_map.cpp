@@ -254,7 +254,7 @@ TEST_CASE("what several threads list of an end that has just come to a stop is w
   const LaneScene lanes(traced.scene, outlines);
   const Vec3 place_m(50.0, -20.0, 30.0);
   const auto look = [&](KeptHalf& half, ThreadPool* pool) {
-    half.keep_places(0.5, false);
+    half.keep_places({0.5});
     for (const double behind_m : {0.2, 0.1, 0.0, 0.0, 0.0, 0.0}) {  // before a place is ready it stands
       const LinkEnd end = traced.end(place_m - Vec3(behind_m, 0, 0));
       half.update(traced.scene, outlines, end, HalfSettings{}, {&lanes, true, false, 1000, pool});
