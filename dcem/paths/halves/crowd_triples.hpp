@@ -101,7 +101,7 @@ class CrowdTriples {
   template <typename Visit>
   void join_edges(std::uint32_t place, FacetId middle, Visit& visit) {
     const float radius_m = gates_.radius_m() + images_.error_m();
-    mast().for_each_part_in(images_.cone(), images_.middle_m(), radius_m, [&](const EdgePart& part) {
+    mast().for_each_part_before(middle, images_.cone(), images_.middle_m(), radius_m, [&](const EdgePart& part) {
       const WedgeId edge(part.edge);
       const WorldWedge& wedge = scene_.wedge(edge);
       if (wedge.facets[0] == middle || wedge.facets[1] == middle) return;  // that is in the wedge's own terms

@@ -163,7 +163,7 @@ class TripleJoiner {
   template <typename Visit>
   void edges_over(const BeamMirror& mirror, FacetId middle, const Vec3& twice_m, const Listed& beside, Visit&& visit) {
     const std::span<const HalfSpace> cone = images_.cone(mirror, middle, twice_m);
-    beside.table.for_each_part_in(cone, twice_m - lanes_.origin_m(), 0.0F, [&](const EdgePart& part) {
+    beside.table.for_each_part_before(middle, cone, twice_m - lanes_.origin_m(), 0.0F, [&](const EdgePart& part) {
       const WedgeId edge(part.edge);
       const WorldWedge& wedge = scene().wedge(edge);
       if (wedge.facets[0] == middle || wedge.facets[1] == middle) return;  // that is in the wedge's own terms

@@ -99,7 +99,7 @@ struct TriplePool::Finder {
 
   void join_edges(const PlaceMirror& near, FacetId middle) {
     const Plane& plane = scene.facet(middle).plane;
-    listed.for_each_part_in(cone, twice, radius_m + twice_error_m, [&](const EdgePart& part) {
+    listed.for_each_part_before(middle, cone, twice, radius_m + twice_error_m, [&](const EdgePart& part) {
       const WedgeId id(part.edge);
       const Wedge& edge = scene.wedge(id).edge;
       if (is_of(id, middle)) return;  // that is in the wedge's own terms

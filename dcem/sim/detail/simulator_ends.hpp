@@ -80,8 +80,9 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
     halves = ends.own_halves;
   }
   const bool over_mirrors = search.max_reflections >= 1 && search.max_interactions >= 2;
-  const HalfLists of_all{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors,
-                         fine || (triples && (receivers > 0 || change_)), receivers, pool_.get()};
+  HalfLists of_all{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors,
+                   fine || (triples && (receivers > 0 || change_)), receivers, pool_.get()};
+  of_all.for_triples = triples;
   const bool are_followed = halves.data() == halves_.data();
   const bool has_choice = !choice_.takes_all() && are_followed;
   const auto update = [&](std::size_t index, unsigned) {
