@@ -109,10 +109,9 @@ class KeptHalf {
   void go_on_with_lists(const BeamSource& source, std::size_t receivers);
 
   /// Where lists are known, looks over some of the edges that are seen, for the facets before them: a part of an edge
-  /// costs a third of a millisecond, once, and all of them spare a join 0.2 to 1.5, or 3 to 5 over three
-  /// interactions, by measurement in Munich. So it begins when there were half as many joins as there
-  /// are parts, or a sixteenth, and takes about as long in a frame as the links from scratch do; for very many of
-  /// these, all of it at once.
+  /// costs a third of a millisecond, once, and all of them spare a join 0.2 to 1.5, or 3 to 5 over three interactions,
+  /// by measurement in Munich. So it begins when there were half as many joins as there are parts, or a sixteenth, and
+  /// takes about as long in a frame as the links from scratch do; for very many of these, all of it at once.
   void go_on_over_edges(const BeamSource& source, const HalfLists& wanted);
 
   /// Of a device that has moved a little: whether it is in a place, from which it takes what it sees.

@@ -54,8 +54,7 @@ class ViewMap {
     faces_ = {};
     clear(cube_pixels_);
   }
-  /// The same, emptied by several threads: what is several megabytes large takes longest where it has
-  /// never been used.
+  /// The same, emptied by several threads: what is several megabytes large takes longest where it has never been used.
   void look_from(const Vec3& point_m, ThreadPool& pool);
   /// From now on it is the map of all points `point_m + offsets_m[i]`, seen from `point_m`: outlines hide only what
   /// they hide from all of them. Face by face: `empty` each before anything is noted or asked about on it.
@@ -65,6 +64,7 @@ class ViewMap {
     faces_ = {};
     make_room(cube_pixels_);
   }
+  /// Nothing has been noted on a face.
   void empty(int face) {
     const std::size_t tiles = static_cast<std::size_t>(tiles_) * static_cast<std::size_t>(tiles_),
                       first = static_cast<std::size_t>(face) * tiles;
@@ -72,7 +72,8 @@ class ViewMap {
     std::ranges::fill(std::span(tile_nearness_).subspan(first, tiles), 0.0F);
     std::ranges::fill(std::span(tile_is_old_).subspan(first, tiles), char{0});
   }
-  /// The same of points that look through a convex window, and `room_m` around it: there is nothing else to be seen.
+  /// Empties the map, which is that of points that look through a convex window, and `room_m` around it: there is
+  /// nothing else to be seen.
   /// `inwards`: the normals of planes by the point which all of it is inside.
   void look_through(const Vec3& point_m, std::span<const Vec3> window_m, double room_m, std::span<const Vec3> inwards,
                     std::span<const Vec3> offsets_m = {}) {

@@ -37,7 +37,7 @@ struct BasicSimulator<Surface, Index>::Following {
   // What it sees, and what it reaches where sequences of three elements are joined.
   const PathHalf* half = nullptr;
   const BeamLists* lists = nullptr;
-  bool goes_through_places = false;               ///< of which its memory knows where it is
+  bool goes_through_places = false;               ///< its memory was told of this frame, and knows the place, if any
   std::shared_ptr<const SurfaceView> surfaces{};  ///< where diffuse power is asked for
 };
 
