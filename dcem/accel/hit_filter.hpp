@@ -26,8 +26,8 @@ struct HitFilter {
   static constexpr std::uint32_t no_object = 0xffffffffU;
 
   /// A hit with sure_from < t < sure_to counts without being asked about (units of the ray's direction).
-  double sure_from = -std::numeric_limits<double>::infinity();
-  double sure_to = std::numeric_limits<double>::infinity();
+  float sure_from = -std::numeric_limits<float>::infinity();
+  float sure_to = std::numeric_limits<float>::infinity();
   /// Whether any other hit counts. Called with the number of a triangle and its exact t. Null: it does.
   bool (*counts)(const void* context, const TriangleHit& hit) = nullptr;
   const void* context = nullptr;
@@ -44,7 +44,7 @@ struct HitFilter {
 /// The filter that asks `counts(hit) -> bool` about every hit. The function must outlive the filter.
 template <std::predicate<const TriangleHit&> Counts>
 HitFilter filter_by(const Counts& counts) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr float infinity = std::numeric_limits<float>::infinity();
   return {infinity,
           -infinity,
           [](const void* context, const TriangleHit& hit) { return (*static_cast<const Counts*>(context))(hit); },
@@ -53,7 +53,7 @@ HitFilter filter_by(const Counts& counts) {
 }
 
 /// One ray of many, with its own filter.
-struct RayQuery {
+struct alignas(32) RayQuery {
   Ray<double> ray;
   HitFilter filter{};
 };

@@ -69,8 +69,8 @@ struct OddFilter {
   HitFilter filter;
 
   explicit OddFilter(RandomStream& random) {
-    filter.sure_from = random.uniform() < 0.3 ? -infinity : 0.6 * random.uniform();
-    filter.sure_to = random.uniform() < 0.3 ? infinity : 0.6 + random.uniform();
+    filter.sure_from = static_cast<float>(random.uniform() < 0.3 ? -infinity : 0.6 * random.uniform());
+    filter.sure_to = static_cast<float>(random.uniform() < 0.3 ? infinity : 0.6 + random.uniform());
     filter.counts = [](const void*, const TriangleHit& hit) { return hit.triangle % 2 == 0; };
     for (std::uint32_t& object : filter.ignored_objects) {
       if (random.uniform() < 0.5) object = static_cast<std::uint32_t>(random.next() % 20);

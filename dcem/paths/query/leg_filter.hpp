@@ -67,12 +67,22 @@ class LegFilter {
     const auto number = [](const std::optional<BodyId>& body) { return body ? body->value : HitFilter::no_object; };
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const bool asks = sure_from_ > -infinity || sure_to_ < infinity;
-    return {sure_from_, sure_to_, asks ? &ask : nullptr, this, {number(ignored_[0]), number(ignored_[1])}};
+    return {rounded_up(sure_from_),
+            -rounded_up(-sure_to_),
+            asks ? &ask : nullptr,
+            this,
+            {number(ignored_[0]), number(ignored_[1])}};
   }
 
  private:
   static bool ask(const void* context, const TriangleHit& hit) {
     return static_cast<const LegFilter*>(context)->counts(hit);
+  }
+
+  /// No smaller single-precision number, up to what these reach.
+  static float rounded_up(double value) {
+    const auto rounded = static_cast<float>(std::clamp(value, -1e38, 1e38));
+    return rounded + std::abs(rounded) * 0x1p-22F + 1e-37F;
   }
 
   bool counts(const TriangleHit& hit) const {

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "dcem/accel/counters.hpp"
@@ -19,11 +20,27 @@ namespace detail {
 
 inline namespace DCEM_ISA {
 
+/// In place of a hit where there is none: hits lie at finite t.
+inline constexpr TriangleHit no_hit{std::numeric_limits<double>::infinity()};
+
+/// As take_nearer, number by number: an optional hit as a whole would be read from memory before what is written in
+/// pieces has arrived there, which costs as much as a leaf.
+[[gnu::always_inline]] inline void take_if_nearer(const TriangleHit& hit, TriangleHit& best) {
+  if (hit.t < best.t || (hit.t == best.t && hit.triangle < best.triangle)) best = hit;
+}
+[[gnu::always_inline]] inline void answer(const TriangleHit& hit, std::optional<TriangleHit>& place) {
+  if (hit.t < no_hit.t) {
+    place.emplace(hit);
+  } else {
+    place.reset();
+  }
+}
+
 /// The closest hit of one ray, as far as it is known.
 class ClosestCandidates {
  public:
   /// No initial values: most of the room is never used.
-  ClosestCandidates() : count_(0) {}
+  ClosestCandidates() : count_(0), best_(no_hit) {}
 
   /// Takes over what a leaf has of the ray between t_min and `limit`, which a sure hit lowers at once (padded).
   [[gnu::always_inline]] void take(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
@@ -36,33 +53,29 @@ class ClosestCandidates {
     for (; met != 0; met &= met - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(met));
       if (first[lane] > limit) continue;
-      const std::uint32_t quad = leaf * simd_lanes + lane;
-      if (filter.counts != nullptr &&
-          !filter.is_sure(static_cast<double>(first[lane]), static_cast<double>(last[lane]))) {
-        ask(tree, ray, filter, quad, limit, counters);
-        continue;
-      }
-      // The plane's t may lie beyond what is asked for by a rounding: then it shortens nothing.
-      if (hits.is_certain(lane) && static_cast<double>(last[lane]) < ray.t_max) limit = std::min(limit, last[lane]);
-      add({quad, first[lane], hits.certainty(lane)}, tree, ray, limit, counters);
+      offer({leaf * simd_lanes + lane, first[lane], hits.certainty(lane)}, last[lane], tree, ray, filter, limit,
+            counters);
     }
   }
 
-  /// The hit, when the walk is over.
-  [[gnu::always_inline]] std::optional<TriangleHit> decide(const WideArrays& tree, const Ray<double>& ray, float limit,
-                                                           TraversalCounters& counters) {
-    for (std::uint32_t index = 0; index < count_; ++index) {
-      if (!(held_[index].first > limit)) look_at(held_[index], tree, ray, counters);
-    }
-    return best_;
-  }
-
- private:
+  /// A quad.
   struct Candidate {
     std::uint32_t quad;
     float first;  ///< the hit is no nearer
     QuadCertainty certainty;
   };
+
+  [[gnu::always_inline]] void offer(const Candidate& candidate, float last, const WideArrays& tree,
+                                    const Ray<double>& ray, const HitFilter& filter, float& limit,
+                                    TraversalCounters& counters) {
+    if (filter.counts != nullptr && !filter.is_sure(static_cast<double>(candidate.first), static_cast<double>(last))) {
+      return ask(tree, ray, filter, candidate.quad, limit, counters);
+    }
+    // The plane's t may lie beyond what is asked for by a rounding: then it shortens nothing.
+    const bool is_certain = candidate.certainty != QuadCertainty::undecided;
+    if (is_certain && static_cast<double>(last) < ray.t_max) limit = std::min(limit, last);
+    add(candidate, tree, ray, limit, counters);
+  }
 
   [[gnu::always_inline]] void add(const Candidate& candidate, const WideArrays& tree, const Ray<double>& ray,
                                   float limit, TraversalCounters& counters) {
@@ -72,10 +85,21 @@ class ClosestCandidates {
     if (count_ < held_.size()) {
       held_[count_++] = candidate;
     } else {
-      look_at(candidate, tree, ray, counters);
+      look_at(candidate, tree, ray, best_, counters);
     }
   }
 
+  /// The hit when the walk is over, `no_hit` where there is none.
+  [[gnu::always_inline]] TriangleHit decide(const WideArrays& tree, const Ray<double>& ray, float limit,
+                                            TraversalCounters& counters) {
+    TriangleHit best = best_;
+    for (std::uint32_t index = 0; index < count_; ++index) {
+      if (!(held_[index].first > limit)) look_at(held_[index], tree, ray, best, counters);
+    }
+    return best;
+  }
+
+ private:
   void drop_beyond(float limit) {
     std::uint32_t kept = 0;
     for (std::uint32_t index = 0; index < count_; ++index) {
@@ -90,13 +114,13 @@ class ClosestCandidates {
     ++counters.primitives_tested;
     const std::optional<TriangleHit> hit = quad_hit(tree, quad, ray, filter);
     if (!hit) return;
-    take_nearer(*hit, best_);
-    limit = std::min(limit, WideRay::padded(best_->t));
+    take_if_nearer(*hit, best_);
+    limit = std::min(limit, WideRay::padded(best_.t));
   }
 
   /// Takes over where the ray meets a quad, if that is nearer. The answer is the same whatever is known.
   [[gnu::always_inline]] void look_at(const Candidate& candidate, const WideArrays& tree, const Ray<double>& ray,
-                                      TraversalCounters& counters) {
+                                      TriangleHit& best, TraversalCounters& counters) {
     ++counters.primitives_tested;
     const QuadPlanes& planes = tree.planes[candidate.quad];
     const TrianglePlane& plane = planes.side[candidate.certainty == QuadCertainty::second ? 1 : 0];
@@ -104,15 +128,15 @@ class ClosestCandidates {
         candidate.certainty == QuadCertainty::met ? plane.is_alone() : candidate.certainty != QuadCertainty::undecided;
     if (is_known && plane.is_steep(ray)) {
       const double t = plane.t_of(ray);
-      if (is_in_range(t, ray)) take_nearer({t, plane.triangle}, best_);
+      if (is_in_range(t, ray)) take_if_nearer({t, plane.triangle}, best);
     } else if (const auto hit = quad_hit(tree, candidate.quad, ray, HitFilter{})) {
-      take_nearer(*hit, best_);
+      take_if_nearer(*hit, best);
     }
   }
 
   std::array<Candidate, 24> held_;
   std::uint32_t count_;
-  std::optional<TriangleHit> best_;
+  TriangleHit best_;
 };
 
 }  // namespace DCEM_ISA

@@ -60,6 +60,14 @@ class PacketCone {
     set_plane(rays, 2, up - (low[1] - room) * ahead, 1.0F);
     set_plane(rays, 3, (high[1] + room) * ahead - up, 1.0F);
     set_plane(rays, 4, ahead, -1.0F);
+    corner_size = 0.0F;
+    for (std::size_t at = 0; at < 4; ++at) {
+      const float beside = at % 2 == 0 ? low[0] - 2 * room : high[0] + 2 * room;
+      const float above = at < 2 ? low[1] - 2 * room : high[1] + 2 * room;
+      const Float4 way = ahead + beside * right + above * up, size = absolute(way);
+      for (std::size_t axis = 0; axis < 3; ++axis) corner[axis][at] = way[axis];
+      corner_size = std::max(corner_size, std::max(size[0], std::max(size[1], size[2])));
+    }
     return true;
   }
 
@@ -79,6 +87,9 @@ class PacketCone {
     // An empty box, from +∞ to −∞, is on the right side of what it is asked about.
     return missed | (Float8::load(bounds) > Float8::load(bounds + 32));
   }
+
+  std::array<std::array<float, 4>, 3> corner;  ///< directions along the edges of the pyramid, axis by axis
+  float corner_size;                           ///< no coordinate of these is larger
 
  private:
   static constexpr float rounding = PacketRays::rounding;

@@ -2,6 +2,7 @@
 /// The rays of a packet as rows of numbers, eight rays at a time: which of them meet a box, and how far they ask.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -18,10 +19,13 @@ namespace detail {
 
 inline namespace DCEM_ISA {
 
+/// Bit i: ray i of a packet.
+using RayMask = std::uint64_t;
+
 /// Rays with a common origin. Left without initial values: each packet would pay for them.
 class PacketRays {
  public:
-  static constexpr std::size_t capacity = 32;
+  static constexpr std::size_t capacity = 64;
   static constexpr float rounding = 0x1p-24F;  ///< relative error of one rounding
   using Numbers = std::array<float, capacity>;
 
@@ -29,15 +33,19 @@ class PacketRays {
   Float4 origin_m, origin_low_m;  ///< from the tree's origin: rounded, and what the rounding has left
   float extent_m, farthest_m;     ///< of the tree, and of the origin along an axis
   alignas(32) std::array<Numbers, 3> direction, reciprocal;
-  alignas(32) Numbers size, ahead, limit;  ///< of the directions: the longest axis, and the way along the cone's middle
+  alignas(32) Numbers size, ahead;  ///< of the directions: the longest axis, and the way along the cone's middle
+  alignas(32) Numbers limit;        ///< how far a ray asks, padded
+  /// A hit between them, exclusively, counts without being asked about.
+  alignas(32) Numbers sure_from, sure_to;
 
   /// Writes eight numbers to a row.
   [[gnu::always_inline]] static void put(Numbers& row, std::size_t first, const Float8& numbers) {
     std::memcpy(&row[first], &numbers, sizeof numbers);
   }
 
-  /// Directions as rows of numbers; the last ray fills the rest of the last eight.
-  [[gnu::always_inline]] bool prepare(const WideArrays& tree, std::span<const RayQuery> queries) {
+  /// Takes the first of many rays: as many as have the origin of the first one, t_min = 0 and a direction close to its
+  /// own. Returns their number, 1 where they are too few or single precision does not do for the first.
+  [[gnu::always_inline]] std::size_t gather(const WideArrays& tree, std::span<const RayQuery> queries) {
     const Vec3& at = queries.front().ray.origin;
     const Double4 origin =
         Double4{at.x, at.y, at.z, 0.0} - Double4{tree.origin_m.x, tree.origin_m.y, tree.origin_m.z, 0.0};
@@ -46,13 +54,15 @@ class PacketRays {
     const Float4 distance = absolute(origin_m);
     extent_m = tree.extent_m;
     farthest_m = std::max(distance[0], std::max(distance[1], distance[2]));
-    asked = queries.size();
-    count = (queries.size() + simd_lanes - 1) / simd_lanes * simd_lanes;
-    bool is_usable = farthest_m <= std::min(1e12F, 1e5F * extent_m);
-    for (std::size_t first = 0; first < count; first += simd_lanes) {
-      is_usable = prepare_eight(queries.subspan(first), first) && is_usable;
+    if (!(farthest_m <= std::min(1e12F, 1e5F * extent_m))) return 1;
+    const std::size_t most = std::min(queries.size(), capacity);
+    asked = 0;
+    for (std::size_t taken = simd_lanes; taken == simd_lanes && asked < most; asked += taken) {
+      taken = most - asked >= simd_lanes ? gather_eight<true>(queries) : gather_eight<false>(queries);
     }
-    return is_usable;
+    count = (asked + simd_lanes - 1) / simd_lanes * simd_lanes;
+    for (std::size_t ray = asked; 0 < asked && ray < count; ++ray) repeat(asked - 1, ray);
+    return std::max<std::size_t>(asked, 1);
   }
 
   /// The way ahead beyond which no ray asks for anything.
@@ -66,15 +76,15 @@ class PacketRays {
     return result * 1.0001F;
   }
 
-  /// Bit i: ray i may meet a box within its limit. Errors as in WideRay::BoxTest.
-  [[gnu::always_inline]] std::uint32_t that_meet(const WideNode& node, std::uint32_t lane) const {
+  /// Rays that may meet a box within their limits. Errors as in WideRay::BoxTest.
+  [[gnu::always_inline]] RayMask that_meet(const WideNode& node, std::uint32_t lane) const {
     std::array<Float8, 3> low, high;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float at_m = float_at(origin_m, axis), room_m = 8 * rounding * (std::abs(at_m) + extent_m) + 1e-20F;
       low[axis] = (node.bounds_m[2 * axis][lane] - at_m) - room_m;
       high[axis] = (node.bounds_m[2 * axis + 1][lane] - at_m) + room_m;
     }
-    std::uint32_t met = 0;
+    RayMask met = 0;
     for (std::size_t ray = 0; ray < count; ray += simd_lanes) {
       Float8 entry(0.0F), exit = Float8::load(&limit[ray]);
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -83,37 +93,120 @@ class PacketRays {
         entry = simd::maximum(simd::minimum(one, other), entry);
         exit = simd::minimum(simd::maximum(one, other), exit);
       }
-      met |= (entry <= exit).bits() << ray;
+      met |= RayMask{(entry <= exit).bits()} << ray;
     }
-    return met & static_cast<std::uint32_t>((std::uint64_t{1} << asked) - 1);
+    return met;
   }
 
  private:
-  /// Eight rays side by side, those of `queries` and then its last one.
-  [[gnu::always_inline]] bool prepare_eight(std::span<const RayQuery> queries, std::size_t first) {
-    std::array<Float4, simd_lanes> ways;
+  /// Of the angle to the first ray, 39 degrees: wider packets test more boxes that few rays meet.
+  static constexpr float least_cosine_squared = 0.6F;
+  static constexpr float largest_t = 1e30F;  ///< what single precision counts up to
+
+  using Long4 = std::int64_t __attribute__((vector_size(32)));
+  template <typename Lanes>
+  [[gnu::always_inline]] static void read(const void* from, Lanes& to) {
+    std::memcpy(&to, from, sizeof to);
+  }
+
+  /// The next rays, up to eight, side by side: all of them where it is `full`. Returns how many belong to the packet.
+  template <bool full>
+  [[gnu::always_inline]] std::size_t gather_eight(std::span<const RayQuery> queries) {
+    static_assert(sizeof(Ray<double>) == 64 && sizeof(HitFilter) == 32 && offsetof(RayQuery, filter) == 64);
+    const std::size_t present = full ? simd_lanes : queries.size() - asked;
+    Long4 own_origin, own_filter;
+    read(&queries.front().ray, own_origin);
+    read(&queries.front().filter, own_filter);
+    std::array<Float4, simd_lanes> ways;  // direction x y z, t_max
     std::array<const float*, simd_lanes> places;
-    bool is_usable = true;
+    Long4 strange{}, other_filter{};
     for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
-      const Ray<double>& own = queries[std::min(lane, queries.size() - 1)].ray;
-      Double4 way;
-      static_assert(sizeof own == 64);
-      std::memcpy(&way, &own.direction.x, sizeof way);  // x y z, t_min
-      ways[lane] = narrowed(way);
+      const RayQuery& query = queries[asked + (full || lane < present ? lane : present - 1)];
+      Long4 begin_bits, end_bits, filter;
+      Double4 begin, end;
+      read(&query.ray, begin_bits);
+      read(&query.ray, begin);  // origin x y z, direction x
+      read(&query.ray.direction.y, end_bits);
+      read(&query.ray.direction.y, end);  // direction y z, t_min, t_max
+      read(&query.filter, filter);        // sure_from and sure_to, counts, context, ignored objects
+      strange |= ((begin_bits ^ own_origin) & Long4{-1, -1, -1, 0}) | (end_bits & Long4{0, 0, -1, 0});
+      other_filter |= filter ^ own_filter;
+      ways[lane] = __builtin_shufflevector(narrowed(begin), narrowed(end), 3, 4, 5, 7);
       places[lane] = reinterpret_cast<const float*>(&ways[lane]);
-      is_usable = is_usable && own.t_max >= 0.0;
-      limit[first + lane] = WideRay::padded(own.t_max);
     }
     const std::array<Float8, 4> turned = simd::turned(places);
+    put_directions(turned);
+    put(limit, asked, simd::minimum(turned[3], Float8(largest_t)) * Float8(1.0F + 8 * rounding) + Float8(0.0F));
+    if ((other_filter[0] | other_filter[1] | other_filter[3]) == 0) {
+      put(sure_from, asked, Float8(surely_from(queries.front().filter)));
+      put(sure_to, asked, Float8(surely_to(queries.front().filter)));
+    } else {
+      put_filters(queries.subspan(asked, present));
+    }
+    std::uint32_t others = those_apart() | 0x100U >> (simd_lanes - present);
+    if ((strange[0] | strange[1] | strange[2]) != 0) others |= strangers_among(queries, present);
+    return static_cast<std::size_t>(std::countr_zero(others));
+  }
+
+  [[gnu::always_inline]] void put_directions(const std::array<Float8, 4>& ways) {
     // A quotient by nothing is infinite, on both sides alike, or no number, which neither minimum nor maximum keeps.
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      put(direction[axis], first, turned[axis]);
-      put(reciprocal[axis], first, Float8(1.0F) / turned[axis]);
+      put(direction[axis], asked, ways[axis]);
+      put(reciprocal[axis], asked, Float8(1.0F) / ways[axis]);
     }
-    const Float8 longest =
-        simd::maximum(simd::absolute(turned[0]), simd::maximum(simd::absolute(turned[1]), simd::absolute(turned[2])));
-    put(size, first, longest);
-    return ((longest > Float8(1e-12F)) & (longest < Float8(1e12F))).bits() == 0xffU && is_usable;
+    put(size, asked,
+        simd::maximum(simd::absolute(ways[0]), simd::maximum(simd::absolute(ways[1]), simd::absolute(ways[2]))));
+  }
+
+  /// Bit i: of the next eight, ray i has a direction far from that of the first ray, or none that single precision
+  /// follows.
+  [[gnu::always_inline]] std::uint32_t those_apart() const {
+    std::array<Float8, 3> first, own;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      first[axis] = Float8(direction[axis][0]);
+      own[axis] = Float8::load(&direction[axis][asked]);
+    }
+    const auto product = [](const auto& one, const auto& other) __attribute__((always_inline)) {
+      return one[0] * other[0] + one[1] * other[1] + one[2] * other[2];
+    };
+    const Float8 along = product(first, own), longest = Float8::load(&size[asked]);
+    const Float8 least = Float8(least_cosine_squared) * product(first, first) * product(own, own);
+    const Mask8 is_close = (along > Float8(0.0F)) & (least <= along * along) & (longest > Float8(1e-12F)) &
+                           (longest < Float8(1e12F));  // false for what is no number
+    return is_close.bits() ^ 0xffU;
+  }
+
+  /// Bit i: of the next rays, ray i begins at another point, or later.
+  [[gnu::noinline]] std::uint32_t strangers_among(std::span<const RayQuery> queries, std::size_t present) const {
+    const Ray<double>& first = queries.front().ray;
+    std::uint32_t result = 0;
+    for (std::size_t lane = 0; lane < present; ++lane) {
+      const Ray<double>& ray = queries[asked + lane].ray;
+      result |= (ray.origin != first.origin || ray.t_min != 0.0 ? 1U : 0U) << lane;
+    }
+    return result;
+  }
+
+  [[gnu::noinline]] void put_filters(std::span<const RayQuery> queries) {
+    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+      const HitFilter& filter = queries[lane < queries.size() ? lane : queries.size() - 1].filter;
+      sure_from[asked + lane] = surely_from(filter);
+      sure_to[asked + lane] = surely_to(filter);
+    }
+  }
+  /// A filter that ignores objects is asked whether it does.
+  static float surely_from(const HitFilter& filter) {
+    const bool ignores = (filter.ignored_objects[0] & filter.ignored_objects[1]) != HitFilter::no_object;
+    return ignores ? largest_t : filter.counts != nullptr ? filter.sure_from : -largest_t;
+  }
+  static float surely_to(const HitFilter& filter) { return filter.counts != nullptr ? filter.sure_to : largest_t; }
+
+  /// A ray in the place of another.
+  void repeat(std::size_t from, std::size_t to) {
+    for (Numbers* const row : {&direction[0], &direction[1], &direction[2], &reciprocal[0], &reciprocal[1],
+                               &reciprocal[2], &size, &limit, &sure_from, &sure_to}) {
+      (*row)[to] = (*row)[from];
+    }
   }
 };
 

@@ -22,13 +22,15 @@ inline bool fetches_ahead(const WideArrays& tree) {
 /// `alike`: as for the walk. Out of line: within the loop over many rays g++ keeps less of a walk in registers, which
 /// costs a tenth.
 template <bool alike>
-[[gnu::flatten, gnu::noinline]] std::optional<TriangleHit> closest_hit_of_one(const WideArrays& tree,
-                                                                              const Ray<double>& ray,
-                                                                              const HitFilter& filter,
-                                                                              TraversalCounters& counters) {
-  if (tree.nodes.empty()) return std::nullopt;
+[[gnu::flatten, gnu::noinline]] void closest_hit_of_one(const WideArrays& tree, const Ray<double>& ray,
+                                                        const HitFilter& filter, std::optional<TriangleHit>& hit,
+                                                        TraversalCounters& counters) {
+  if (tree.nodes.empty()) return hit.reset();
   const WideRay wide(ray, tree.origin_m, tree.extent_m);
-  if (!wide.usable()) return closest_hit_of_all(tree, ray, filter, counters);
+  if (!wide.usable()) {
+    hit = closest_hit_of_all(tree, ray, filter, counters);
+    return;
+  }
   ClosestCandidates candidates;
   float reached = wide.t_max();
   const auto take = [&](std::uint32_t leaf, std::uint32_t met, const QuadHits& hits, float& limit)
@@ -41,12 +43,14 @@ template <bool alike>
   } else {
     walk_closest<false, alike>(tree, wide, reached, take, counters);
   }
-  return candidates.decide(tree, ray, reached, counters);
+  answer(candidates.decide(tree, ray, reached, counters), hit);
 }
 
 inline std::optional<TriangleHit> closest_hit(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
                                               TraversalCounters& counters) {
-  return closest_hit_of_one<false>(tree, ray, filter, counters);
+  std::optional<TriangleHit> hit;
+  closest_hit_of_one<false>(tree, ray, filter, hit, counters);
+  return hit;
 }
 
 /// Out of line for the same reason: with and without an end, side by side, are slower.

@@ -132,7 +132,7 @@ class ClosestStream {
       waiting.remove(nearest);
       return send(index, tree_.nodes[slot.nodes[slot.height - 1]].child[LaneKeys::lane(nearest)]);
     }
-    hits_[slot.query] = slot.found().decide(tree_, queries_[slot.query].ray, slot.limit, counters_);
+    answer(slot.found().decide(tree_, queries_[slot.query].ray, slot.limit, counters_), hits_[slot.query]);
     begin_next(index);
   }
 

@@ -73,7 +73,7 @@ std::vector<RayQuery> questions(std::uint64_t seed, const HitFilter& odd_only) {
   for (std::size_t ray = 0; ray < queries.size(); ++ray) {
     if (ray % 7 == 3) queries[ray].filter = odd_only;
     if (ray % 11 == 5) queries[ray].filter.ignored_objects[1] = 1;
-    if (ray % 13 == 6) queries[ray].filter.sure_from = 0.2;
+    if (ray % 13 == 6) queries[ray].filter.sure_from = 0.2F;
     if (ray % 17 == 8) queries[ray].ray.t_max = between(0.1, 1.5);
   }
   return queries;

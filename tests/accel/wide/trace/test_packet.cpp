@@ -1,0 +1,261 @@
+/// Rays from one point that go through a tree together: the answers of rays that go alone, which an index in double
+/// precision throughout gives as well, for a fraction of the steps.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dcem/accel/binary_index.hpp"
+#include "dcem/accel/wide_bvh.hpp"
+#include "dcem/core/random.hpp"
+#include "dcem/paths/discover/launch_sphere.hpp"
+#include "tests/accel/wide/wide_scenes.hpp"
+
+namespace test_packet {
+
+using namespace dcem;
+using dcem_test::WideMesh;
+
+namespace {
+
+double between(RandomStream& random, double low, double high) {
+  return low + (high - low) * random.uniform();
+}
+
+/// A wall of two triangles that share an edge, from a corner along two ways; the fourth corner is off by `bend_m`.
+void add_wall(WideMesh& mesh, const Vec3& corner_m, const Vec3& along_m, const Vec3& up_m, const Vec3& bend_m) {
+  const std::uint32_t a = mesh.add_vertex(corner_m), b = mesh.add_vertex(corner_m + along_m);
+  const std::uint32_t c = mesh.add_vertex(corner_m + along_m + up_m);
+  const std::uint32_t d = mesh.add_vertex(corner_m + up_m + bend_m);
+  mesh.add(a, b, c);
+  mesh.add(a, c, d);
+}
+
+/// Houses on a plain: walls in pairs of triangles, party walls that lie in each other, and roofs that are bent a
+/// little. The objects: one half and the other.
+struct Town {
+  WideMesh mesh;
+  std::array<std::uint32_t, 2> object_first{0, 0};
+  WideBvh tree;
+  BinaryIndex twin;
+
+  Town(std::uint64_t seed, int houses) {
+    RandomStream random(seed);
+    add_wall(mesh, Vec3(-300, -300, 0), Vec3(600, 0, 0), Vec3(0, 600, 0), Vec3(0));
+    for (int house = 0; house < houses; ++house) {
+      if (house == houses / 2) object_first[1] = static_cast<std::uint32_t>(mesh.triangles.size());
+      add_house(random);
+    }
+    const std::vector<Aabb<double>> boxes = mesh.boxes();
+    tree.build_objects(mesh.view(), boxes, object_first);
+    twin.build(mesh.view(), boxes, object_first);
+  }
+
+ private:
+  void add_house(RandomStream& random) {
+    const Vec3 at_m(std::round(between(random, -15, 15)) * 12.0, std::round(between(random, -15, 15)) * 12.0, 0.0);
+    const Vec3 size_m(12.0, 12.0, between(random, 5, 30)), x(size_m.x, 0, 0), y(0, size_m.y, 0), z(0, 0, size_m.z);
+    add_wall(mesh, at_m, x, z, Vec3(0));
+    add_wall(mesh, at_m, y, z, Vec3(0));
+    add_wall(mesh, at_m + y, x, z, Vec3(0));
+    add_wall(mesh, at_m + x, y, z, Vec3(0));
+    add_wall(mesh, at_m + z, x, y, Vec3(0, 0, between(random, 0.0, 1e-5)));
+  }
+};
+
+constexpr bool (*is_odd)(const void*, const TriangleHit&) = [](const void*, const TriangleHit& hit) {
+  return hit.triangle % 2 == 1;
+};
+
+/// A sphere of rays from a point, as a receiver launches them.
+std::vector<RayQuery> sphere(const Vec3& from_m, std::uint32_t rays, RandomStream& random) {
+  const Mat3 turned = random_rotation(random);
+  std::vector<RayQuery> queries;
+  for (const Vec3& direction : launch_directions(rays)) queries.push_back({{from_m, turned * direction}});
+  return queries;
+}
+
+struct Work {
+  TraversalCounters together, alone;
+};
+
+/// Asks all at once, one by one, and the twin; in blocks, so that runs are cut anywhere.
+Work check(const Town& town, std::span<const RayQuery> queries, std::size_t block) {
+  Work work;
+  std::vector<std::optional<TriangleHit>> hits(queries.size());
+  for (std::size_t first = 0; first < queries.size(); first += block) {
+    const std::size_t count = std::min(block, queries.size() - first);
+    town.tree.closest_hits(queries.subspan(first, count), std::span(hits).subspan(first, count), &work.together);
+  }
+  for (std::size_t ray = 0; ray < queries.size(); ++ray) {
+    CAPTURE(ray);
+    const RayQuery& query = queries[ray];
+    REQUIRE(hits[ray] == town.tree.closest_hit(query.ray, query.filter, &work.alone));
+    REQUIRE(hits[ray] == town.twin.closest_hit(query.ray, query.filter));
+  }
+  return work;
+}
+
+}  // namespace
+
+TEST_CASE("a sphere of rays meets what its rays meet one by one, for a quarter of their steps") {
+  RandomStream random(1);
+  for (const std::uint32_t rays : {30U, 200U, 2000U, 20000U}) {
+    CAPTURE(rays);
+    const Town town(rays, 150);
+    Work all;
+    for (const Vec3& from_m : {Vec3(3, 2, 1.5), Vec3(-40, 70, 40), Vec3(100, -200, 900)}) {
+      const Work work = check(town, sphere(from_m, rays, random), 1024);
+      all.together += work.together;
+      all.alone += work.alone;
+    }
+    if (rays >= 2000) CHECK(4 * all.together.nodes_visited < all.alone.nodes_visited);
+  }
+}
+
+TEST_CASE("rays of a sphere from a wall, from a corner and from far away") {
+  RandomStream random(2);
+  const Town town(2, 100);
+  const Vec3 corner_m = town.mesh.vertices[8], next_m = town.mesh.vertices[9], above_m = town.mesh.vertices[10];
+  for (const Vec3& from_m : {corner_m, 0.5 * (corner_m + next_m), 0.3 * corner_m + 0.3 * next_m + 0.4 * above_m,
+                             Vec3(0, 0, 0), Vec3(1e4, 2e3, 5e3), Vec3(1e7, 0, 1e6), Vec3(1e9, 1e9, 1e9)}) {
+    CAPTURE(from_m.x);
+    check(town, sphere(from_m, 2000, random), 700);
+  }
+  // From far away, towards the houses.
+  std::vector<RayQuery> queries;
+  for (int ray = 0; ray < 2000; ++ray) {
+    const Vec3 to_m(between(random, -200, 200), between(random, -200, 200), between(random, 0, 30));
+    queries.push_back({{Vec3(3e5, 2e5, 1e5), to_m - Vec3(3e5, 2e5, 1e5)}});
+  }
+  check(town, queries, 2000);
+}
+
+TEST_CASE("rays of a packet end where each of them ends, and each has its own filter") {
+  RandomStream random(3);
+  const Town town(3, 120);
+  for (int trial = 0; trial < 30; ++trial) {
+    CAPTURE(trial);
+    const Vec3 from_m(between(random, -150, 150), between(random, -150, 150), between(random, 1, 60));
+    std::vector<RayQuery> queries = sphere(from_m, trial % 2 == 0 ? 500 : 3000, random);
+    for (RayQuery& query : queries) {
+      const double kind = random.uniform();
+      if (kind < 0.2) query.ray.t_max = std::pow(10.0, between(random, -2.0, 3.0));
+      if (kind > 0.9) query.ray.t_max = trial % 3 == 0 ? 0.0 : 1e300;
+      if (trial % 3 == 1 && kind > 0.1 && kind < 0.3) query.ray.t_min = between(random, 0.0, 30.0);
+      if (trial % 5 == 2) query.ray.direction *= std::pow(10.0, between(random, -8.0, 8.0));
+      if (trial % 4 == 0) continue;
+      if (trial % 4 == 3 || random.uniform() < 0.3) {
+        query.filter.counts = is_odd;
+        query.filter.sure_from = static_cast<float>(trial % 4 == 3 ? 20.0 : between(random, 0.0, 60.0));
+        query.filter.sure_to = static_cast<float>(trial % 8 == 3 ? 50.0 : between(random, 40.0, 400.0));
+      }
+      if (random.uniform() < 0.1) query.filter.ignored_objects[random.next() % 2] = random.next() % 2 == 0 ? 0U : 1U;
+    }
+    check(town, queries, 1 + static_cast<std::size_t>(random.next() % 1500));
+  }
+}
+
+TEST_CASE("rays that are no packet: in any order, from two points in turns, with numbers that lead nowhere") {
+  RandomStream random(4);
+  const Town town(4, 80);
+  std::vector<RayQuery> queries = sphere(Vec3(5, 5, 2), 3000, random);
+  for (std::size_t ray = queries.size(); ray > 1; --ray) {
+    std::swap(queries[ray - 1], queries[random.next() % ray]);
+  }
+  check(town, queries, 1024);
+  queries = sphere(Vec3(5, 5, 2), 2000, random);
+  for (std::size_t ray = 0; ray < queries.size(); ray += 3 + random.next() % 40) queries[ray].ray.origin.z += 1.0;
+  check(town, queries, 333);
+  const double infinite = dcem_test::infinity, nothing = dcem_test::not_a_number;
+  queries = sphere(Vec3(5, 5, 2), 2000, random);
+  for (std::size_t ray = 0; ray < queries.size(); ray += 1 + random.next() % 20) {
+    Ray<double>& own = queries[ray].ray;
+    const std::array<double, 6> odd{0.0, nothing, infinite, 1e-30, 1e30, -1.0};
+    const double number = odd[random.next() % odd.size()];
+    if (ray % 4 == 0) own.direction[static_cast<int>(ray % 3)] = number;
+    if (ray % 4 == 1) own.direction *= number;
+    if (ray % 4 == 2) own.t_max = number;
+    if (ray % 4 == 3) own.origin[static_cast<int>(ray % 3)] = number;
+  }
+  check(town, queries, 512);
+}
+
+TEST_CASE("rays of a packet along a wall that is bent a little") {
+  RandomStream random(5);
+  for (int trial = 0; trial < 400; ++trial) {
+    CAPTURE(trial);
+    WideMesh mesh;
+    add_wall(mesh, Vec3(0), Vec3(10, 0, 0), Vec3(0, 0, 10), Vec3(0, between(random, -1e-3, 1e-3), 0));
+    const std::vector<Aabb<double>> boxes = mesh.boxes();
+    WideBvh tree;
+    tree.build(mesh.view(), boxes);
+    BinaryIndex twin;
+    twin.build(mesh.view(), boxes, std::vector<std::uint32_t>{0});
+    const Vec3 from_m(between(random, -20, -1), between(random, -2e-3, 2e-3), between(random, -5, 15));
+    std::vector<RayQuery> queries;
+    for (int ray = 0; ray < 64; ++ray) {
+      const Vec3 to_m(between(random, 0, 10), between(random, -1e-3, 1e-3), between(random, 0, 10));
+      queries.push_back({{from_m, to_m - from_m}});
+    }
+    std::vector<std::optional<TriangleHit>> hits(queries.size());
+    tree.closest_hits(queries, hits);
+    for (std::size_t ray = 0; ray < queries.size(); ++ray) {
+      CAPTURE(ray);
+      REQUIRE(hits[ray] == tree.closest_hit(queries[ray].ray));
+      REQUIRE(hits[ray] == twin.closest_hit(queries[ray].ray));
+    }
+  }
+}
+
+TEST_CASE("rays that stand behind a packet, and are not of it, do not add to its work") {
+  RandomStream random(6);
+  const Town town(6, 150);
+  const Vec3 from_m(4, 3, 25);
+  const auto towards = [&](double x, std::size_t count) {
+    std::vector<RayQuery> queries;
+    while (queries.size() < count) {
+      queries.push_back({{from_m, Vec3(x, 0.1 * random.uniform(), 0.1 * random.uniform())}});
+    }
+    return queries;
+  };
+  for (std::size_t count = 4; count <= 24; ++count) {
+    CAPTURE(count);
+    std::vector<RayQuery> queries = towards(1.0, count);
+    const std::vector<RayQuery> behind = towards(-1.0, 16);
+    TraversalCounters apart = check(town, queries, 100).together;
+    apart += check(town, behind, 100).together;
+    queries.insert(queries.end(), behind.begin(), behind.end());
+    CHECK(check(town, queries, 100).together == apart);
+  }
+}
+
+TEST_CASE("of walls that lie in each other each ray of a packet meets the one of the smaller number") {
+  WideMesh mesh;
+  for (int wall = 0; wall < 40; ++wall) add_wall(mesh, Vec3(-5, 10, -5), Vec3(10, 0, 0), Vec3(0, 0, 10), Vec3(0));
+  const std::vector<Aabb<double>> boxes = mesh.boxes();
+  WideBvh tree;
+  tree.build(mesh.view(), boxes);
+  std::vector<RayQuery> queries;
+  for (int ray = 0; ray < 256; ++ray) {
+    queries.push_back({{Vec3(0.0), Vec3(0.4 * (ray % 16 - 7.5) / 8, 1.0, 0.4 * (ray / 16 - 7.5) / 8)}});
+  }
+  std::vector<std::optional<TriangleHit>> hits(queries.size());
+  tree.closest_hits(queries, hits);
+  std::size_t count = 0;
+  for (std::size_t ray = 0; ray < hits.size(); ++ray) {
+    CAPTURE(ray);
+    REQUIRE(hits[ray]);
+    CHECK(hits[ray]->triangle < 2);
+    count += hits[ray]->triangle;
+  }
+  CHECK(count > 0);
+  CHECK(count < hits.size());
+}
+
+}  // namespace test_packet
