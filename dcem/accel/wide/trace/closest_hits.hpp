@@ -1,6 +1,6 @@
 #pragma once
-/// Closest hits of many rays: dense neighbours from one point go together, others from one point one by one, and rays
-/// from many points as a stream.
+/// Closest hits of many rays: neighbours from one point go together, others from one point one by one, and rays from
+/// many points as a stream.
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -33,10 +33,10 @@ inline void closest_hits(const WideArrays& tree, std::span<const RayQuery> queri
   std::size_t first_alone = 0, next = 0;
   const auto trace_alone = [&] {
     while (first_alone < next) {
-      const auto rest = queries.subspan(first_alone, next - first_alone);
+      const std::span<const RayQuery> rest(queries.data() + first_alone, next - first_alone);
       const std::size_t count = unlike_neighbours(rest);
       if (count >= ClosestStream::least) {
-        ClosestStream(tree, rest.first(count), hits.subspan(first_alone, count), counters).run();
+        ClosestStream(tree, {rest.data(), count}, {hits.data() + first_alone, count}, counters).run();
         first_alone += count;
         continue;
       }
@@ -50,7 +50,8 @@ inline void closest_hits(const WideArrays& tree, std::span<const RayQuery> queri
   };
   RayPacket packet(tree, counters);
   while (next < queries.size()) {
-    const std::size_t count = packet.gather(queries.subspan(next), hits.subspan(next));
+    const std::size_t count =
+        packet.gather({queries.data() + next, queries.size() - next}, {hits.data() + next, hits.size() - next});
     if (count >= RayPacket::least) {
       trace_alone();
       packet.trace();

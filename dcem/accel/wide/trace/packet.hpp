@@ -41,9 +41,9 @@ class RayPacket {
     if (queries.size() < least || queries[1].ray.origin != queries[0].ray.origin) return 1;
     const std::size_t count = rays_.gather(tree_, queries);
     if (count < least || !cone_.surround(rays_)) return std::min(count, least - 1);
-    hits_ = hits.first(count);
-    queries_ = queries.first(count);
-    next_queries_ = queries.subspan(count, std::min(count, queries.size() - count));
+    hits_ = {hits.data(), count};
+    queries_ = {queries.data(), count};
+    next_queries_ = {queries.data() + count, std::min(count, queries.size() - count)};
     return count;
   }
 
@@ -67,10 +67,10 @@ class RayPacket {
     std::uint32_t height = 0, parent = 0, lane = 0;
     float reach_m = rays_.farthest_limit_m();
     WideChild current = WideChild::node(0);
-    const char* ahead = reinterpret_cast<const char*>(next_queries_.data());
+    std::size_t fetched = 0;
     while (true) {
       ++counters_.nodes_visited;
-      fetch_some(ahead);
+      fetch_some(fetched);
       const bool is_root = current == WideChild::node(0);
       const RayMask active = is_root ? 1U : rays_.that_meet(tree_.nodes[parent], lane);
       if (active != 0 && current.is_leaf()) {
@@ -133,10 +133,11 @@ class RayPacket {
   }
 
   /// Asks for the memory of some of the next rays: a few lines a step, or the steps would wait for them.
-  [[gnu::always_inline]] void fetch_some(const char*& ahead) const {
-    constexpr std::size_t line = 64, lines_a_step = 8;
-    const auto* const end = reinterpret_cast<const char*>(next_queries_.data() + next_queries_.size());
-    for (std::size_t at = 0; at < lines_a_step && ahead < end; ++at, ahead += line) __builtin_prefetch(ahead);
+  [[gnu::always_inline]] void fetch_some(std::size_t& fetched) const {
+    constexpr std::size_t line = 64, most = 8 * line;
+    const auto* const bytes = reinterpret_cast<const char*>(next_queries_.data());
+    const std::size_t end = std::min(fetched + most, next_queries_.size() * sizeof(RayQuery));
+    for (; fetched < end; fetched += line) __builtin_prefetch(bytes + fetched);
   }
 
   const WideArrays& tree_;

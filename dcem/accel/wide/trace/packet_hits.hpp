@@ -35,7 +35,9 @@ class PacketHits {
     side_ = {};
   }
 
-  /// Takes over what eight rays have of a quad, of those in `met`, and lowers their limits. Returns whether it did.
+  /// Takes over what eight rays have of a quad, and lowers their limits. Returns whether it did. Of rays that are not
+  /// in `met` only sure hits: one that lies beyond a limit, or t_max, stands for nothing that is nearer, and `decide`
+  /// does not take it.
   [[gnu::always_inline]] bool take(std::uint32_t quad, std::uint32_t met, const RowHits& hits, std::size_t first_ray,
                                    PacketRays& rays) {
     const Mask8 nearest = hits.certain & (hits.first > Float8::load(&rays.sure_from[first_ray])) &

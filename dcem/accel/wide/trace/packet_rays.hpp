@@ -54,7 +54,7 @@ class PacketRays {
     const Float4 distance = absolute(origin_m);
     extent_m = tree.extent_m;
     farthest_m = std::max(distance[0], std::max(distance[1], distance[2]));
-    if (!(farthest_m <= std::min(1e12F, 1e5F * extent_m))) return 1;
+    if (!(farthest_m <= 1e5F * extent_m && smallest_m <= extent_m && farthest_m + extent_m <= largest_m)) return 1;
     const std::size_t most = std::min(queries.size(), capacity);
     asked = 0;
     for (std::size_t taken = simd_lanes; taken == simd_lanes && asked < most; asked += taken) {
@@ -102,6 +102,9 @@ class PacketRays {
   /// Of the angle to the first ray, 39 degrees: wider packets test more boxes that few rays meet.
   static constexpr float least_cosine_squared = 0.6F;
   static constexpr float largest_t = 1e30F;  ///< what single precision counts up to
+  /// Of scenes, and of directions along their longest axis: products of two lengths and a direction, and of four
+  /// directions, are numbers that single precision has.
+  static constexpr float smallest_m = 1e-10F, largest_m = 2e12F, shortest = 1e-9F, longest = 1e9F;
 
   using Long4 = std::int64_t __attribute__((vector_size(32)));
   template <typename Lanes>
@@ -112,7 +115,8 @@ class PacketRays {
   /// The next rays, up to eight, side by side: all of them where it is `full`. Returns how many belong to the packet.
   template <bool full>
   [[gnu::always_inline]] std::size_t gather_eight(std::span<const RayQuery> queries) {
-    static_assert(sizeof(Ray<double>) == 64 && sizeof(HitFilter) == 32 && offsetof(RayQuery, filter) == 64);
+    static_assert(sizeof(Ray<double>) == 64 && offsetof(RayQuery, filter) == 64 && sizeof(RayQuery) == 96);
+    constexpr bool fills_register = sizeof(HitFilter) == 32;  // where pointers have eight bytes
     const std::size_t present = full ? simd_lanes : queries.size() - asked;
     Long4 own_origin, own_filter;
     read(&queries.front().ray, own_origin);
@@ -137,11 +141,11 @@ class PacketRays {
     const std::array<Float8, 4> turned = simd::turned(places);
     put_directions(turned);
     put(limit, asked, simd::minimum(turned[3], Float8(largest_t)) * Float8(1.0F + 8 * rounding) + Float8(0.0F));
-    if ((other_filter[0] | other_filter[1] | other_filter[3]) == 0) {
+    if (fills_register && (other_filter[0] | other_filter[1] | other_filter[3]) == 0) {
       put(sure_from, asked, Float8(surely_from(queries.front().filter)));
       put(sure_to, asked, Float8(surely_to(queries.front().filter)));
     } else {
-      put_filters(queries.subspan(asked, present));
+      put_filters({queries.data() + asked, present});
     }
     std::uint32_t others = those_apart() | 0x100U >> (simd_lanes - present);
     if ((strange[0] | strange[1] | strange[2]) != 0) others |= strangers_among(queries, present);
@@ -149,7 +153,8 @@ class PacketRays {
   }
 
   [[gnu::always_inline]] void put_directions(const std::array<Float8, 4>& ways) {
-    // A quotient by nothing is infinite, on both sides alike, or no number, which neither minimum nor maximum keeps.
+    // A quotient by nothing is infinite: a ray beside a box meets both planes at the same infinity, one between them at
+    // both. On a plane it would be no number, but planes are moved outwards before.
     for (std::size_t axis = 0; axis < 3; ++axis) {
       put(direction[axis], asked, ways[axis]);
       put(reciprocal[axis], asked, Float8(1.0F) / ways[axis]);
@@ -158,8 +163,7 @@ class PacketRays {
         simd::maximum(simd::absolute(ways[0]), simd::maximum(simd::absolute(ways[1]), simd::absolute(ways[2]))));
   }
 
-  /// Bit i: of the next eight, ray i has a direction far from that of the first ray, or none that single precision
-  /// follows.
+  /// Bit i: of the next eight, ray i has a direction far from that of the first ray, or one too long or too short.
   [[gnu::always_inline]] std::uint32_t those_apart() const {
     std::array<Float8, 3> first, own;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -169,10 +173,10 @@ class PacketRays {
     const auto product = [](const auto& one, const auto& other) __attribute__((always_inline)) {
       return one[0] * other[0] + one[1] * other[1] + one[2] * other[2];
     };
-    const Float8 along = product(first, own), longest = Float8::load(&size[asked]);
+    const Float8 along = product(first, own), length = Float8::load(&size[asked]);
     const Float8 least = Float8(least_cosine_squared) * product(first, first) * product(own, own);
-    const Mask8 is_close = (along > Float8(0.0F)) & (least <= along * along) & (longest > Float8(1e-12F)) &
-                           (longest < Float8(1e12F));  // false for what is no number
+    const Mask8 is_close = (along > Float8(0.0F)) & (least <= along * along) & (length > Float8(shortest)) &
+                           (length < Float8(longest));  // false for what is no number
     return is_close.bits() ^ 0xffU;
   }
 
@@ -201,12 +205,13 @@ class PacketRays {
   }
   static float surely_to(const HitFilter& filter) { return filter.counts != nullptr ? filter.sure_to : largest_t; }
 
-  /// A ray in the place of another.
+  /// A ray in a place that is left, there for the cone alone: it ends before it begins.
   void repeat(std::size_t from, std::size_t to) {
     for (Numbers* const row : {&direction[0], &direction[1], &direction[2], &reciprocal[0], &reciprocal[1],
-                               &reciprocal[2], &size, &limit, &sure_from, &sure_to}) {
+                               &reciprocal[2], &size, &sure_from, &sure_to}) {
       (*row)[to] = (*row)[from];
     }
+    limit[to] = -1.0F;
   }
 };
 

@@ -44,13 +44,14 @@ struct Town {
   WideBvh tree;
   BinaryIndex twin;
 
-  Town(std::uint64_t seed, int houses) {
+  Town(std::uint64_t seed, int houses, double scale = 1.0) {
     RandomStream random(seed);
     add_wall(mesh, Vec3(-300, -300, 0), Vec3(600, 0, 0), Vec3(0, 600, 0), Vec3(0));
     for (int house = 0; house < houses; ++house) {
       if (house == houses / 2) object_first[1] = static_cast<std::uint32_t>(mesh.triangles.size());
       add_house(random);
     }
+    for (Vec3& vertex_m : mesh.vertices) vertex_m *= scale;
     const std::vector<Aabb<double>> boxes = mesh.boxes();
     tree.build_objects(mesh.view(), boxes, object_first);
     twin.build(mesh.view(), boxes, object_first);
@@ -68,8 +69,10 @@ struct Town {
   }
 };
 
-constexpr bool (*is_odd)(const void*, const TriangleHit&) = [](const void*, const TriangleHit& hit) {
-  return hit.triangle % 2 == 1;
+/// Of three triangles the one that the context names, so that each ray is asked about with its own.
+constexpr std::array<std::uint32_t, 3> thirds{0, 1, 2};
+constexpr bool (*is_of_a_third)(const void*, const TriangleHit&) = [](const void* context, const TriangleHit& hit) {
+  return hit.triangle % 3 == *static_cast<const std::uint32_t*>(context);
 };
 
 /// A sphere of rays from a point, as a receiver launches them.
@@ -151,7 +154,8 @@ TEST_CASE("rays of a packet end where each of them ends, and each has its own fi
       if (trial % 5 == 2) query.ray.direction *= std::pow(10.0, between(random, -8.0, 8.0));
       if (trial % 4 == 0) continue;
       if (trial % 4 == 3 || random.uniform() < 0.3) {
-        query.filter.counts = is_odd;
+        query.filter.counts = is_of_a_third;
+        query.filter.context = &thirds[random.next() % 3];
         query.filter.sure_from = static_cast<float>(trial % 4 == 3 ? 20.0 : between(random, 0.0, 60.0));
         query.filter.sure_to = static_cast<float>(trial % 8 == 3 ? 50.0 : between(random, 40.0, 400.0));
       }
@@ -185,6 +189,66 @@ TEST_CASE("rays that are no packet: in any order, from two points in turns, with
   }
   check(town, queries, 512);
 }
+
+TEST_CASE("spheres of rays in scenes of any size, with directions of any length") {
+  RandomStream random(7);
+  for (const double scale : {1e-15, 1e-12, 1e-9, 1e-3, 1e6, 1e9, 3e10, 3e12}) {
+    CAPTURE(scale);
+    const Town town(7, 60, scale);
+    for (const double length : {1.0, 1e-12, 1e-10, 3e-9, 1e-4, 1e5, 3e8, 1e10, 1e12}) {
+      CAPTURE(length);
+      std::vector<RayQuery> queries = sphere(scale * Vec3(4, 3, 25), 400, random);
+      for (RayQuery& query : queries) query.ray.direction *= length * between(random, 0.5, 1.0);
+      check(town, queries, 400);
+    }
+  }
+}
+
+TEST_CASE("rays of a packet end at a hit, or as little before it or after it as numbers allow") {
+  RandomStream random(8);
+  const Town town(8, 100);
+  std::vector<RayQuery> queries = sphere(Vec3(4, 3, 25), 3000, random);
+  for (RayQuery& query : queries) {
+    const std::optional<TriangleHit> hit = town.twin.closest_hit(query.ray, {});
+    if (!hit) continue;
+    const double towards = random.next() % 3 == 0 ? 0.0 : dcem_test::infinity;
+    query.ray.t_max = random.next() % 3 == 0 ? hit->t : std::nextafter(hit->t, towards);
+  }
+  check(town, queries, 3000);
+}
+
+TEST_CASE("rays that ignore an object which they do not meet take the steps of rays that ignore none") {
+  RandomStream random(9);
+  const Town town(9, 150);
+  std::vector<RayQuery> queries = sphere(Vec3(4, 3, 25), 1999, random);
+  const TraversalCounters expected = check(town, queries, 45).together;
+  for (RayQuery& query : queries) query.filter.ignored_objects[1] = 77;
+  CHECK(check(town, queries, 45).together.nodes_visited == expected.nodes_visited);
+}
+
+#if defined(DCEM_ENGINE)
+
+TEST_CASE("packets of all sizes: every level of instructions gives the same answers for the same work") {
+  const InstructionSet before = instruction_set();
+  RandomStream random(10);
+  const Town town(10, 150);
+  const std::vector<RayQuery> queries = sphere(Vec3(4, 3, 25), 5000, random);
+  for (const std::size_t block : {64U, 63U, 41U, 1000U}) {
+    CAPTURE(block);
+    select_instruction_set(InstructionSet::baseline);
+    const Work expected = check(town, queries, block);
+    for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+      if (!is_supported(set)) continue;
+      select_instruction_set(set);
+      const Work work = check(town, queries, block);
+      CHECK(work.together == expected.together);
+      CHECK(work.alone == expected.alone);
+    }
+  }
+  select_instruction_set(before);
+}
+
+#endif
 
 TEST_CASE("rays of a packet along a wall that is bent a little") {
   RandomStream random(5);
