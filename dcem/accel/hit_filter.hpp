@@ -25,7 +25,8 @@ struct TriangleHit {
 struct HitFilter {
   static constexpr std::uint32_t no_object = 0xffffffffU;
 
-  /// A hit with sure_from < t < sure_to counts without being asked about (units of the ray's direction).
+  /// A hit with sure_from < t < sure_to counts without being asked about (units of the ray's direction). To be rounded
+  /// towards each other: what is asked about for nothing is only slower.
   float sure_from = -std::numeric_limits<float>::infinity();
   float sure_to = std::numeric_limits<float>::infinity();
   /// Whether any other hit counts. Called with the number of a triangle and its exact t. Null: it does.

@@ -79,7 +79,7 @@ class LegFilter {
     return static_cast<const LegFilter*>(context)->counts(hit);
   }
 
-  /// No smaller single-precision number, up to what these reach.
+  /// In single precision, and no smaller than the value, up to 1e38.
   static float rounded_up(double value) {
     const auto rounded = static_cast<float>(std::clamp(value, -1e38, 1e38));
     return rounded + std::abs(rounded) * 0x1p-22F + 1e-37F;

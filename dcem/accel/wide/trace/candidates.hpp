@@ -99,6 +99,22 @@ class ClosestCandidates {
     return best;
   }
 
+  /// Takes over where the ray meets a quad, if that is nearer. The answer is the same whatever is known.
+  [[gnu::always_inline]] static void look_at(const Candidate& candidate, const WideArrays& tree, const Ray<double>& ray,
+                                             TriangleHit& best, TraversalCounters& counters) {
+    ++counters.primitives_tested;
+    const QuadPlanes& planes = tree.planes[candidate.quad];
+    const TrianglePlane& plane = planes.side[candidate.certainty == QuadCertainty::second ? 1 : 0];
+    const bool is_known =
+        candidate.certainty == QuadCertainty::met ? plane.is_alone() : candidate.certainty != QuadCertainty::undecided;
+    if (is_known && plane.is_steep(ray)) {
+      const double t = plane.t_of(ray);
+      if (is_in_range(t, ray)) take_if_nearer({t, plane.triangle}, best);
+    } else if (const auto hit = quad_hit(tree, candidate.quad, ray, HitFilter{})) {
+      take_if_nearer(*hit, best);
+    }
+  }
+
  private:
   void drop_beyond(float limit) {
     std::uint32_t kept = 0;
@@ -116,22 +132,6 @@ class ClosestCandidates {
     if (!hit) return;
     take_if_nearer(*hit, best_);
     limit = std::min(limit, WideRay::padded(best_.t));
-  }
-
-  /// Takes over where the ray meets a quad, if that is nearer. The answer is the same whatever is known.
-  [[gnu::always_inline]] void look_at(const Candidate& candidate, const WideArrays& tree, const Ray<double>& ray,
-                                      TriangleHit& best, TraversalCounters& counters) {
-    ++counters.primitives_tested;
-    const QuadPlanes& planes = tree.planes[candidate.quad];
-    const TrianglePlane& plane = planes.side[candidate.certainty == QuadCertainty::second ? 1 : 0];
-    const bool is_known =
-        candidate.certainty == QuadCertainty::met ? plane.is_alone() : candidate.certainty != QuadCertainty::undecided;
-    if (is_known && plane.is_steep(ray)) {
-      const double t = plane.t_of(ray);
-      if (is_in_range(t, ray)) take_if_nearer({t, plane.triangle}, best);
-    } else if (const auto hit = quad_hit(tree, candidate.quad, ray, HitFilter{})) {
-      take_if_nearer(*hit, best);
-    }
   }
 
   std::array<Candidate, 24> held_;

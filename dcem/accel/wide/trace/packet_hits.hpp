@@ -59,23 +59,19 @@ class PacketHits {
   [[gnu::always_inline]] TriangleHit decide(std::uint32_t index, float limit) {
     if ((others_ >> index & 1U) != 0) return decide_among(index, limit);
     if (!is_held(index)) return no_hit;
-    const Ray<double>& ray = queries_[index].ray;
-    const TrianglePlane& plane = tree_.planes[quad_of(index)].side[certainty(index) == QuadCertainty::second ? 1 : 0];
-    const bool is_known = certainty(index) != QuadCertainty::met || plane.is_alone();
-    if (!is_known || !plane.is_steep(ray)) return decide_among(index, limit);
-    ++counters_.primitives_tested;
-    const double t = plane.t_of(ray);
-    return is_in_range(t, ray) ? TriangleHit{t, plane.triangle} : no_hit;
+    TriangleHit best = no_hit;
+    ClosestCandidates::look_at(held(index), tree_, queries_[index].ray, best, counters_);
+    return best;
   }
 
  private:
   static constexpr float nowhere = std::numeric_limits<float>::infinity();
 
   bool is_held(std::uint32_t ray) const { return first_[ray] < nowhere; }
-  std::uint32_t quad_of(std::uint32_t ray) const { return std::bit_cast<std::uint32_t>(quad_[ray]); }
-  /// Of what is held: the quad is surely met.
-  QuadCertainty certainty(std::uint32_t ray) const {
-    return static_cast<QuadCertainty>(1 + (side_[0] >> ray & 1U) + 2 * (side_[1] >> ray & 1U));
+  /// The quad is surely met.
+  ClosestCandidates::Candidate held(std::uint32_t ray) const {
+    const auto certainty = static_cast<QuadCertainty>(1 + (side_[0] >> ray & 1U) + 2 * (side_[1] >> ray & 1U));
+    return {std::bit_cast<std::uint32_t>(quad_[ray]), first_[ray], certainty};
   }
 
   [[gnu::always_inline]] void replace(std::uint32_t quad, const Mask8& which, RayMask bits, const RowHits& hits,
@@ -108,7 +104,7 @@ class PacketHits {
   [[gnu::noinline]] TriangleHit decide_among(std::uint32_t index, float limit) {
     const Ray<double>& ray = queries_[index].ray;
     ClosestCandidates& all = list(index);
-    if (is_held(index)) all.add({quad_of(index), first_[index], certainty(index)}, tree_, ray, limit, counters_);
+    if (is_held(index)) all.add(held(index), tree_, ray, limit, counters_);
     return all.decide(tree_, ray, limit, counters_);
   }
 
