@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 
 #include "dcem/core/simd.hpp"
 
@@ -29,6 +30,13 @@ class LaneKeys {
                [](auto& part, const auto& lane) { part = (part & ~lane_bits) | lane; });
   }
 
+  /// Eight keys that lie one after another in memory.
+  [[gnu::always_inline]] static LaneKeys load(const std::uint32_t* keys) {
+    LaneKeys result;
+    std::memcpy(&result.keys_, keys, sizeof result.keys_);
+    return result;
+  }
+
   /// How many keys are smaller, for each lane: its place when all are in order.
   [[gnu::always_inline]] std::array<std::int32_t, simd_lanes> ranks() const {
     const auto all = std::bit_cast<std::array<std::uint32_t, simd_lanes>>(keys_);
@@ -51,6 +59,14 @@ class LaneKeys {
     const Uint4 two = smaller(four, __builtin_shufflevector(four, four, 2, 3, 2, 3));
     return smaller(two, __builtin_shufflevector(two, two, 1, 1, 1, 1))[0];
   }
+  /// Bit i: the number of lane i may be within a limit from zero on.
+  [[gnu::always_inline]] std::uint32_t within(float limit) const {
+    Mask8 mask;
+    mask.lanes.with(keys_, [bits = std::bit_cast<std::uint32_t>(limit)](auto& part, const auto& key) {
+      part = (key & ~lane_bits) <= bits;
+    });
+    return mask.bits();
+  }
   /// The lane of a key waits no longer.
   [[gnu::always_inline]] void remove(std::uint32_t key) {
     keys_.each([key](auto& part) { part |= static_cast<detail::UintPart>(part == key); });
@@ -63,6 +79,8 @@ class LaneKeys {
   static float number(std::uint32_t key) {
     return std::bit_cast<float>(key & ~lane_bits);
   }
+  /// Of a lane that does not wait.
+  static constexpr std::uint32_t none = 0xffffffffU;
   /// False where the number of a key is surely above a limit from zero on.
   static bool may_be_within(std::uint32_t key, float limit) {
     return (key & ~lane_bits) <= std::bit_cast<std::uint32_t>(limit);

@@ -74,6 +74,23 @@ TEST_CASE("a lane whose number is within a limit is never left out, and one well
   }
 }
 
+TEST_CASE("which of eight keys are within a limit is what each says by itself, in memory as well") {
+  RandomStream random(6);
+  for (int trial = 0; trial < 20000; ++trial) {
+    std::array<std::uint32_t, simd_lanes> each;
+    for (std::uint32_t& key : each) {
+      const Lanes numbers{some_number(random), infinite, infinite, infinite, infinite, infinite, infinite, infinite};
+      key = random.uniform() < 0.2 ? LaneKeys::none : LaneKeys(Float8(numbers)).least();
+    }
+    const float limit = trial % 3 == 0 ? LaneKeys::number(each[trial % 7]) : some_number(random);
+    const std::uint32_t within = LaneKeys::load(each.data()).within(limit >= 0.0F ? limit : infinite);
+    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+      REQUIRE((within >> lane & 1U) ==
+              (LaneKeys::may_be_within(each[lane], limit >= 0.0F ? limit : infinite) ? 1U : 0U));
+    }
+  }
+}
+
 TEST_CASE("later and earlier agree with the numbers, from zero on and in what is below zero") {
   RandomStream random(7);
   for (int trial = 0; trial < 20000; ++trial) {

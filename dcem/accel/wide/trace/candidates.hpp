@@ -36,6 +36,25 @@ inline constexpr TriangleHit no_hit{std::numeric_limits<double>::infinity()};
   }
 }
 
+/// The nearest hit on a quad that passes a filter. Where it is known which triangle is met, that triangle's plane
+/// tells.
+[[gnu::always_inline]] inline TriangleHit hit_on(const WideArrays& tree, std::uint32_t quad, QuadCertainty certainty,
+                                                 const Ray<double>& ray, const HitFilter& filter) {
+  const QuadPlanes& planes = tree.planes[quad];
+  const TrianglePlane& plane = planes.side[certainty == QuadCertainty::second ? 1 : 0];
+  const bool is_known = certainty == QuadCertainty::met ? plane.is_alone() : certainty != QuadCertainty::undecided;
+  if (is_known && plane.is_steep(ray)) {
+    const TriangleHit hit{plane.t_of(ray), plane.triangle};
+    return is_in_range(hit.t, ray) && filter.passes(hit) ? hit : no_hit;
+  }
+  return quad_hit(tree, quad, ray, filter).value_or(no_hit);
+}
+/// The same, kept out of the walks, which it would slow down although it is seldom called.
+[[gnu::noinline]] inline TriangleHit asked_hit_on(const WideArrays& tree, std::uint32_t quad, QuadCertainty certainty,
+                                                  const Ray<double>& ray, const HitFilter& filter) {
+  return hit_on(tree, quad, certainty, ray, filter);
+}
+
 /// The closest hit of one ray, as far as it is known.
 class ClosestCandidates {
  public:
@@ -69,7 +88,7 @@ class ClosestCandidates {
                                     const Ray<double>& ray, const HitFilter& filter, float& limit,
                                     TraversalCounters& counters) {
     if (filter.counts != nullptr && !filter.is_sure(static_cast<double>(candidate.first), static_cast<double>(last))) {
-      return ask(tree, ray, filter, candidate.quad, limit, counters);
+      return ask(tree, ray, filter, candidate, limit, counters);
     }
     // The plane's t may lie beyond what is asked for by a rounding: then it shortens nothing.
     const bool is_certain = candidate.certainty != QuadCertainty::undecided;
@@ -103,16 +122,7 @@ class ClosestCandidates {
   [[gnu::always_inline]] static void look_at(const Candidate& candidate, const WideArrays& tree, const Ray<double>& ray,
                                              TriangleHit& best, TraversalCounters& counters) {
     ++counters.primitives_tested;
-    const QuadPlanes& planes = tree.planes[candidate.quad];
-    const TrianglePlane& plane = planes.side[candidate.certainty == QuadCertainty::second ? 1 : 0];
-    const bool is_known =
-        candidate.certainty == QuadCertainty::met ? plane.is_alone() : candidate.certainty != QuadCertainty::undecided;
-    if (is_known && plane.is_steep(ray)) {
-      const double t = plane.t_of(ray);
-      if (is_in_range(t, ray)) take_if_nearer({t, plane.triangle}, best);
-    } else if (const auto hit = quad_hit(tree, candidate.quad, ray, HitFilter{})) {
-      take_if_nearer(*hit, best);
-    }
+    take_if_nearer(hit_on(tree, candidate.quad, candidate.certainty, ray, HitFilter{}), best);
   }
 
  private:
@@ -126,11 +136,11 @@ class ClosestCandidates {
 
   /// Kept out of the walks, which it would slow down although it is seldom called.
   [[gnu::noinline]] void ask(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
-                             std::uint32_t quad, float& limit, TraversalCounters& counters) {
+                             const Candidate& candidate, float& limit, TraversalCounters& counters) {
     ++counters.primitives_tested;
-    const std::optional<TriangleHit> hit = quad_hit(tree, quad, ray, filter);
-    if (!hit) return;
-    take_if_nearer(*hit, best_);
+    const TriangleHit hit = hit_on(tree, candidate.quad, candidate.certainty, ray, filter);
+    if (!(hit.t < no_hit.t)) return;
+    take_if_nearer(hit, best_);
     limit = std::min(limit, WideRay::padded(best_.t));
   }
 

@@ -44,13 +44,11 @@ class PacketHits {
                           (hits.last < Float8::load(&rays.sure_to[first_ray])) &
                           (hits.last < Float8::load(&first_[first_ray]));
     const std::uint32_t replaced = nearest.bits();
-    if (replaced != 0) {
-      // Looked at when the walk is over.
-      for (const TrianglePlane& plane : tree_.planes[quad].side) __builtin_prefetch(&plane);
-      replace(quad, nearest, replaced, hits, first_ray);
-      const Float8 limit = Float8::load(&rays.limit[first_ray]);
-      PacketRays::put(rays.limit, first_ray, simd::minimum(simd::select(nearest, hits.last, limit), limit));
-    }
+    // Looked at when the walk is over.
+    for (const TrianglePlane& plane : tree_.planes[quad].side) __builtin_prefetch(&plane);
+    replace(quad, nearest, replaced, hits, first_ray);
+    const Float8 limit = Float8::load(&rays.limit[first_ray]);
+    PacketRays::put(rays.limit, first_ray, simd::minimum(simd::select(nearest, hits.last, limit), limit));
     const std::uint32_t rest = met & ~replaced;
     return (rest != 0 && add_others(quad, rest, hits, first_ray, rays)) || replaced != 0;
   }

@@ -1,5 +1,6 @@
 #pragma once
 /// What one ray asks of a wide tree.
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <optional>
@@ -53,8 +54,8 @@ inline std::optional<TriangleHit> closest_hit(const WideArrays& tree, const Ray<
   return hit;
 }
 
-/// Out of line for the same reason: with and without an end, side by side, are slower.
-template <bool endless>
+/// Out of line for the same reason: kinds side by side are slower.
+template <RayKind kind>
 [[gnu::flatten, gnu::noinline]] bool is_occluded(const WideArrays& tree, const Ray<double>& ray,
                                                  const HitFilter& filter, TraversalCounters& counters) {
   if (tree.nodes.empty()) return false;
@@ -71,18 +72,25 @@ template <bool endless>
       const bool is_sure =
           filter.counts == nullptr || filter.is_sure(static_cast<double>(first[lane]), static_cast<double>(last[lane]));
       if (is_sure && hits.is_certain(lane) && static_cast<double>(last[lane]) < ray.t_max) return true;
-      if (quad_hit(tree, leaf * simd_lanes + lane, ray, filter)) return true;
+      // Only from a surface so many hits are asked about that to know the side of the diagonal is worth working it out.
+      const std::uint32_t quad = leaf * simd_lanes + lane;
+      const bool is_met = kind == RayKind::from_surface
+                              ? asked_hit_on(tree, quad, hits.certainty(lane), ray, filter).t < no_hit.t
+                              : quad_hit(tree, quad, ray, filter).has_value();
+      if (is_met) return true;
     }
     return false;
   };
-  return walk_any<endless>(tree, wide, take, counters);
+  return walk_any<kind>(tree, wide, take, counters);
 }
 
 inline bool occluded(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
                      TraversalCounters& counters) {
   constexpr double farthest = 1e30;  // what single precision counts up to
-  return ray.t_max < farthest ? is_occluded<false>(tree, ray, filter, counters)
-                              : is_occluded<true>(tree, ray, filter, counters);
+  constexpr float at_once = 1e-30F;  // in units of the direction: what a ray from a device meets counts from 0 on
+  if (ray.t_max < farthest) return is_occluded<RayKind::segment>(tree, ray, filter, counters);
+  return filter.sure_from > at_once ? is_occluded<RayKind::from_surface>(tree, ray, filter, counters)
+                                    : is_occluded<RayKind::from_device>(tree, ray, filter, counters);
 }
 
 [[gnu::flatten]] inline bool visit_hits(const WideArrays& tree, const Ray<double>& ray, const HitFilter& filter,
@@ -99,7 +107,7 @@ inline bool occluded(const WideArrays& tree, const Ray<double>& ray, const HitFi
     }
     return false;
   };
-  return walk_any<false>(tree, wide, take, counters);
+  return walk_any<RayKind::segment>(tree, wide, take, counters);
 }
 
 }  // namespace DCEM_ISA

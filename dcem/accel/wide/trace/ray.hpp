@@ -64,6 +64,10 @@ class WideRay {
   /// quadrilateral that holds the origin by at most 10·diameter·δ + 2δ² (its corners are within two diameters); a bent
   /// pair adds its bend to δ. Diameter and bend are the largest of the leaf. The plane is off by 2δ + bend along its
   /// normal, which t feels divided by the slope.
+  ///
+  /// `asks_early`: whether the line passes beside all of them is asked before t is worked out. Where rays do not
+  /// resemble those before them no processor foresees that, and a wrong guess takes longer than t.
+  template <bool asks_early>
   [[gnu::always_inline]] std::uint32_t meets(const QuadLeaf& leaf, float t_max, QuadHits& hits) const;
 
  private:
@@ -170,6 +174,7 @@ inline namespace DCEM_ISA {
   return simd::is_later(entry, simd::earlier(simd::earlier(far(0), far(1)), simd::earlier(far(2), t_max)));
 }
 
+template <bool asks_early>
 [[gnu::always_inline]] inline std::uint32_t WideRay::meets(const QuadLeaf& leaf, float t_max, QuadHits& hits) const {
   const AxisOrder& axes = *axes_;
   const std::size_t x = axes.row[0], y = axes.row[1], z = axes.row[2];
@@ -206,7 +211,7 @@ inline namespace DCEM_ISA {
   const Float8 high = simd::maximum(simd::maximum(ab, bc), simd::maximum(cd, da));
   // Refusals are asked for, not passes: NaN, from numbers near the limits, refuses nothing.
   const std::uint32_t candidates = leaf.lanes & ~((low < minus_error) & (high > error)).bits();
-  if (candidates == 0) return 0;
+  if (asks_early && candidates == 0) return 0;
   const auto normal = [rows = reinterpret_cast<const char*>(leaf.normal.data())](std::size_t at) {
     return Float8::load(rows + at);
   };

@@ -2,9 +2,9 @@
 /// Many rays through a wide tree, several of them on their way at any time.
 ///
 /// A walk of one ray waits: for the memory of a node, and for one answer before it can ask the next question. Here each
-/// ray makes one step, asks for the memory of its next one, and gives way to the others. Rays at nodes and rays at
-/// leaves stand in two queues, so that the code for a step, which depends on the ray in a way that no processor
-/// foresees, is the same for a run of rays. Each ray takes the steps that it takes alone.
+/// ray makes one step, asks for the memory of its next one, and gives way to the others. Rays at nodes, rays at leaves
+/// and rays that have arrived stand in queues of their own, so that the code for a step, which depends on the ray in a
+/// way that no processor foresees, is the same for a run of rays. Each ray takes the steps that it takes alone.
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "dcem/accel/wide/trace/candidates.hpp"
+#include "dcem/accel/wide/trace/waiting_children.hpp"
 #include "dcem/accel/wide/trace/walk.hpp"
 
 namespace dcem {
@@ -34,26 +35,27 @@ class ClosestStream {
 
   [[gnu::flatten]] void run() {
     for (std::uint32_t slot = 0; slot < slot_count; ++slot) begin_next(slot);
-    while (nodes_next_.count + leaves_next_.count > 0) {
-      const Queue at_nodes = std::exchange(nodes_next_, {}), at_leaves = std::exchange(leaves_next_, {});
-      for (std::uint32_t index = 0; index < at_nodes.count; ++index) step_at_node(at_nodes.slot[index]);
-      for (std::uint32_t index = 0; index < at_leaves.count; ++index) step_at_leaf(at_leaves.slot[index]);
+    while (next_round_->any()) {
+      const Round& now = *next_round_;
+      next_round_ = next_round_ == &rounds_[0] ? &rounds_[1] : &rounds_[0];
+      next_round_->clear();
+      for (std::uint32_t index = 0; index < now.at_nodes.count; ++index) step_at_node(now.at_nodes.slot[index]);
+      for (std::uint32_t index = 0; index < now.at_leaves.count; ++index) step_at_leaf(now.at_leaves.slot[index]);
+      for (std::uint32_t index = 0; index < now.arrived.count; ++index) finish(now.arrived.slot[index]);
     }
   }
 
  private:
   /// More hide no more waiting, and push each other out of the nearest cache.
-  static constexpr std::uint32_t slot_count = 8;
+  static constexpr std::uint32_t slot_count = 12;
 
   /// A ray on its way. No initial values.
   struct Slot {
     alignas(WideRay) std::array<std::byte, sizeof(WideRay)> ray;
     std::uint32_t query;
-    std::uint32_t height;
     WideChild current;
     float limit;
-    std::array<LaneKeys, wide_depth_limit> keys;        ///< of the children that wait, by depth
-    std::array<std::uint32_t, wide_depth_limit> nodes;  ///< whose children they are
+    WaitingChildren waiting;
     alignas(ClosestCandidates) std::array<std::byte, sizeof(ClosestCandidates)> candidates;
 
     WideRay& wide() { return *std::launder(reinterpret_cast<WideRay*>(ray.data())); }
@@ -62,6 +64,13 @@ class ClosestStream {
   struct Queue {
     std::array<std::uint32_t, slot_count + 1> slot;  // one more: written before it is known whether it counts
     std::uint32_t count = 0;
+  };
+  /// Who makes which step.
+  struct Round {
+    Queue at_nodes, at_leaves, arrived;
+
+    bool any() const { return at_nodes.count + at_leaves.count + arrived.count > 0; }
+    void clear() { at_nodes.count = at_leaves.count = arrived.count = 0; }
   };
 
   /// Lets the next ray begin in a slot; rays that need no walk are answered at once.
@@ -75,7 +84,7 @@ class ClosestStream {
     }
     if (next_ == queries_.size()) return;
     slot.query = static_cast<std::uint32_t>(next_++);
-    slot.height = 0;
+    slot.waiting.clear();
     slot.limit = slot.wide().t_max();
     new (slot.candidates.data()) ClosestCandidates();
     send(index, WideChild::node(0));
@@ -85,10 +94,11 @@ class ClosestStream {
   [[gnu::always_inline]] void send(std::uint32_t index, WideChild child) {
     slots_[index].current = child;
     const std::uint32_t is_leaf = child.is_leaf() ? 1U : 0U;
-    nodes_next_.slot[nodes_next_.count] = index;
-    leaves_next_.slot[leaves_next_.count] = index;
-    nodes_next_.count += 1U - is_leaf;
-    leaves_next_.count += is_leaf;
+    Queue &nodes = next_round_->at_nodes, &leaves = next_round_->at_leaves;
+    nodes.slot[nodes.count] = index;
+    leaves.slot[leaves.count] = index;
+    nodes.count += 1U - is_leaf;
+    leaves.count += is_leaf;
     fetch(tree_, child);
   }
 
@@ -103,9 +113,7 @@ class ClosestStream {
     LaneKeys entered(entry, missed);
     const std::uint32_t nearest = entered.least();
     entered.remove(nearest);
-    slot.keys[slot.height] = entered;
-    slot.nodes[slot.height] = slot.current.index();
-    slot.height += (met & (met - 1)) != 0 ? 1U : 0U;
+    slot.waiting.push(slot.current.index(), entered, (met & (met - 1)) != 0);
     send(index, node.child[LaneKeys::lane(nearest)]);
   }
 
@@ -114,7 +122,7 @@ class ClosestStream {
     Slot& slot = slots_[index];
     const std::uint32_t leaf = slot.current.index();
     QuadHits hits;
-    const std::uint32_t met = slot.wide().meets(tree_.leaves[leaf], slot.limit, hits);
+    const std::uint32_t met = slot.wide().meets<false>(tree_.leaves[leaf], slot.limit, hits);
     if (met != 0) {
       const RayQuery& query = queries_[slot.query];
       slot.found().take(tree_, query.ray, query.filter, leaf, met, hits, slot.limit, counters_);
@@ -122,16 +130,18 @@ class ClosestStream {
     take_next(index);
   }
 
-  /// Sends a ray to the nearest of the children that wait; where none does it has arrived.
+  /// Sends a ray to the nearest of the children that wait. Where none does it has arrived: it is finished in the next
+  /// round, when the memory of what it has met has come.
   [[gnu::always_inline]] void take_next(std::uint32_t index) {
     Slot& slot = slots_[index];
-    for (; slot.height > 0; --slot.height) {
-      LaneKeys& waiting = slot.keys[slot.height - 1];
-      const std::uint32_t nearest = waiting.least();
-      if (!LaneKeys::may_be_within(nearest, slot.limit)) continue;
-      waiting.remove(nearest);
-      return send(index, tree_.nodes[slot.nodes[slot.height - 1]].child[LaneKeys::lane(nearest)]);
-    }
+    WaitingChildren::Place place;
+    if (slot.waiting.take(slot.limit, place)) return send(index, tree_.nodes[place.node].child[place.lane]);
+    Queue& arrived = next_round_->arrived;
+    arrived.slot[arrived.count++] = index;
+  }
+
+  [[gnu::always_inline]] void finish(std::uint32_t index) {
+    Slot& slot = slots_[index];
     answer(slot.found().decide(tree_, queries_[slot.query].ray, slot.limit, counters_), hits_[slot.query]);
     begin_next(index);
   }
@@ -141,7 +151,8 @@ class ClosestStream {
   std::span<std::optional<TriangleHit>> hits_;
   TraversalCounters& counters_;
   std::size_t next_ = 0;
-  Queue nodes_next_, leaves_next_;
+  std::array<Round, 2> rounds_;
+  Round* next_round_ = rounds_.data();
   std::array<Slot, slot_count> slots_;
 };
 

@@ -108,7 +108,7 @@ template <bool fetches, bool alike, typename Take>
     if (!is_lost) {
       ++visited;
       QuadHits hits;
-      const std::uint32_t met = read_anew(&ray)->meets(leaves[current.index()], limit, hits);
+      const std::uint32_t met = read_anew(&ray)->template meets<alike>(leaves[current.index()], limit, hits);
       if (met != 0) take(current.index(), met, hits, limit);
     }
     std::uint32_t nearest = 0;
@@ -126,10 +126,14 @@ template <bool fetches, bool alike, typename Take>
   }
 }
 
-/// Children with the largest box first. Calls `take(leaf_index, met, hits) -> bool` until one returns true. Returns
-/// whether one did. `endless`: the ray has no end. Such rays go into the root alike when they follow one another;
-/// segments, wherever they are. Farther down the largest child is met as a rule.
-template <bool endless, typename Take>
+/// Rays that ask for any hit. Those that leave a device and have no end resemble the ones before: the processor
+/// foresees how they go into the root, and what they miss. Those that leave a surface and have no end, and segments, do
+/// not.
+enum class RayKind : std::uint8_t { segment, from_device, from_surface };
+
+/// Children with the largest box first: farther down it is met as a rule. Calls `take(leaf_index, met, hits) -> bool`
+/// until one returns true. Returns whether one did.
+template <RayKind kind, typename Take>
 [[gnu::always_inline]] inline bool walk_any(const WideArrays& tree, const WideRay& ray, Take&& take,
                                             TraversalCounters& counters) {
   struct Waiting {
@@ -157,13 +161,15 @@ template <bool endless, typename Take>
         waiting[height] = {current.index(), rest};
         const bool is_near_root = height == 0;
         height += rest != 0 ? 1U : 0U;
-        current = node.child[endless && is_near_root ? foreseen_first(met) : foreseen_if_lane_0(met)];
+        current =
+            node.child[kind == RayKind::from_device && is_near_root ? foreseen_first(met) : foreseen_if_lane_0(met)];
       } while (!current.is_leaf());
     }
     if (!is_lost) {
       ++visited;
       QuadHits hits;
-      const std::uint32_t met = read_anew(&ray)->meets(leaves[current.index()], limit, hits);
+      const std::uint32_t met =
+          read_anew(&ray)->template meets<kind != RayKind::from_surface>(leaves[current.index()], limit, hits);
       if (met != 0 && take(current.index(), met, hits)) {
         counters.nodes_visited += visited;
         return true;

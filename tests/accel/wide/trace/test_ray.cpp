@@ -94,9 +94,10 @@ void check_leaves(const WideBvh& tree, const WideMesh& mesh, const Ray<double>& 
   if (!wide.usable()) return;
   const WatertightRay exact(ray);
   for (std::uint32_t leaf = 0; leaf < arrays.leaves.size(); ++leaf) {
-    QuadHits hits;
+    QuadHits hits, early_hits;
     hits.certain = 0;
-    const std::uint32_t met = wide.meets(arrays.leaves[leaf], WideRay::padded(ray.t_max), hits);
+    const std::uint32_t met = wide.meets<false>(arrays.leaves[leaf], WideRay::padded(ray.t_max), hits);
+    REQUIRE(wide.meets<true>(arrays.leaves[leaf], WideRay::padded(ray.t_max), early_hits) == met);
     for (std::uint32_t lane = 0; lane < simd_lanes; ++lane) {
       const Quad& quad = arrays.quads[leaf * simd_lanes + lane];
       if (quad.is_none()) continue;
