@@ -1,6 +1,6 @@
 #pragma once
-/// What double precision says of a ray and a quad: asked where single precision is undecided, or a filter wants to know
-/// where exactly a triangle is met. Seldom, and therefore kept out of the walks.
+/// What double precision says of a ray and a quad: asked where single precision is undecided. Seldom, and
+/// therefore kept out of the walks.
 #include <bit>
 #include <cstdint>
 #include <optional>

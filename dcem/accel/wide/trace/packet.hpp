@@ -44,6 +44,7 @@ class RayPacket {
     hits_ = {hits.data(), count};
     queries_ = {queries.data(), count};
     next_queries_ = {queries.data() + count, std::min(count, queries.size() - count)};
+    fetched_ = 0;
     return count;
   }
 
@@ -51,6 +52,7 @@ class RayPacket {
     found_.begin(queries_);
     walk();
     for (std::uint32_t ray = 0; ray < queries_.size(); ++ray) {
+      fetch_some(2);  // what a walk of few steps has left
       answer(found_.decide(ray, rays_.limit[ray]), hits_[ray]);
     }
   }
@@ -67,10 +69,9 @@ class RayPacket {
     std::uint32_t height = 0, parent = 0, lane = 0;
     float reach_m = rays_.farthest_limit_m();
     WideChild current = WideChild::node(0);
-    std::size_t fetched = 0;
     while (true) {
       ++counters_.nodes_visited;
-      fetch_some(fetched);
+      fetch_some(8);
       const bool is_root = current == WideChild::node(0);
       const RayMask active = is_root ? 1U : rays_.that_meet(tree_.nodes[parent], lane);
       if (active != 0 && current.is_leaf()) {
@@ -132,18 +133,19 @@ class RayPacket {
     return is_changed;
   }
 
-  /// Asks for the memory of some of the next rays: a few lines a step, or the steps would wait for them.
-  [[gnu::always_inline]] void fetch_some(std::size_t& fetched) const {
-    constexpr std::size_t line = 64, most = 8 * line;
+  /// Asks for the memory of some of the next rays: a few lines at a time, or all else would wait for them.
+  [[gnu::always_inline]] void fetch_some(std::size_t lines) {
+    constexpr std::size_t line = 64;
     const auto* const bytes = reinterpret_cast<const char*>(next_queries_.data());
-    const std::size_t end = std::min(fetched + most, next_queries_.size() * sizeof(RayQuery));
-    for (; fetched < end; fetched += line) __builtin_prefetch(bytes + fetched);
+    const std::size_t end = std::min(fetched_ + lines * line, next_queries_.size() * sizeof(RayQuery));
+    for (; fetched_ < end; fetched_ += line) __builtin_prefetch(bytes + fetched_);
   }
 
   const WideArrays& tree_;
   TraversalCounters& counters_;
   std::span<const RayQuery> queries_, next_queries_;
   std::span<std::optional<TriangleHit>> hits_;
+  std::size_t fetched_ = 0;  ///< bytes of the next queries
   PacketRays rays_;
   PacketCone cone_;
   PacketHits found_;

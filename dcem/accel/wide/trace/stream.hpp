@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "dcem/accel/wide/trace/candidates.hpp"
 #include "dcem/accel/wide/trace/waiting_children.hpp"

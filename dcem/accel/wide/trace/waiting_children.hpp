@@ -20,7 +20,7 @@ inline namespace DCEM_ISA {
 /// eight would wait for what it has just written.
 class WaitingChildren {
  public:
-  /// No initial values: most of the room is never used.
+  /// No other initial values: most of the room is never used.
   WaitingChildren() { std::fill_n(nearest_.begin(), simd_lanes, LaneKeys::none); }
 
   void clear() { height_ = 0; }
@@ -39,7 +39,8 @@ class WaitingChildren {
     std::uint32_t lane;
   };
 
-  /// Takes the nearest child of the last node that has one within a limit. Returns false where none has.
+  /// Takes the nearest child of the last node that has one within a limit from zero on. Returns false where none has:
+  /// then nothing waits until the next `clear`.
   [[gnu::always_inline]] bool take(float limit, Place& place) {
     while (true) {
       // The last eight levels; below the first one there is none that waits.

@@ -126,9 +126,9 @@ template <bool fetches, bool alike, typename Take>
   }
 }
 
-/// Rays that ask for any hit. Those that leave a device and have no end resemble the ones before: the processor
-/// foresees how they go into the root, and what they miss. Those that leave a surface and have no end, and segments, do
-/// not.
+/// Rays that ask for any hit. Of those that leave a device and have no end the processor foresees how they go into the
+/// root and what they miss, as they resemble the ones before; of segments, what they miss, which is most; of those that
+/// leave a surface and have no end, nothing.
 enum class RayKind : std::uint8_t { segment, from_device, from_surface };
 
 /// Children with the largest box first: farther down it is met as a rule. Calls `take(leaf_index, met, hits) -> bool`
