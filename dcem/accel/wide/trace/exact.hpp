@@ -1,6 +1,6 @@
 #pragma once
-/// What double precision says of a ray and a quad: asked where single precision is undecided. Seldom, and
-/// therefore kept out of the walks.
+/// What double precision says of a ray and a quad: asked where single precision is undecided, or a filter
+/// has to know where a triangle is met that it has not told. Seldom, and therefore kept out of the walks.
 #include <bit>
 #include <cstdint>
 #include <optional>

@@ -44,7 +44,7 @@ class PacketHits {
                           (hits.last < Float8::load(&rays.sure_to[first_ray])) &
                           (hits.last < Float8::load(&first_[first_ray]));
     const std::uint32_t replaced = nearest.bits();
-    // Looked at when the walk is over.
+    // Without asking first whether any is replaced: one mostly is. Its planes are looked at when the walk is over.
     for (const TrianglePlane& plane : tree_.planes[quad].side) __builtin_prefetch(&plane);
     replace(quad, nearest, replaced, hits, first_ray);
     const Float8 limit = Float8::load(&rays.limit[first_ray]);
