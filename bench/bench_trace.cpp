@@ -46,6 +46,7 @@ struct RayKind {
   std::string name;
   std::vector<Ray<double>> rays;
   std::vector<dcem::FacetId> from{};  ///< one per ray, or none at all
+  std::size_t rays_a_sphere = 0;      ///< 0: no spheres
 };
 
 /// Traces all rays of a kind once; the time, milliseconds, is that of the queries alone.
@@ -81,20 +82,21 @@ double t_of(const std::optional<dcem::TriangleHit>& hit) {
   return hit ? hit->t : none;
 }
 
-/// Many closest hits at a time, in blocks as the simulator asks for them.
-Trace in_blocks(const dcem::WideBvh& tree, std::shared_ptr<std::vector<dcem::RayQuery>> queries, unsigned threads) {
-  const auto hits = std::make_shared<std::vector<std::optional<dcem::TriangleHit>>>(queries->size());
-  return [&tree, queries, hits, threads](std::vector<double>& answers, TraversalCounters& counters) {
-    constexpr std::size_t block = 1024;
-    const std::span<const dcem::RayQuery> all(*queries);
+/// Many closest hits at a time, in blocks as the simulator asks for them: `ask(first ray, places, counters)`.
+template <typename Ask>
+Trace in_blocks(const RayKind& kind, unsigned threads, Ask ask) {
+  const std::size_t rays = kind.rays.size(), sphere = kind.rays_a_sphere > 0 ? kind.rays_a_sphere : rays;
+  const auto hits = std::make_shared<std::vector<std::optional<dcem::TriangleHit>>>(rays);
+  return [=](std::vector<double>& answers, TraversalCounters& counters) {
     const std::span<std::optional<dcem::TriangleHit>> places(*hits);
     const auto trace = [&](std::size_t first, std::size_t last, TraversalCounters& sum) {
-      for (; first < last; first += block) {
-        const std::size_t count = std::min(block, last - first);
-        tree.closest_hits(all.subspan(first, count), places.subspan(first, count), &sum);
+      while (first < last) {
+        const std::size_t count = std::min({std::size_t{1024}, last - first, sphere - first % sphere});
+        ask(first, places.subspan(first, count), sum);
+        first += count;
       }
     };
-    const double elapsed_ms = timed_pieces(all.size(), threads, counters, trace);
+    const double elapsed_ms = timed_pieces(rays, threads, counters, trace);
     std::transform(hits->begin(), hits->end(), answers.begin(), t_of);
     return elapsed_ms;
   };
@@ -117,12 +119,13 @@ Contender wide_contender(const std::string& name, const dcem::Scene& scene, cons
           }};
 }
 
-/// What the simulator asks: closest hits a thousand at a time, and one leg after another whether it is free; rays do
-/// not meet the facets that they leave.
+/// What the simulator asks: closest hits a thousand at a time, those of a sphere as fans, and one leg after another
+/// whether it is free; rays do not meet the facets that they leave.
 Contender simulator_contender(const dcem::Scene& scene, unsigned threads) {
   struct Prepared {
     std::vector<dcem::LegFilter> filters;
-    std::shared_ptr<std::vector<dcem::RayQuery>> queries = std::make_shared<std::vector<dcem::RayQuery>>();
+    std::vector<dcem::RayQuery> queries;
+    std::vector<Vec3> directions;
   };
   const auto tree = std::make_shared<dcem::WideBvh>();
   const auto prepare = [&scene](const RayKind& kind) {
@@ -132,7 +135,8 @@ Contender simulator_contender(const dcem::Scene& scene, unsigned threads) {
       dcem::LegEnd start;
       if (!kind.from.empty()) start = {{&kind.from[ray], 1}, {&scene.facet(kind.from[ray]).plane, nullptr}};
       prepared->filters.emplace_back(scene, kind.rays[ray], start, dcem::IgnoredBodies{});
-      prepared->queries->push_back({kind.rays[ray], prepared->filters.back().hit_filter()});
+      prepared->queries.push_back({kind.rays[ray], prepared->filters.back().hit_filter()});
+      prepared->directions.push_back(kind.rays[ray].direction);
     }
     return prepared;
   };
@@ -140,14 +144,18 @@ Contender simulator_contender(const dcem::Scene& scene, unsigned threads) {
   return {"wide, simulator", [=, &scene] { tree->build(scene.triangle_view(), scene.triangle_boxes(), settings); },
           [=](const RayKind& kind) {
             const auto prepared = prepare(kind);
-            return [=, trace = in_blocks(*tree, prepared->queries, threads)](auto& answers, auto& counters) {
-              return prepared->filters.empty() ? 0.0 : trace(answers, counters);
-            };
+            const bool is_launched = kind.rays_a_sphere > 0;
+            return in_blocks(kind, threads, [=](std::size_t first, auto places, TraversalCounters& sum) {
+              const std::span<const dcem::RayQuery> queries{&prepared->queries[first], places.size()};
+              const std::span<const Vec3> directions{&prepared->directions[first], places.size()};
+              if (!is_launched) return tree->closest_hits(queries, places, &sum);
+              tree->closest_hits(dcem::RayFan{queries[0].ray.origin, directions, queries[0].filter}, places, &sum);
+            });
           },
           [=](const RayKind& kind) {
             const auto prepared = prepare(kind);
             return one_by_one(kind, threads, [tree, prepared](std::size_t ray, TraversalCounters& sum) {
-              const dcem::RayQuery& query = (*prepared->queries)[ray];
+              const dcem::RayQuery& query = prepared->queries[ray];
               return tree->occluded(query.ray, query.filter, &sum) ? 1.0 : 0.0;
             });
           },
@@ -156,7 +164,7 @@ Contender simulator_contender(const dcem::Scene& scene, unsigned threads) {
             dcem::BinaryIndex binary;
             binary.build(scene.triangle_view(), scene.triangle_boxes(), std::vector<std::uint32_t>{0});
             std::vector<double> answers;
-            for (const dcem::RayQuery& query : *prepared->queries) {
+            for (const dcem::RayQuery& query : prepared->queries) {
               answers.push_back(closest ? t_of(binary.closest_hit(query.ray, query.filter))
                                 : binary.occluded(query.ray, query.filter) ? 1.0
                                                                            : 0.0);
@@ -289,8 +297,11 @@ std::vector<Contender> contenders(const dcem::Scene& scene, unsigned threads) {
 std::vector<RayKind> ray_kinds(const dcem::Scene& scene, const dcem::Aabb<double>& bounds, std::size_t count) {
   const dcem::TriangleView mesh = scene.triangle_view();
   dcem::RandomStream random(3);
-  std::vector<RayKind> kinds{
-      {"primary", {}}, {"bounce", {}}, {"segment", {}}, {"sphere of 2000", {}}, {"sphere of 20000", {}}};
+  std::vector<RayKind> kinds{{"primary", {}},
+                             {"bounce", {}},
+                             {"segment", {}},
+                             {"sphere of 2000", {}, {}, 2000},
+                             {"sphere of 20000", {}, {}, 20'000}};
   const Vec3 eye_m = as_float({bounds.center().x, bounds.center().y, bounds.max.z * 1.2});
   const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
   for (std::size_t ray = 0; ray < count; ++ray) {
@@ -310,12 +321,12 @@ std::vector<RayKind> ray_kinds(const dcem::Scene& scene, const dcem::Aabb<double
     const Vec3 to_m = as_float(from_m + way * dcem::bench::between(random, 5.0, 150.0));
     kinds[2].rays.push_back(dcem::segment_between(from_m, to_m));
   }
-  for (const std::size_t kind : {3, 4}) {
-    while (kinds[kind].rays.size() < count) {
+  for (RayKind& kind : kinds) {
+    while (kind.rays_a_sphere > 0 && kind.rays.size() < count) {
       const Vec3 from_m = as_float(dcem::bench::point_over(bounds, 1.0, 2.0, random));
       const dcem::Mat3 turned = dcem::random_rotation(random);
-      for (const Vec3& direction : dcem::launch_directions(kind == 3 ? 2000 : 20'000)) {
-        kinds[kind].rays.push_back({from_m, as_float(turned * direction)});
+      for (const Vec3& direction : dcem::launch_directions(static_cast<std::uint32_t>(kind.rays_a_sphere))) {
+        kind.rays.push_back({from_m, as_float(turned * direction)});
       }
     }
   }

@@ -85,6 +85,15 @@ class BoxIndex {
       hits[index] = closest_hit(queries[index].ray, queries[index].filter, counters);
     }
   }
+  void closest_hits(const RayFan& fan, std::span<std::optional<TriangleHit>> hits,
+                    TraversalCounters* counters = nullptr) const {
+    if (fan.directions.size() != hits.size()) {
+      throw std::invalid_argument("closest_hits: one place for each ray is needed");
+    }
+    for (std::size_t index = 0; index < hits.size(); ++index) {
+      hits[index] = closest_hit({fan.origin, fan.directions[index]}, fan.filter, counters);
+    }
+  }
   bool occluded(const Ray<double>& ray, const HitFilter& filter = {}, TraversalCounters* counters = nullptr) const {
     return visit_hits(
         ray, filter, [](const TriangleHit&) { return true; }, counters);

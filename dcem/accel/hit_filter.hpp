@@ -4,8 +4,10 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "dcem/geometry/ray.hpp"
+#include "dcem/geometry/vector.hpp"
 
 namespace dcem {
 
@@ -56,6 +58,14 @@ HitFilter filter_by(const Counts& counts) {
 /// One ray of many, with its own filter.
 struct alignas(32) RayQuery {
   Ray<double> ray;
+  HitFilter filter{};
+};
+
+/// Rays from one point without end, with one filter for all of them: 24 bytes a ray, which a `RayQuery` takes four
+/// times.
+struct RayFan {
+  Vec3 origin{0.0};
+  std::span<const Vec3> directions;
   HitFilter filter{};
 };
 

@@ -27,7 +27,7 @@ namespace dcem {
 /// * `note_rays(spent, rays)`: what rays have spent since the last update; decides at most how the index is kept.
 /// * `closest_hit(ray, filter, counters)`: the closest hit from t_min to t_max that passes the filter; of equally near
 ///   ones that on the triangle with the smallest number.
-/// * `closest_hits(queries, hits, counters)`: the same for many rays.
+/// * `closest_hits(queries, hits, counters)`, `closest_hits(fan, hits, counters)`: the same for many rays.
 /// * `occluded(ray, filter, counters)`: whether there is such a hit.
 /// * `visit_hits(ray, filter, visit, counters)`: `visit(hit) -> bool` for each of them, in no promised order, until one
 ///   returns true; returns whether one did.
@@ -41,13 +41,15 @@ template <typename Index>
 concept SpatialIndex = std::constructible_from<Index, const WideTreeSettings&> &&
     requires(Index& index, const Index& built, const TriangleView& mesh, std::span<const Aabb<double>> boxes,
              std::span<const std::uint32_t> numbers, const Ray<double>& ray, const HitFilter& filter,
-             std::span<const RayQuery> queries, std::span<std::optional<TriangleHit>> hits, TraversalCounters* counters,
-             bool (*visit_hit)(const TriangleHit&), void (*visit)(std::uint32_t), bool (*keep)(const Aabb<double>&)) {
+             std::span<const RayQuery> queries, const RayFan& fan, std::span<std::optional<TriangleHit>> hits,
+             TraversalCounters* counters, bool (*visit_hit)(const TriangleHit&), void (*visit)(std::uint32_t),
+             bool (*keep)(const Aabb<double>&)) {
   index.build(mesh, boxes, numbers);
   { index.update(mesh, boxes, numbers) } -> std::same_as<TreeUpdateReport>;
   index.note_rays(*counters, std::uint64_t{});
   { built.closest_hit(ray, filter, counters) } -> std::same_as<std::optional<TriangleHit>>;
   built.closest_hits(queries, hits, counters);
+  built.closest_hits(fan, hits, counters);
   { built.occluded(ray, filter, counters) } -> std::same_as<bool>;
   { built.visit_hits(ray, filter, visit_hit, counters) } -> std::same_as<bool>;
   built.overlapping(boxes[0], visit, counters);

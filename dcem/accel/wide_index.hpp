@@ -37,6 +37,10 @@ class WideIndex {
                     TraversalCounters* counters = nullptr) const {
     tree_.closest_hits(queries, hits, counters);
   }
+  void closest_hits(const RayFan& fan, std::span<std::optional<TriangleHit>> hits,
+                    TraversalCounters* counters = nullptr) const {
+    tree_.closest_hits(fan, hits, counters);
+  }
   bool occluded(const Ray<double>& ray, const HitFilter& filter = {}, TraversalCounters* counters = nullptr) const {
     return tree_.occluded(ray, filter, counters);
   }

@@ -78,6 +78,19 @@ struct OddFilter {
   }
 };
 
+/// All directions from one point with one filter.
+template <typename Index>
+void check_fan(const Index& index, std::span<const RayQuery> queries) {
+  const RayQuery& last = queries.back();
+  std::vector<Vec3> directions;
+  for (const RayQuery& query : queries) directions.push_back(query.ray.direction);
+  std::vector<std::optional<TriangleHit>> hits(directions.size());
+  index.closest_hits(RayFan{last.ray.origin, directions, last.filter}, hits);
+  for (std::size_t ray = 0; ray < directions.size(); ++ray) {
+    REQUIRE(hits[ray] == index.closest_hit({last.ray.origin, directions[ray]}, last.filter));
+  }
+}
+
 template <typename Index>
 void check_rays(const Index& index, const Heap& heap, int trials, RandomStream& random) {
   std::vector<RayQuery> queries;
@@ -93,6 +106,7 @@ void check_rays(const Index& index, const Heap& heap, int trials, RandomStream& 
   for (std::size_t query = 0; query < queries.size(); ++query) {
     REQUIRE(hits[query] == index.closest_hit(queries[query].ray, queries[query].filter));
   }
+  check_fan(index, queries);
 }
 
 }  // namespace
@@ -164,6 +178,9 @@ TEST_CASE_TEMPLATE("an index that is empty, or over nothing that is there, finds
     CHECK(fault_of_hits(index, {}, ray) == "");
     std::vector<std::optional<TriangleHit>> hits(2, TriangleHit{1.0, 0});
     index.closest_hits(std::vector<RayQuery>{{ray}, {ray}}, hits);
+    CHECK(hits == std::vector<std::optional<TriangleHit>>(2));
+    hits.assign(2, TriangleHit{1.0, 0});
+    index.closest_hits(RayFan{ray.origin, std::vector<Vec3>(2, ray.direction), {}}, hits);
     CHECK(hits == std::vector<std::optional<TriangleHit>>(2));
     const auto all = [](const Aabb<double>&) { return true; };
     CHECK(dcem_test::reported([&](auto visit) { index.visit(all, visit); }).empty());

@@ -55,12 +55,8 @@ class RayLauncher {
     if (settings_.max_reflections == 0 && reach_ == nullptr) return;
     const std::span<const Vec3> sphere = launch_directions(settings_.rays);
     for (std::size_t first = 0; first < sphere.size(); first += block_rays) {
-      rays_on_their_way_.clear();
-      for (const Vec3& direction : sphere.subspan(first, std::min(block_rays, sphere.size() - first))) {
-        rays_on_their_way_.push_back(
-            {receiver.position_m, rotation * direction, 0, settings_.max_transmissions, std::nullopt});
-      }
-      while (!rays_on_their_way_.empty()) go_one_leg(receiver, visit);
+      launch(receiver, rotation, sphere.subspan(first, std::min(block_rays, sphere.size() - first)), visit);
+      while (!rays_on_their_way_.empty()) go_one_leg(visit);
     }
   }
 
@@ -75,26 +71,43 @@ class RayLauncher {
     Vec3 origin_m, direction;
     std::uint32_t way;  ///< node of `ways_`
     int crossings_left;
-    std::optional<FacetId> from;  ///< the facet that it leaves; none: the receiver
+  };
+  struct LeavingRay {
+    FlyingRay ray;
+    FacetId from;  ///< the facet that it leaves
   };
 
-  LegEnd start_of(const FlyingRay& ray, const LinkEnd& receiver) const {
-    if (!ray.from) return {receiver.mounted_on, {}};
-    return {{&*ray.from, 1}, {&tracer_.scene().facet(*ray.from).plane, nullptr}};
+  /// The rays of a block leave the receiver, and become those that go on from what they meet.
+  template <typename Visit>
+  void launch(const LinkEnd& receiver, const Mat3& rotation, std::span<const Vec3> block, Visit& visit) {
+    directions_.clear();
+    for (const Vec3& direction : block) directions_.push_back(rotation * direction);
+    hits_.find_around(tracer_, receiver.position_m, directions_, {receiver.mounted_on, {}}, ignored_, traversal_);
+    const auto ray_of = [&](std::size_t index) {
+      return FlyingRay{receiver.position_m, directions_[index], 0, settings_.max_transmissions};
+    };
+    go_on_from_hits(ray_of, visit);
   }
 
-  /// All rays of the block go to what they meet, and become those that go on from there.
+  /// All rays on their way go to what they meet, and become those that go on from there.
   template <typename Visit>
-  void go_one_leg(const LinkEnd& receiver, Visit& visit) {
+  void go_one_leg(Visit& visit) {
     hits_.clear();
-    for (const FlyingRay& ray : rays_on_their_way_) {
-      hits_.add(tracer_.scene(), {ray.origin_m, ray.direction}, start_of(ray, receiver), ignored_);
+    for (const auto& [ray, from] : rays_on_their_way_) {
+      const LegEnd start{{&from, 1}, {&tracer_.scene().facet(from).plane, nullptr}};
+      hits_.add(tracer_.scene(), {ray.origin_m, ray.direction}, start, ignored_);
     }
     hits_.find(tracer_, traversal_);
+    go_on_from_hits([&](std::size_t index) { return rays_on_their_way_[index].ray; }, visit);
+  }
+
+  /// `ray_of(index)`: the ray that has arrived at a hit.
+  template <typename RayOf, typename Visit>
+  void go_on_from_hits(RayOf ray_of, Visit& visit) {
     rays_ += hits_.size();
     next_rays_.clear();
     for (std::size_t index = 0; index < hits_.size(); ++index) {
-      if (hits_.hit(index)) go_on(rays_on_their_way_[index], *hits_.hit(index), visit);
+      if (hits_.hit(index)) go_on(ray_of(index), *hits_.hit(index), visit);
     }
     std::swap(rays_on_their_way_, next_rays_);
   }
@@ -109,7 +122,7 @@ class RayLauncher {
     const auto [way, is_new] = ways_.step(ray.way, mirror, facet.plane);
     if (is_new && reach_ != nullptr && depth <= most_mirrors_) note_edges_of(mirror, ray.way);
     if (facet.transmits && ray.crossings_left > 0) {
-      next_rays_.push_back({point_m, ray.direction, ray.way, ray.crossings_left - 1, mirror});
+      next_rays_.push_back({{point_m, ray.direction, ray.way, ray.crossings_left - 1}, mirror});
     }
     if (depth == static_cast<std::size_t>(settings_.max_reflections)) return;
     if (is_new) show(way, visit);
@@ -117,7 +130,7 @@ class RayLauncher {
     const bool looks_for_edges = reach_ != nullptr && depth + 1 <= most_mirrors_;
     if (!looks_for_edges && depth + 1 >= static_cast<std::size_t>(settings_.max_reflections)) return;
     const Vec3 reflected = ray.direction - 2.0 * glm::dot(ray.direction, facet.plane.normal) * facet.plane.normal;
-    next_rays_.push_back({point_m, reflected, way, ray.crossings_left, mirror});
+    next_rays_.push_back({{point_m, reflected, way, ray.crossings_left}, mirror});
   }
 
   template <typename Visit>
@@ -139,7 +152,8 @@ class RayLauncher {
   const EdgeRules* rules_ = nullptr;
   std::size_t most_mirrors_ = 0;
   SequenceTree ways_{Vec3(0.0)};
-  std::vector<FlyingRay> rays_on_their_way_, next_rays_;
+  std::vector<Vec3> directions_;
+  std::vector<LeavingRay> rays_on_their_way_, next_rays_;
   SurfaceHits hits_;
   Sequence sequence_;
   std::vector<Vec3> images_m_;

@@ -11,7 +11,7 @@
 
 namespace dcem {
 
-/// Rays, and then the first facet that each of them meets. The memory is kept from batch to batch.
+/// Rays, and then where each of them meets something first. The memory is kept from batch to batch.
 class SurfaceHits {
  public:
   void clear() {
@@ -32,8 +32,23 @@ class SurfaceHits {
     tracer.index().closest_hits(queries_, hits_, &counters);
   }
 
-  std::size_t size() const { return queries_.size(); }
-  const Ray<double>& ray(std::size_t index) const { return queries_[index].ray; }
+  /// The same for rays that leave one place in these directions, instead of `add` and `find`: faster from a device that
+  /// is mounted on nothing, because what its rays ignore does not depend on where they go.
+  template <typename Index>
+  void find_around(const SceneTracer<Index>& tracer, const Vec3& from_m, std::span<const Vec3> directions,
+                   const LegEnd& start, const IgnoredBodies& ignored, TraversalCounters& counters) {
+    clear();
+    if (start.facets.empty() && start.planes[0] == nullptr) {
+      const LegFilter filter(tracer.scene(), {from_m, Vec3(0.0)}, start, ignored);
+      hits_.resize(directions.size());
+      tracer.index().closest_hits(RayFan{from_m, directions, filter.hit_filter()}, hits_, &counters);
+      return;
+    }
+    for (const Vec3& direction : directions) add(tracer.scene(), {from_m, direction}, start, ignored);
+    find(tracer, counters);
+  }
+
+  std::size_t size() const { return hits_.size(); }
   const std::optional<TriangleHit>& hit(std::size_t index) const { return hits_[index]; }
 
  private:

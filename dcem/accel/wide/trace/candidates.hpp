@@ -36,14 +36,24 @@ inline constexpr TriangleHit no_hit{std::numeric_limits<double>::infinity()};
   }
 }
 
-/// The nearest hit on a quad that passes a filter. Where it is known which triangle is met, that triangle's plane
-/// tells.
+/// The plane of the triangle of a quad that a ray meets, if that is known; else of the first one.
+[[gnu::always_inline]] inline const TrianglePlane& likely_plane(const WideArrays& tree, std::uint32_t quad,
+                                                                QuadCertainty certainty) {
+  return tree.planes[quad].side[certainty == QuadCertainty::second ? 1 : 0];
+}
+/// Whether that plane tells where the ray meets the quad: its triangle is the one that is met, and the ray steep
+/// enough.
+[[gnu::always_inline]] inline bool is_told_by(const TrianglePlane& plane, QuadCertainty certainty,
+                                              const Ray<double>& ray) {
+  const bool is_known = certainty == QuadCertainty::met ? plane.is_alone() : certainty != QuadCertainty::undecided;
+  return is_known && plane.is_steep(ray);
+}
+
+/// The nearest hit on a quad that passes a filter.
 [[gnu::always_inline]] inline TriangleHit hit_on(const WideArrays& tree, std::uint32_t quad, QuadCertainty certainty,
                                                  const Ray<double>& ray, const HitFilter& filter) {
-  const QuadPlanes& planes = tree.planes[quad];
-  const TrianglePlane& plane = planes.side[certainty == QuadCertainty::second ? 1 : 0];
-  const bool is_known = certainty == QuadCertainty::met ? plane.is_alone() : certainty != QuadCertainty::undecided;
-  if (is_known && plane.is_steep(ray)) {
+  const TrianglePlane& plane = likely_plane(tree, quad, certainty);
+  if (is_told_by(plane, certainty, ray)) {
     const TriangleHit hit{plane.t_of(ray), plane.triangle};
     return is_in_range(hit.t, ray) && filter.passes(hit) ? hit : no_hit;
   }
@@ -118,13 +128,6 @@ class ClosestCandidates {
     return best;
   }
 
-  /// Takes over where the ray meets a quad, if that is nearer. The answer is the same whatever is known.
-  [[gnu::always_inline]] static void look_at(const Candidate& candidate, const WideArrays& tree, const Ray<double>& ray,
-                                             TriangleHit& best, TraversalCounters& counters) {
-    ++counters.primitives_tested;
-    take_if_nearer(hit_on(tree, candidate.quad, candidate.certainty, ray, HitFilter{}), best);
-  }
-
  private:
   void drop_beyond(float limit) {
     std::uint32_t kept = 0;
@@ -142,6 +145,13 @@ class ClosestCandidates {
     if (!(hit.t < no_hit.t)) return;
     take_if_nearer(hit, best_);
     limit = std::min(limit, WideRay::padded(best_.t));
+  }
+
+  /// Takes over where the ray meets a quad, if that is nearer. The answer is the same whatever is known.
+  [[gnu::always_inline]] static void look_at(const Candidate& candidate, const WideArrays& tree, const Ray<double>& ray,
+                                             TriangleHit& best, TraversalCounters& counters) {
+    ++counters.primitives_tested;
+    take_if_nearer(hit_on(tree, candidate.quad, candidate.certainty, ray, HitFilter{}), best);
   }
 
   std::array<Candidate, 24> held_;

@@ -48,11 +48,11 @@ inline void closest_hits(const WideArrays& tree, std::span<const RayQuery> queri
       }
     }
   };
-  RayPacket packet(tree, counters);
+  const QueriesInTurn all(queries);
+  RayPacket packet(tree, all, counters);
   while (next < queries.size()) {
-    const std::size_t count =
-        packet.gather({queries.data() + next, queries.size() - next}, {hits.data() + next, hits.size() - next});
-    if (count >= RayPacket::least) {
+    const std::size_t count = packet.gather(all.part(next, queries.size()), hits.subspan(next));
+    if (count >= packet.least) {
       trace_alone();
       packet.trace();
       first_alone = next + count;
@@ -60,6 +60,27 @@ inline void closest_hits(const WideArrays& tree, std::span<const RayQuery> queri
     next += count;
   }
   trace_alone();
+}
+
+inline void closest_hits_of_fan(const WideArrays& tree, const RayFan& fan, std::span<std::optional<TriangleHit>> hits,
+                                TraversalCounters& counters) {
+  if (tree.nodes.empty()) {
+    std::ranges::fill(hits, std::nullopt);
+    return;
+  }
+  const FanInTurn all(fan);
+  RayPacket packet(tree, all, counters);
+  for (std::size_t next = 0; next < all.size();) {
+    const std::size_t count = packet.gather(all.part(next, all.size()), hits.subspan(next));
+    if (count >= packet.least) {
+      packet.trace();
+      next += count;
+      continue;
+    }
+    for (const std::size_t end = next + count; next < end; ++next) {
+      closest_hit_of_one<true>(tree, all.ray(next), fan.filter, hits[next], counters);
+    }
+  }
 }
 
 }  // namespace DCEM_ISA

@@ -10,8 +10,8 @@ namespace detail {
 
 inline namespace DCEM_ISA {
 
-inline constexpr WideKernels kernel_table{compiled_instruction_set, &closest_hit, &occluded, &visit_hits,
-                                          &closest_hits};
+inline constexpr WideKernels kernel_table{compiled_instruction_set, &closest_hit, &occluded, &visit_hits, &closest_hits,
+                                          &closest_hits_of_fan};
 
 #if !defined(DCEM_ENGINE)
 inline const WideKernels& wide_kernels() {

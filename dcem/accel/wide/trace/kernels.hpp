@@ -27,6 +27,8 @@ struct WideKernels {
                      TraversalCounters& counters);
   void (*closest_hits)(const WideArrays& tree, std::span<const RayQuery> queries,
                        std::span<std::optional<TriangleHit>> hits, TraversalCounters& counters);
+  void (*closest_hits_of_fan)(const WideArrays& tree, const RayFan& fan, std::span<std::optional<TriangleHit>> hits,
+                              TraversalCounters& counters);
 };
 
 }  // namespace detail

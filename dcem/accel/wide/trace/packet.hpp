@@ -27,31 +27,32 @@ namespace detail {
 inline namespace DCEM_ISA {
 
 /// Closest hits of rays with a common origin, t_min = 0 and directions within some 40 degrees of the first one. One
-/// packet serves for many, one after another.
+/// packet serves for many, one after another. `Source`: see packet_source.hpp.
+template <typename Source>
 class RayPacket {
  public:
   static constexpr std::size_t least = 4;  ///< fewer are faster one by one
 
-  RayPacket(const WideArrays& tree, TraversalCounters& counters)
-      : tree_(tree), counters_(counters), found_(tree, counters) {}
+  RayPacket(const WideArrays& tree, const Source& source, TraversalCounters& counters)
+      : tree_(tree), counters_(counters), source_(source), next_(source), found_(tree, source, counters) {}
 
   /// Takes the first of many rays that can go together, with one place for each answer. Returns how many these are;
   /// fewer than `least` must go one by one.
-  std::size_t gather(std::span<const RayQuery> queries, std::span<std::optional<TriangleHit>> hits) {
-    if (queries.size() < least || queries[1].ray.origin != queries[0].ray.origin) return 1;
-    const std::size_t count = rays_.gather(tree_, queries);
+  std::size_t gather(const Source& source, std::span<std::optional<TriangleHit>> hits) {
+    if (source.size() < least || !source.begins_together()) return 1;
+    const std::size_t count = rays_.gather(tree_, source);
     if (count < least || !cone_.surround(rays_)) return std::min(count, least - 1);
     hits_ = {hits.data(), count};
-    queries_ = {queries.data(), count};
-    next_queries_ = {queries.data() + count, std::min(count, queries.size() - count)};
+    source_ = source.part(0, count);
+    next_ = source.part(count, count);
     fetched_ = 0;
     return count;
   }
 
   [[gnu::flatten]] void trace() {
-    found_.begin(queries_);
+    found_.begin(source_);
     walk();
-    for (std::uint32_t ray = 0; ray < queries_.size(); ++ray) {
+    for (std::uint32_t ray = 0; ray < source_.size(); ++ray) {
       fetch_some(2);  // what a walk of few steps has left
       answer(found_.decide(ray, rays_.limit[ray]), hits_[ray]);
     }
@@ -136,19 +137,19 @@ class RayPacket {
   /// Asks for the memory of some of the next rays: a few lines at a time, or all else would wait for them.
   [[gnu::always_inline]] void fetch_some(std::size_t lines) {
     constexpr std::size_t line = 64;
-    const auto* const bytes = reinterpret_cast<const char*>(next_queries_.data());
-    const std::size_t end = std::min(fetched_ + lines * line, next_queries_.size() * sizeof(RayQuery));
-    for (; fetched_ < end; fetched_ += line) __builtin_prefetch(bytes + fetched_);
+    const std::span<const std::byte> bytes = next_.bytes();
+    const std::size_t end = std::min(fetched_ + lines * line, bytes.size());
+    for (; fetched_ < end; fetched_ += line) __builtin_prefetch(bytes.data() + fetched_);
   }
 
   const WideArrays& tree_;
   TraversalCounters& counters_;
-  std::span<const RayQuery> queries_, next_queries_;
+  Source source_, next_;  ///< the rays, and those that follow them
   std::span<std::optional<TriangleHit>> hits_;
-  std::size_t fetched_ = 0;  ///< bytes of the next queries
+  std::size_t fetched_ = 0;  ///< bytes of those that follow
   PacketRays rays_;
   PacketCone cone_;
-  PacketHits found_;
+  PacketHits<Source> found_;
 };
 
 }  // namespace DCEM_ISA

@@ -7,7 +7,6 @@
 #include <limits>
 #include <new>
 #include <optional>
-#include <span>
 
 #include "dcem/accel/wide/trace/candidates.hpp"
 #include "dcem/accel/wide/trace/packet_quads.hpp"
@@ -21,13 +20,15 @@ inline namespace DCEM_ISA {
 
 /// For each ray the nearest quad that it surely meets, in rows; and in a list of its own, as for a ray that goes alone,
 /// what may be nearer than that: a quad as near to within rounding, one that it may meet, one that its filter must be
-/// asked about. Few rays have such a list.
+/// asked about. Few rays have such a list. `Source`: see packet_source.hpp.
+template <typename Source>
 class PacketHits {
  public:
-  PacketHits(const WideArrays& tree, TraversalCounters& counters) : tree_(tree), counters_(counters) {}
+  PacketHits(const WideArrays& tree, const Source& source, TraversalCounters& counters)
+      : tree_(tree), counters_(counters), source_(source) {}
 
-  [[gnu::always_inline]] void begin(std::span<const RayQuery> queries) {
-    queries_ = queries;
+  [[gnu::always_inline]] void begin(const Source& source) {
+    source_ = source;
     for (std::size_t ray = 0; ray < PacketRays::capacity; ray += simd_lanes) {
       PacketRays::put(first_, ray, Float8(nowhere));
     }
@@ -57,9 +58,13 @@ class PacketHits {
   [[gnu::always_inline]] TriangleHit decide(std::uint32_t index, float limit) {
     if ((others_ >> index & 1U) != 0) return decide_among(index, limit);
     if (!is_held(index)) return no_hit;
-    TriangleHit best = no_hit;
-    ClosestCandidates::look_at(held(index), tree_, queries_[index].ray, best, counters_);
-    return best;
+    const ClosestCandidates::Candidate nearest = held(index);
+    const TrianglePlane& plane = likely_plane(tree_, nearest.quad, nearest.certainty);
+    const auto& ray = source_.ray(index);
+    if (!is_told_by(plane, nearest.certainty, ray)) return decide_among(index, limit);
+    ++counters_.primitives_tested;
+    const double t = plane.t_of(ray);
+    return is_in_range(t, ray) ? TriangleHit{t, plane.triangle} : no_hit;
   }
 
  private:
@@ -90,17 +95,17 @@ class PacketHits {
     for (; which != 0; which &= which - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(which));
       const std::size_t ray = first_ray + lane;
-      if (ray >= queries_.size() || queries_[ray].filter.ignores(tree_.leaves[quad / simd_lanes].object)) continue;
+      if (ray >= source_.size() || source_.filter(ray).ignores(tree_.leaves[quad / simd_lanes].object)) continue;
       const float before = rays.limit[ray];
-      list(ray).offer({quad, hits.first[lane], hits.certainty(lane)}, hits.last[lane], tree_, queries_[ray].ray,
-                      queries_[ray].filter, rays.limit[ray], counters_);
+      list(ray).offer({quad, hits.first[lane], hits.certainty(lane)}, hits.last[lane], tree_, source_.ray(ray),
+                      source_.filter(ray), rays.limit[ray], counters_);
       is_changed = is_changed || rays.limit[ray] != before;
     }
     return is_changed;
   }
 
   [[gnu::noinline]] TriangleHit decide_among(std::uint32_t index, float limit) {
-    const Ray<double>& ray = queries_[index].ray;
+    const Ray<double>& ray = source_.ray(index);
     ClosestCandidates& all = list(index);
     if (is_held(index)) all.add(held(index), tree_, ray, limit, counters_);
     return all.decide(tree_, ray, limit, counters_);
@@ -116,7 +121,7 @@ class PacketHits {
 
   const WideArrays& tree_;
   TraversalCounters& counters_;
-  std::span<const RayQuery> queries_;
+  Source source_;
   alignas(32) PacketRays::Numbers first_, quad_;  ///< infinite where nothing is held; the bits of its number
   std::array<RayMask, 2> side_;                   ///< as RowHits::side
   RayMask others_;                                ///< rays with a list

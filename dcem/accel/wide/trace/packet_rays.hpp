@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <span>
 
 #include "dcem/accel/hit_filter.hpp"
 #include "dcem/accel/wide/arrays.hpp"
+#include "dcem/accel/wide/trace/packet_source.hpp"
 #include "dcem/accel/wide/trace/ray.hpp"
 
 namespace dcem {
@@ -45,8 +45,9 @@ class PacketRays {
 
   /// Takes the first of many rays: as many as have the origin of the first one, t_min = 0 and a direction close to its
   /// own. Returns their number, 1 where they are too few or single precision does not do for the first.
-  [[gnu::always_inline]] std::size_t gather(const WideArrays& tree, std::span<const RayQuery> queries) {
-    const Vec3& at = queries.front().ray.origin;
+  template <typename Source>
+  [[gnu::always_inline]] std::size_t gather(const WideArrays& tree, const Source& source) {
+    const Vec3 at = source.ray(0).origin;
     const Double4 origin =
         Double4{at.x, at.y, at.z, 0.0} - Double4{tree.origin_m.x, tree.origin_m.y, tree.origin_m.z, 0.0};
     origin_m = narrowed(origin);
@@ -55,10 +56,10 @@ class PacketRays {
     extent_m = tree.extent_m;
     farthest_m = std::max(distance[0], std::max(distance[1], distance[2]));
     if (!(farthest_m <= 1e5F * extent_m && smallest_m <= extent_m && farthest_m + extent_m <= largest_m)) return 1;
-    const std::size_t most = std::min(queries.size(), capacity);
+    const std::size_t most = std::min(source.size(), capacity);
     asked = 0;
     for (std::size_t taken = simd_lanes; taken == simd_lanes && asked < most; asked += taken) {
-      taken = most - asked >= simd_lanes ? gather_eight<true>(queries) : gather_eight<false>(queries);
+      taken = most - asked >= simd_lanes ? gather_eight<true>(source) : gather_eight<false>(source);
     }
     count = (asked + simd_lanes - 1) / simd_lanes * simd_lanes;
     for (std::size_t ray = asked; 0 < asked && ray < count; ++ray) repeat(asked - 1, ray);
@@ -114,18 +115,18 @@ class PacketRays {
 
   /// The next rays, up to eight, side by side: all of them where it is `full`. Returns how many belong to the packet.
   template <bool full>
-  [[gnu::always_inline]] std::size_t gather_eight(std::span<const RayQuery> queries) {
+  [[gnu::always_inline]] std::size_t gather_eight(const QueriesInTurn& queries) {
     static_assert(sizeof(Ray<double>) == 64 && offsetof(RayQuery, filter) == 64 && sizeof(RayQuery) == 96);
     constexpr bool fills_register = sizeof(HitFilter) == 32;  // where pointers have eight bytes
     const std::size_t present = full ? simd_lanes : queries.size() - asked;
     Long4 own_origin, own_filter;
-    read(&queries.front().ray, own_origin);
-    read(&queries.front().filter, own_filter);
+    read(&queries.ray(0), own_origin);
+    read(&queries.filter(0), own_filter);
     std::array<Float4, simd_lanes> ways;  // direction x y z, t_max
     std::array<const float*, simd_lanes> places;
     Long4 strange{}, other_filter{};
     for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
-      const RayQuery& query = queries[asked + (full || lane < present ? lane : present - 1)];
+      const RayQuery& query = queries.query(asked + (full || lane < present ? lane : present - 1));
       Long4 begin_bits, end_bits, filter;
       Double4 begin, end;
       read(&query.ray, begin_bits);
@@ -142,14 +143,30 @@ class PacketRays {
     put_directions(turned);
     put(limit, asked, simd::minimum(turned[3], Float8(largest_t)) * Float8(1.0F + 8 * rounding) + Float8(0.0F));
     if (fills_register && (other_filter[0] | other_filter[1] | other_filter[3]) == 0) {
-      put(sure_from, asked, Float8(surely_from(queries.front().filter)));
-      put(sure_to, asked, Float8(surely_to(queries.front().filter)));
+      put(sure_from, asked, Float8(surely_from(queries.filter(0))));
+      put(sure_to, asked, Float8(surely_to(queries.filter(0))));
     } else {
-      put_filters({queries.data() + asked, present});
+      put_filters(queries.part(asked, present));
     }
     std::uint32_t others = those_apart() | 0x100U >> (simd_lanes - present);
     if ((strange[0] | strange[1] | strange[2]) != 0) others |= strangers_among(queries, present);
     return static_cast<std::size_t>(std::countr_zero(others));
+  }
+  template <bool full>
+  [[gnu::always_inline]] std::size_t gather_eight(const FanInTurn& fan) {
+    const std::size_t present = full ? simd_lanes : fan.size() - asked;
+    std::array<Float4, simd_lanes> ways;  // direction x y z
+    std::array<const float*, simd_lanes> places;
+    for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
+      const Vec3& way = fan.direction(asked + (full || lane < present ? lane : present - 1));
+      ways[lane] = narrowed(Double4{way.x, way.y, way.z, 0.0});
+      places[lane] = reinterpret_cast<const float*>(&ways[lane]);
+    }
+    put_directions(simd::turned(places));
+    put(limit, asked, Float8(largest_t * (1.0F + 8 * rounding)));
+    put(sure_from, asked, Float8(surely_from(fan.filter(0))));
+    put(sure_to, asked, Float8(surely_to(fan.filter(0))));
+    return static_cast<std::size_t>(std::countr_zero(those_apart() | 0x100U >> (simd_lanes - present)));
   }
 
   [[gnu::always_inline]] void put_directions(const std::array<Float8, 4>& ways) {
@@ -181,19 +198,19 @@ class PacketRays {
   }
 
   /// Bit i: of the next rays, ray i begins at another point, or later.
-  [[gnu::noinline]] std::uint32_t strangers_among(std::span<const RayQuery> queries, std::size_t present) const {
-    const Ray<double>& first = queries.front().ray;
+  [[gnu::noinline]] std::uint32_t strangers_among(const QueriesInTurn& queries, std::size_t present) const {
+    const Ray<double>& first = queries.ray(0);
     std::uint32_t result = 0;
     for (std::size_t lane = 0; lane < present; ++lane) {
-      const Ray<double>& ray = queries[asked + lane].ray;
+      const Ray<double>& ray = queries.ray(asked + lane);
       result |= (ray.origin != first.origin || ray.t_min != 0.0 ? 1U : 0U) << lane;
     }
     return result;
   }
 
-  [[gnu::noinline]] void put_filters(std::span<const RayQuery> queries) {
+  [[gnu::noinline]] void put_filters(const QueriesInTurn& queries) {
     for (std::size_t lane = 0; lane < simd_lanes; ++lane) {
-      const HitFilter& filter = queries[lane < queries.size() ? lane : queries.size() - 1].filter;
+      const HitFilter& filter = queries.filter(std::min(lane, queries.size() - 1));
       sure_from[asked + lane] = surely_from(filter);
       sure_to[asked + lane] = surely_to(filter);
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -102,6 +103,31 @@ Work check(const Town& town, std::span<const RayQuery> queries, std::size_t bloc
     REQUIRE(hits[ray] == town.twin.closest_hit(query.ray, query.filter));
   }
   return work;
+}
+
+/// The rays of questions that are alike but for their directions.
+std::vector<Vec3> directions_of(std::span<const RayQuery> queries) {
+  std::vector<Vec3> directions;
+  for (const RayQuery& query : queries) directions.push_back(query.ray.direction);
+  return directions;
+}
+
+/// Asks for a fan and for its rays with a filter each, in the same blocks: the same answers for the same work.
+void check_fan(const Town& town, const Vec3& from_m, std::span<const Vec3> directions, const HitFilter& filter,
+               std::size_t block) {
+  TraversalCounters as_fan, as_rays;
+  for (std::size_t first = 0; first < directions.size(); first += block) {
+    const std::span<const Vec3> own = directions.subspan(first, std::min(block, directions.size() - first));
+    std::vector<RayQuery> queries;
+    for (const Vec3& direction : own) queries.push_back({{from_m, direction}, filter});
+    std::vector<std::optional<TriangleHit>> hits(own.size(), TriangleHit{-1.0, 77}), expected = hits;
+    town.tree.closest_hits(RayFan{from_m, own, filter}, hits, &as_fan);
+    town.tree.closest_hits(queries, expected, &as_rays);
+    REQUIRE(hits == expected);
+    town.twin.closest_hits(RayFan{from_m, own, filter}, expected);
+    REQUIRE(hits == expected);
+  }
+  CHECK(as_fan == as_rays);
 }
 
 }  // namespace
@@ -226,6 +252,63 @@ TEST_CASE("rays that ignore an object which they do not meet take the steps of r
   CHECK(check(town, queries, 45).together.nodes_visited == expected.nodes_visited);
 }
 
+TEST_CASE("a fan meets what its rays meet with a filter each, for the same work") {
+  RandomStream random(11);
+  for (int trial = 0; trial < 60; ++trial) {
+    CAPTURE(trial);
+    const Town town(11 + static_cast<std::uint64_t>(trial % 5), 100);
+    const Vec3 corner_m = town.mesh.vertices[8];
+    const Vec3 from_m = trial % 10 == 0   ? corner_m
+                        : trial % 10 == 1 ? Vec3(3e5, 2e5, 1e5)
+                                          : Vec3(between(random, -150, 150), between(random, -150, 150), 3.0);
+    std::vector<Vec3> directions = directions_of(sphere(from_m, trial % 2 == 0 ? 300 : 3000, random));
+    HitFilter filter;
+    if (trial % 3 == 1) {
+      filter.counts = is_of_a_third;
+      filter.context = &thirds[random.next() % 3];
+      filter.sure_from = static_cast<float>(between(random, 0.0, 60.0));
+      filter.sure_to = static_cast<float>(between(random, 40.0, 400.0));
+    }
+    if (trial % 4 == 3) filter.ignored_objects[random.next() % 2] = random.next() % 2 == 0 ? 0U : 1U;
+    if (trial % 5 == 4) {
+      for (Vec3& direction : directions) direction *= std::pow(10.0, between(random, -8.0, 8.0));
+    }
+    check_fan(town, from_m, directions, filter, 1 + static_cast<std::size_t>(random.next() % 1500));
+  }
+}
+
+TEST_CASE("fans that are no packet: in any order, of few rays, of none, with numbers that lead nowhere") {
+  RandomStream random(12);
+  const Town town(12, 80);
+  const Vec3 from_m(5, 5, 2);
+  const std::vector<Vec3> directions = directions_of(sphere(from_m, 2000, random));
+  std::vector<Vec3> shuffled = directions;
+  for (std::size_t ray = shuffled.size(); ray > 1; --ray) std::swap(shuffled[ray - 1], shuffled[random.next() % ray]);
+  check_fan(town, from_m, shuffled, {}, 1024);
+  for (std::size_t count = 0; count < 10; ++count) {
+    check_fan(town, from_m, std::span(directions).first(count), {}, 100);
+    check_fan(town, from_m, directions, {}, count + 1);
+  }
+  std::vector<Vec3> odd = directions;
+  for (std::size_t ray = 0; ray < odd.size(); ray += 1 + random.next() % 20) {
+    const std::array<double, 6> numbers{0.0, dcem_test::not_a_number, dcem_test::infinity, 1e-30, 1e30, -1.0};
+    const double number = numbers[random.next() % numbers.size()];
+    if (ray % 2 == 0) odd[ray][static_cast<int>(ray % 3)] = number;
+    if (ray % 2 == 1) odd[ray] *= number;
+  }
+  check_fan(town, from_m, odd, {}, 512);
+  check_fan(town, Vec3(dcem_test::not_a_number, 0, 0), directions, {}, 512);
+  check_fan(town, Vec3(1e30, 0, 0), directions, {}, 512);
+}
+
+TEST_CASE("a fan needs a place for each answer") {
+  const Town town(13, 5);
+  const std::vector<Vec3> directions(3, Vec3(1, 0, 0));
+  std::vector<std::optional<TriangleHit>> hits(2);
+  CHECK_THROWS_AS(town.tree.closest_hits(RayFan{Vec3(0.0), directions, {}}, hits), std::invalid_argument);
+  CHECK_THROWS_AS(town.twin.closest_hits(RayFan{Vec3(0.0), directions, {}}, hits), std::invalid_argument);
+}
+
 #if defined(DCEM_ENGINE)
 
 TEST_CASE("packets of all sizes: every level of instructions gives the same answers for the same work") {
@@ -241,6 +324,7 @@ TEST_CASE("packets of all sizes: every level of instructions gives the same answ
       if (!is_supported(set)) continue;
       select_instruction_set(set);
       const Work work = check(town, queries, block);
+      check_fan(town, Vec3(4, 3, 25), directions_of(queries), {}, block);
       CHECK(work.together == expected.together);
       CHECK(work.alone == expected.alone);
     }
