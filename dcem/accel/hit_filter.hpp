@@ -61,11 +61,12 @@ struct alignas(32) RayQuery {
   HitFilter filter{};
 };
 
-/// Rays from one point without end, with one filter for all of them: 24 bytes a ray, which a `RayQuery` takes four
-/// times.
+/// Rays from one point without end, with one filter for all of them: 24 bytes a ray instead of the 96 of a `RayQuery`.
+/// Fastest where those that point in similar directions follow one another. What it refers to must outlive the
+/// question.
 struct RayFan {
   Vec3 origin{0.0};
-  std::span<const Vec3> directions;
+  std::span<const Vec3> directions;  ///< of any length; t, that of the filter too, is in units of each ray's own
   HitFilter filter{};
 };
 

@@ -131,7 +131,7 @@ class WideBvh {
     TraversalCounters unwanted;
     detail::wide_kernels().closest_hits(arrays_, queries, hits, counters != nullptr ? *counters : unwanted);
   }
-  /// The same for the rays of a fan, which is faster than to ask for each with a filter of its own.
+  /// The same for the rays of a fan, which is faster than to ask for each with a filter of its own. Throws as well.
   void closest_hits(const RayFan& fan, std::span<std::optional<TriangleHit>> hits,
                     TraversalCounters* counters = nullptr) const {
     if (fan.directions.size() != hits.size()) {

@@ -80,14 +80,16 @@ struct OddFilter {
 
 /// All directions from one point with one filter.
 template <typename Index>
-void check_fan(const Index& index, std::span<const RayQuery> queries) {
-  const RayQuery& last = queries.back();
+void check_fan(const Index& index, const Heap& heap, std::span<const RayQuery> queries, RandomStream& random) {
+  const Vec3 from_m = queries.back().ray.origin;
+  const HitFilter filter = OddFilter(random).filter;
   std::vector<Vec3> directions;
   for (const RayQuery& query : queries) directions.push_back(query.ray.direction);
   std::vector<std::optional<TriangleHit>> hits(directions.size());
-  index.closest_hits(RayFan{last.ray.origin, directions, last.filter}, hits);
+  index.closest_hits(RayFan{from_m, directions, filter}, hits);
   for (std::size_t ray = 0; ray < directions.size(); ++ray) {
-    REQUIRE(hits[ray] == index.closest_hit({last.ray.origin, directions[ray]}, last.filter));
+    const auto all = exact_hits(heap.mesh, {from_m, directions[ray]}, filter, &Heap::object_of);
+    REQUIRE(hits[ray] == (all.empty() ? std::nullopt : std::optional(all.front())));
   }
 }
 
@@ -106,7 +108,7 @@ void check_rays(const Index& index, const Heap& heap, int trials, RandomStream& 
   for (std::size_t query = 0; query < queries.size(); ++query) {
     REQUIRE(hits[query] == index.closest_hit(queries[query].ray, queries[query].filter));
   }
-  check_fan(index, queries);
+  check_fan(index, heap, queries, random);
 }
 
 }  // namespace

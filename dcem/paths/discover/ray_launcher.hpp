@@ -98,10 +98,10 @@ class RayLauncher {
       hits_.add(tracer_.scene(), {ray.origin_m, ray.direction}, start, ignored_);
     }
     hits_.find(tracer_, traversal_);
-    go_on_from_hits([&](std::size_t index) { return rays_on_their_way_[index].ray; }, visit);
+    go_on_from_hits([&](std::size_t index) -> const FlyingRay& { return rays_on_their_way_[index].ray; }, visit);
   }
 
-  /// `ray_of(index)`: the ray that has arrived at a hit.
+  /// Rays that have met something go on from there, or end; `ray_of(index)`: the one that met hit `index`.
   template <typename RayOf, typename Visit>
   void go_on_from_hits(RayOf ray_of, Visit& visit) {
     rays_ += hits_.size();

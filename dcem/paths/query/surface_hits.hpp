@@ -17,6 +17,7 @@ class SurfaceHits {
   void clear() {
     filters_.clear();
     queries_.clear();
+    hits_.clear();
   }
   /// A ray that leaves a place; what is named in `start` must stay until the hits are known.
   void add(const Scene& scene, const Ray<double>& ray, const LegEnd& start, const IgnoredBodies& ignored) {
@@ -24,7 +25,7 @@ class SurfaceHits {
     queries_.push_back({ray, {}});
   }
 
-  /// Asks for all rays at once. The answers are those of `SceneTracer::closest_hit`.
+  /// Asks for all rays at once, and adds to the counters. The answers are those of `SceneTracer::closest_hit`.
   template <typename Index>
   void find(const SceneTracer<Index>& tracer, TraversalCounters& counters) {
     for (std::size_t ray = 0; ray < queries_.size(); ++ray) queries_[ray].filter = filters_[ray].hit_filter();
@@ -32,14 +33,15 @@ class SurfaceHits {
     tracer.index().closest_hits(queries_, hits_, &counters);
   }
 
-  /// The same for rays that leave one place in these directions, instead of `add` and `find`: faster from a device that
-  /// is mounted on nothing, because what its rays ignore does not depend on where they go.
+  /// The same for rays that leave one place in these directions, instead of `clear`, `add` and `find`. Faster where
+  /// nothing is ignored at their start: from where on a hit is sure to count depends on the direction only where
+  /// something is.
   template <typename Index>
   void find_around(const SceneTracer<Index>& tracer, const Vec3& from_m, std::span<const Vec3> directions,
                    const LegEnd& start, const IgnoredBodies& ignored, TraversalCounters& counters) {
     clear();
-    if (start.facets.empty() && start.planes[0] == nullptr) {
-      const LegFilter filter(tracer.scene(), {from_m, Vec3(0.0)}, start, ignored);
+    if (start.facets.empty() && start.planes[0] == nullptr && start.planes[1] == nullptr) {
+      const LegFilter filter(tracer.scene(), {from_m, Vec3(0.0)}, LegEnd{}, ignored);
       hits_.resize(directions.size());
       tracer.index().closest_hits(RayFan{from_m, directions, filter.hit_filter()}, hits_, &counters);
       return;
@@ -48,6 +50,7 @@ class SurfaceHits {
     find(tracer, counters);
   }
 
+  /// How many rays have been asked for.
   std::size_t size() const { return hits_.size(); }
   const std::optional<TriangleHit>& hit(std::size_t index) const { return hits_[index]; }
 

@@ -39,10 +39,12 @@ std::size_t check_around(TracedScene<>& traced, const LegEnd& start, const Vec3&
   for (const Vec3& direction : launch_directions(3000)) directions.push_back(direction);
   for (const Vec3& along : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1), Vec3(-1, 1, 0)}) directions.push_back(along);
   SurfaceHits together, one_by_one;
-  TraversalCounters counters;
-  together.find_around(traced.tracer, from_m, directions, start, ignored, counters);
+  TraversalCounters of_fan, of_rays, counters;
+  together.find_around(traced.tracer, from_m, directions, start, ignored, of_fan);
   for (const Vec3& direction : directions) one_by_one.add(traced.scene, {from_m, direction}, start, ignored);
-  one_by_one.find(traced.tracer, counters);
+  one_by_one.find(traced.tracer, of_rays);
+  CHECK(of_fan == of_rays);
+  CHECK(of_fan.nodes_visited > 0);
   REQUIRE(together.size() == directions.size());
   std::size_t count = 0;
   for (std::size_t ray = 0; ray < directions.size(); ++ray) {
@@ -71,8 +73,19 @@ TEST_CASE("rays from a device in the street, on the ground, on a wall, on a roof
   }
 }
 
-TEST_CASE("rays from a point of a facet that lies along another one") {
+TEST_CASE("what lies at the very place is not met, though nothing says that the device is mounted on it") {
   Street street;
+  for (const Vec3& from_m : {Vec3(-5, 0, 0), Vec3(-22, 5, 3)}) {
+    CHECK(check_around(street.traced, {}, from_m, {}) > 500);
+  }
+}
+
+TEST_CASE("rays from a point of a facet, and from close before its plane") {
+  Street street;
+  const Vec3 before_m(-5, 0, 5e-5);
+  const Plane& ground = street.traced.scene.facet(street.traced.facet_at(Vec3(-5, 0, 0), "metal")).plane;
+  CHECK(check_around(street.traced, {{}, {&ground, nullptr}}, before_m, {}) > 500);
+  CHECK(check_around(street.traced, {{}, {nullptr, &ground}}, before_m, {}) > 500);
   const Vec3 at_m(-22, 5, 3);
   const FacetId wall = street.traced.facet_at(at_m, "wall");
   const LegEnd start{{&wall, 1}, {&street.traced.scene.facet(wall).plane, nullptr}};

@@ -109,7 +109,7 @@ class ClosestCandidates {
   [[gnu::always_inline]] void add(const Candidate& candidate, const WideArrays& tree, const Ray<double>& ray,
                                   float limit, TraversalCounters& counters) {
     // Looked at when the walk is over; where nothing is known of the side, the first one is as good as the other.
-    __builtin_prefetch(&tree.planes[candidate.quad].side[candidate.certainty == QuadCertainty::second ? 1 : 0]);
+    __builtin_prefetch(&likely_plane(tree, candidate.quad, candidate.certainty));
     if (count_ == held_.size()) drop_beyond(limit);
     if (count_ < held_.size()) {
       held_[count_++] = candidate;

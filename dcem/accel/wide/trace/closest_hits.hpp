@@ -7,6 +7,7 @@
 #include <span>
 
 #include "dcem/accel/wide/trace/packet.hpp"
+#include "dcem/accel/wide/trace/packet_source.hpp"
 #include "dcem/accel/wide/trace/queries.hpp"
 #include "dcem/accel/wide/trace/stream.hpp"
 

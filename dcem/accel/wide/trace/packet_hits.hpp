@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <new>
-#include <optional>
 
 #include "dcem/accel/wide/trace/candidates.hpp"
 #include "dcem/accel/wide/trace/packet_quads.hpp"
@@ -61,6 +60,7 @@ class PacketHits {
     const ClosestCandidates::Candidate nearest = held(index);
     const TrianglePlane& plane = likely_plane(tree_, nearest.quad, nearest.certainty);
     const auto& ray = source_.ray(index);
+    // As seldom as a list: what goes there is out of line already.
     if (!is_told_by(plane, nearest.certainty, ray)) return decide_among(index, limit);
     ++counters_.primitives_tested;
     const double t = plane.t_of(ray);

@@ -55,7 +55,8 @@ class PacketRays {
     const Float4 distance = absolute(origin_m);
     extent_m = tree.extent_m;
     farthest_m = std::max(distance[0], std::max(distance[1], distance[2]));
-    if (!(farthest_m <= 1e5F * extent_m && smallest_m <= extent_m && farthest_m + extent_m <= largest_m)) return 1;
+    const bool is_near = (sign_bits(distance <= 1e5F * extent_m) & 7U) == 7U;  // false for what is no number
+    if (!is_near || !(smallest_m <= extent_m && farthest_m + extent_m <= largest_m)) return 1;
     const std::size_t most = std::min(source.size(), capacity);
     asked = 0;
     for (std::size_t taken = simd_lanes; taken == simd_lanes && asked < most; asked += taken) {

@@ -1,10 +1,12 @@
 #pragma once
-/// Where the rays of a packet come from: questions of any kind one after another, or the rays of a fan.
+/// Where the rays of a packet come from: questions of any kind one after another, or the rays of a fan. Packets are
+/// templates over the two, which have the same functions.
 #include <algorithm>
 #include <cstddef>
 #include <span>
 
 #include "dcem/accel/hit_filter.hpp"
+#include "dcem/core/instruction_set.hpp"
 
 namespace dcem {
 
@@ -40,6 +42,7 @@ class FanInTurn {
 
   std::size_t size() const { return directions_.size(); }
   const Vec3& direction(std::size_t index) const { return directions_[index]; }
+  /// Made when it is asked for.
   Ray<double> ray(std::size_t index) const { return {fan_->origin, directions_[index]}; }
   const HitFilter& filter(std::size_t) const { return fan_->filter; }
   bool begins_together() const { return size() > 1; }

@@ -112,22 +112,38 @@ std::vector<Vec3> directions_of(std::span<const RayQuery> queries) {
   return directions;
 }
 
+/// What a fan meets, and the work that it takes.
+struct FanTold {
+  std::vector<std::optional<TriangleHit>> hits;
+  TraversalCounters counters;
+
+  std::size_t hit_count() const {
+    return static_cast<std::size_t>(std::ranges::count_if(hits, [](const auto& hit) { return hit.has_value(); }));
+  }
+  friend bool operator==(const FanTold&, const FanTold&) = default;
+};
+
 /// Asks for a fan and for its rays with a filter each, in the same blocks: the same answers for the same work.
-void check_fan(const Town& town, const Vec3& from_m, std::span<const Vec3> directions, const HitFilter& filter,
-               std::size_t block) {
-  TraversalCounters as_fan, as_rays;
+FanTold check_fan(const Town& town, const Vec3& from_m, std::span<const Vec3> directions, const HitFilter& filter,
+                  std::size_t block) {
+  FanTold told;
+  TraversalCounters as_rays;
   for (std::size_t first = 0; first < directions.size(); first += block) {
     const std::span<const Vec3> own = directions.subspan(first, std::min(block, directions.size() - first));
     std::vector<RayQuery> queries;
     for (const Vec3& direction : own) queries.push_back({{from_m, direction}, filter});
     std::vector<std::optional<TriangleHit>> hits(own.size(), TriangleHit{-1.0, 77}), expected = hits;
-    town.tree.closest_hits(RayFan{from_m, own, filter}, hits, &as_fan);
+    town.tree.closest_hits(RayFan{from_m, own, filter}, hits, &told.counters);
     town.tree.closest_hits(queries, expected, &as_rays);
     REQUIRE(hits == expected);
     town.twin.closest_hits(RayFan{from_m, own, filter}, expected);
     REQUIRE(hits == expected);
+    told.hits.insert(told.hits.end(), hits.begin(), hits.end());
   }
-  CHECK(as_fan == as_rays);
+  CHECK(told.counters == as_rays);
+  // A hit is told by a triangle that was looked at.
+  CHECK(told.counters.primitives_tested >= told.hit_count());
+  return told;
 }
 
 }  // namespace
@@ -258,10 +274,14 @@ TEST_CASE("a fan meets what its rays meet with a filter each, for the same work"
     CAPTURE(trial);
     const Town town(11 + static_cast<std::uint64_t>(trial % 5), 100);
     const Vec3 corner_m = town.mesh.vertices[8];
-    const Vec3 from_m = trial % 10 == 0   ? corner_m
-                        : trial % 10 == 1 ? Vec3(3e5, 2e5, 1e5)
+    const bool is_far = trial % 10 == 1;
+    const Vec3 from_m = is_far            ? Vec3(3e5, 2e5, 1e5)
+                        : trial % 10 == 0 ? corner_m
                                           : Vec3(between(random, -150, 150), between(random, -150, 150), 3.0);
     std::vector<Vec3> directions = directions_of(sphere(from_m, trial % 2 == 0 ? 300 : 3000, random));
+    for (Vec3& direction : directions) {
+      if (is_far) direction = 200.0 * direction - from_m;  // towards the town
+    }
     HitFilter filter;
     if (trial % 3 == 1) {
       filter.counts = is_of_a_third;
@@ -273,7 +293,8 @@ TEST_CASE("a fan meets what its rays meet with a filter each, for the same work"
     if (trial % 5 == 4) {
       for (Vec3& direction : directions) direction *= std::pow(10.0, between(random, -8.0, 8.0));
     }
-    check_fan(town, from_m, directions, filter, 1 + static_cast<std::size_t>(random.next() % 1500));
+    const std::size_t block = 1 + static_cast<std::size_t>(random.next() % 1500);
+    CHECK(check_fan(town, from_m, directions, filter, block).hit_count() > 0);
   }
 }
 
@@ -285,10 +306,14 @@ TEST_CASE("fans that are no packet: in any order, of few rays, of none, with num
   std::vector<Vec3> shuffled = directions;
   for (std::size_t ray = shuffled.size(); ray > 1; --ray) std::swap(shuffled[ray - 1], shuffled[random.next() % ray]);
   check_fan(town, from_m, shuffled, {}, 1024);
-  for (std::size_t count = 0; count < 10; ++count) {
+  for (std::size_t count = 1; count < 10; ++count) {
     check_fan(town, from_m, std::span(directions).first(count), {}, 100);
-    check_fan(town, from_m, directions, {}, count + 1);
+    check_fan(town, from_m, directions, {}, count);
   }
+  TraversalCounters of_none;
+  town.tree.closest_hits(RayFan{from_m, {}, {}}, {}, &of_none);
+  town.twin.closest_hits(RayFan{from_m, {}, {}}, {}, &of_none);
+  CHECK(of_none == TraversalCounters{});
   std::vector<Vec3> odd = directions;
   for (std::size_t ray = 0; ray < odd.size(); ray += 1 + random.next() % 20) {
     const std::array<double, 6> numbers{0.0, dcem_test::not_a_number, dcem_test::infinity, 1e-30, 1e30, -1.0};
@@ -297,8 +322,13 @@ TEST_CASE("fans that are no packet: in any order, of few rays, of none, with num
     if (ray % 2 == 1) odd[ray] *= number;
   }
   check_fan(town, from_m, odd, {}, 512);
-  check_fan(town, Vec3(dcem_test::not_a_number, 0, 0), directions, {}, 512);
-  check_fan(town, Vec3(1e30, 0, 0), directions, {}, 512);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double number : {dcem_test::not_a_number, dcem_test::infinity, -1e30}) {
+      Vec3 nowhere_m = from_m;
+      nowhere_m[axis] = number;
+      check_fan(town, nowhere_m, directions, {}, 512);
+    }
+  }
 }
 
 TEST_CASE("a fan needs a place for each answer") {
@@ -316,15 +346,20 @@ TEST_CASE("packets of all sizes: every level of instructions gives the same answ
   RandomStream random(10);
   const Town town(10, 150);
   const std::vector<RayQuery> queries = sphere(Vec3(4, 3, 25), 5000, random);
+  const HitFilter filter{.sure_from = 30.0F, .sure_to = 80.0F, .counts = is_of_a_third, .context = &thirds[1]};
+  const auto ask_fan = [&](std::size_t block) {
+    return check_fan(town, Vec3(4, 3, 25), directions_of(queries), filter, block);
+  };
   for (const std::size_t block : {64U, 63U, 41U, 1000U}) {
     CAPTURE(block);
     select_instruction_set(InstructionSet::baseline);
     const Work expected = check(town, queries, block);
+    const FanTold expected_fan = ask_fan(block);
     for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
       if (!is_supported(set)) continue;
       select_instruction_set(set);
       const Work work = check(town, queries, block);
-      check_fan(town, Vec3(4, 3, 25), directions_of(queries), {}, block);
+      CHECK(ask_fan(block) == expected_fan);
       CHECK(work.together == expected.together);
       CHECK(work.alone == expected.alone);
     }
