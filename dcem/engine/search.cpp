@@ -9,6 +9,7 @@
 #include "dcem/paths/halves/beam_table_bodies.hpp"
 #include "dcem/paths/halves/body_elements_bodies.hpp"
 #include "dcem/paths/halves/crowd_beams_bodies.hpp"
+#include "dcem/paths/halves/driven_ways_bodies.hpp"
 #include "dcem/paths/halves/edge_looker_bodies.hpp"
 #include "dcem/paths/halves/facet_outlines_bodies.hpp"
 #include "dcem/paths/halves/keller_view_bodies.hpp"

@@ -17,6 +17,7 @@
 #include "dcem/core/thread_pool.hpp"
 #include "dcem/field/field_evaluator.hpp"
 #include "dcem/field/medium_loss.hpp"
+#include "dcem/paths/halves/driven_ways.hpp"
 #include "dcem/paths/lifetime/facet_rims.hpp"
 #include "dcem/paths/path_finder.hpp"
 #include "dcem/scene/scene.hpp"
@@ -218,6 +219,7 @@ class BasicSimulator {
   void find_lifetimes(std::vector<LinkResult>& links, const TransmitterEnds& transmitters);
   PoolSource pool_source(const FollowedLink& link) const;
   void note_places();
+  void note_ways();
   void note_transmitters(const TransmitterEnds& ends);
   void choose_remembered(std::size_t walking);
   std::size_t receivers_on_the_move() const;
@@ -249,6 +251,7 @@ class BasicSimulator {
   /// That devices have come into, and what may carry a path there; those that are followed point to the places.
   std::unique_ptr<KnownPlaces> known_places_ = std::make_unique<KnownPlaces>();
   KnownPools known_pools_;
+  DrivenWays driven_ways_;  ///< of receivers, where sequences of three elements are joined
   std::size_t most_known_places_ = 0;
   std::vector<std::optional<LinkEnd>> transmitters_before_;
   std::vector<std::optional<DeviceState>> transmitter_states_before_;

@@ -40,11 +40,30 @@ std::vector<Vec3> way_through(Draw& draw, std::size_t steps) {
 }
 
 /// Somebody who is where the first one was some frames before, a hand's breadth aside.
-WaypointMotion behind(const std::vector<Vec3>& way_m, std::size_t later, const Vec3& aside_m) {
-  return way_of(frames + 1, [&](double at) {
-    const auto index = static_cast<std::size_t>(at) + way_m.size() - frames - 1;
+WaypointMotion behind(const std::vector<Vec3>& way_m, std::size_t seen, std::size_t later, const Vec3& aside_m) {
+  return way_of(seen + 1, [&](double at) {
+    const auto index = static_cast<std::size_t>(at) + way_m.size() - seen - 1;
     return Pose{way_m[index - later] + aside_m, 0, 0, 0};
   });
+}
+
+/// Straight through the street and past it.
+std::vector<Vec3> straight_way(Draw& draw, std::size_t steps) {
+  const Vec3 from_m = draw.inside(Vec3(-48, -1, 0.5), Vec3(-43, 1, 2));
+  const Vec3 step_m(draw.between(0.8, 1.2), draw.between(-0.02, 0.02), 0.0);
+  std::vector<Vec3> way_m;
+  while (way_m.size() < steps) way_m.push_back(from_m + static_cast<double>(way_m.size()) * step_m);
+  return way_m;
+}
+
+template <typename WayOf>
+void add_column(Draw& draw, Scene& scene, std::size_t seen, WayOf way_of_steps) {
+  const std::size_t gap = 3 + draw.below(6), count = 2 + draw.below(3);
+  const std::vector<Vec3> way_m = way_of_steps(draw, seen + 1 + gap * count);
+  for (std::size_t number = 0; number < count; ++number) {
+    const Vec3 aside_m = number == 0 ? Vec3(0.0) : draw.inside(Vec3(-0.1, -0.1, -0.05), Vec3(0.1, 0.1, 0.05));
+    scene.add_receiver(moving_device("follower" + std::to_string(number), behind(way_m, seen, gap * number, aside_m)));
+  }
 }
 
 Scene column_in_street(Draw& draw) {
@@ -60,12 +79,7 @@ Scene column_in_street(Draw& draw) {
                                           return Pose{at >= from && at < to ? there_m : here_m, 0, 0, 0};
                                         })));
   }
-  const std::size_t gap = 3 + draw.below(6), count = 2 + draw.below(3);
-  const std::vector<Vec3> way_m = way_through(draw, frames + 1 + gap * count);
-  for (std::size_t number = 0; number < count; ++number) {
-    const Vec3 aside_m = number == 0 ? Vec3(0.0) : draw.inside(Vec3(-0.1, -0.1, -0.05), Vec3(0.1, 0.1, 0.05));
-    scene.add_receiver(moving_device("follower" + std::to_string(number), behind(way_m, gap * number, aside_m)));
-  }
+  add_column(draw, scene, frames, way_through);
   return scene;
 }
 
@@ -89,10 +103,34 @@ MemoryTally follow_column(std::uint64_t seed) {
   return trial.tally();
 }
 
+/// Three interactions, at steps at which nobody makes places for himself alone.
+MemoryTally follow_fast_column(std::uint64_t seed) {
+  Draw draw(seed);
+  Scene scene = small_street(draw);
+  scene.add_transmitter(device_at("mast", draw.inside(Vec3(-8, -3, 2), Vec3(8, 3, 9)), 30.0));
+  constexpr std::size_t fast_frames = 90;
+  add_column(draw, scene, fast_frames, straight_way);
+  SimulationSettings settings = memory_settings({2, 0, 1, 3});
+  settings.threads = 1 + static_cast<unsigned>(draw.below(3));
+  MemoryTrial trial(scene, settings);
+  CAPTURE(seed);
+  for (std::size_t index = 0; index < fast_frames; ++index)
+    trial.advance(scene.frame_at(static_cast<double>(index), index));
+  return trial.tally();
+}
+
 }  // namespace
 
 TEST_CASE("what others knew of a place changes no bit, though transmitters move and frames are left out") {
   check_drives(40, follow_column);
+}
+
+TEST_CASE("three interactions, driving fast: who is followed, or follows, goes through places, and no bit changes") {
+  MemoryTally sum;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) sum += follow_fast_column(seed);
+  CHECK(sum.different == 0);
+  CHECK(sum.paths > 10'000);
+  CHECK(sum.work != sum.work_anew);  // which it is where everybody looks himself
 }
 
 }  // namespace test_memory_of_columns

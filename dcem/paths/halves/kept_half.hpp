@@ -33,6 +33,9 @@ struct PlaceUse {
   bool over_mirrors = false;           ///< places know what is seen through their mirrors, too
   bool candidates = true;              ///< of links are found meanwhile: work is shared out with them
   const KnownPlaces* known = nullptr;  ///< the device takes over those that lie on its way; they must outlive it
+  /// The longest step of one whose way others come: somebody follows it, or it is where known places are.
+  double longest_shared_step_m = 0.0;
+  bool is_followed = false;
 };
 
 class KeptHalf {
@@ -73,7 +76,7 @@ class KeptHalf {
   /// What the device reaches; none where that is not known.
   const BeamLists* lists() const { return has_lists_ ? &lists_ : nullptr; }
   /// Whether the device takes what it sees from places, or will soon.
-  bool is_in_places() const { return places_ && end_ && step_m_ <= places_->longest_step_m; }
+  bool is_in_places() const { return places_ && end_ && (step_m_ <= places_->longest_step_m || is_on_shared_way_); }
   /// Where the device is on its way; none where it looks itself.
   const std::shared_ptr<const Place>& place() const { return place_; }
   /// Where it will be soon, and in how many frames; none where that is not known.
@@ -127,6 +130,7 @@ class KeptHalf {
   /// Goes over to another place, if it is in none and one is there.
   bool enter(const Scene& scene, const FacetOutlines& outlines, const Vec3& now_m, const Vec3& step_m,
              const HalfSettings& settings);
+  /// Takes over the place that the device will come into, or begins one: not for itself alone if it is fast.
   void begin_next(const Vec3& now_m, const Vec3& step_m);
 
   /// After how many frames a device that moves on like this is in a place no more: `most` + 1 where it is longer.
@@ -143,8 +147,8 @@ class KeptHalf {
   /// Whether it is then no farther aside than the box is wide.
   static bool leads_by(const PlaceBox& box, const Vec3& now_m, int frames, const Vec3& step_m);
 
-  /// Whether a device that has moved so far will be in a place for some frames.
-  bool pays(const Vec3& moved_m) const { return places_ && glm::length(moved_m) <= places_->longest_step_m; }
+  /// Whether a device that has moved so far to where it is will be in a place for some frames, or others will.
+  bool pays(const Vec3& now_m, const Vec3& moved_m);
 
   /// A place that begins so far behind a device and lies where it is going.
   static PlaceBox place_ahead(const Vec3& before_m, const Vec3& now_m, double behind_m);
@@ -181,8 +185,9 @@ class KeptHalf {
   int frames_to_next_ = 0, work_on_next_ = 0;
   int misses_ = 0, pause_ = 0;  ///< places that were not come into, one after the other; frames to wait after the last
   double step_m_ = 0.0;         ///< from the frame before
-  Vec3 moved_m_{0.0};           ///< in the frame before, on the way through places
-  double turns_by_m_ = 0.0;     ///< how far the last step has led aside from where the one before it led
+  bool is_on_shared_way_ = false;  ///< where longer steps pay
+  Vec3 moved_m_{0.0};              ///< in the frame before, on the way through places
+  double turns_by_m_ = 0.0;        ///< how far the last step has led aside from where the one before it led
 };
 
 /// So many, each with maps of this many pixels a side.

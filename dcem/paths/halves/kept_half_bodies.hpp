@@ -41,7 +41,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   if (!has_lists_ && frames_standing_ == 0 && !wanted.at_once) lists_ = {};  // those of where it stood
   const bool lists_follow = has_bodies_ && has_listed_bodies_ && !moved.empty();
   if (!stands) step_m_ = glm::length(step_m);
-  const bool goes_on = !stands && is_followed && !closer && pays(step_m);
+  const bool goes_on = !stands && is_followed && !closer && pays(end.position_m, step_m);
   if (!stands && !goes_on) leave_places();
   if (!has_scenery_ && !(goes_on && follow(scene, outlines, end, step_m, settings))) {
     find_scenery(scene, outlines, end, settings, closer, goes_on ? nullptr : wanted.pool);
@@ -77,7 +77,7 @@ DCEM_INLINE bool KeptHalf::update_in_place(const Scene& scene, const FacetOutlin
   forget_views();  // those from where it stood, too, if it has gone away and come back since it was asked about
   lists_ = {};
   step_m_ = glm::length(step_m);
-  if (!is_followed || !pays(step_m)) {
+  if (!is_followed || !pays(end.position_m, step_m)) {
     leave_places();
   } else if (follow(scene, outlines, end, step_m, settings)) {
     half_.find_bodies(scene, outlines, settings, moved);
@@ -86,6 +86,17 @@ DCEM_INLINE bool KeptHalf::update_in_place(const Scene& scene, const FacetOutlin
   }
   half_ = PathHalf(half_.map_pixels());
   return false;
+}
+
+DCEM_INLINE bool KeptHalf::pays(const Vec3& now_m, const Vec3& moved_m) {
+  if (!places_) return false;
+  const double length_m = glm::length(moved_m);
+  const auto is_shared = [&] {
+    return places_->is_followed || place_ ||
+           (places_->known != nullptr && places_->known->find(now_m, moved_m, places_->over_mirrors));
+  };
+  is_on_shared_way_ = length_m > places_->longest_step_m && length_m <= places_->longest_shared_step_m && is_shared();
+  return length_m <= places_->longest_step_m || is_on_shared_way_;
 }
 
 DCEM_INLINE void KeptHalf::forget() {
@@ -163,6 +174,7 @@ DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines&
   if (!place_ && !next_) frames_to_next_ = frames_of_looking();  // through its mirrors, too, if places do
   if (place_ && frames_to_next_ > detail::most_frames) return;
   if (!next_) begin_next(now_m, step_m);
+  if (!next_) return;
   const int share = even_share(next_->work_left() + work_of_others, work_on_next_, frames_to_next_);
   while (!next_->is_known() && fits(next_->next_work(), work_on_next_, share)) {
     work_on_next_ += next_->next_work();
@@ -193,7 +205,8 @@ DCEM_INLINE void KeptHalf::see_whether_next_is_met(const Vec3& now_m, const Vec3
 DCEM_INLINE void KeptHalf::begin_next(const Vec3& now_m, const Vec3& step_m) {
   const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
   if (places_->known != nullptr) next_ = places_->known->find(then_m, step_m, places_->over_mirrors);
-  if (next_) return;
+  const bool pays_alone = step_m_ <= places_->longest_step_m || places_->is_followed;
+  if (next_ || !pays_alone) return;
   made_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m, behind_m(now_m, then_m)), places_->over_mirrors);
   next_ = made_;
 }
@@ -256,7 +269,7 @@ DCEM_INLINE void KeptHalf::leave_places() {
   next_.reset();
   made_.reset();
   moved_m_ = Vec3(0.0);
-  has_entered_ = false;
+  has_entered_ = is_on_shared_way_ = false;
 }
 
 DCEM_INLINE std::vector<KeptHalf> kept_halves(std::size_t count, int map_pixels) {

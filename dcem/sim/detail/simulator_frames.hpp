@@ -179,6 +179,7 @@ TreeUpdateReport BasicSimulator<Surface, Index>::move_to(const Frame& frame) {
   for (KeptHalf& half : halves_) half.forget_bodies();
   known_pools_.clear();
   *known_places_ = {};
+  driven_ways_ = {};
   return update_index(changes);
 }
 

@@ -62,7 +62,12 @@ void BasicSimulator<Surface, Index>::look_for_triples(Following& following, deta
     return;
   }
   const HalfSettings settings = half_settings(search);
-  memory.half.keep_places({detail::longest_step_of_triples_m, false, true, true, known_places_.get()});
+  const bool pools = std::ranges::any_of(following.transmitters.halves,
+                                         [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; });
+  const double longest_shared_step_m = pools ? detail::longest_pooled_step_m(change_->bodies_there()) : 0.0;
+  const auto device = static_cast<std::size_t>(&memory - receivers_.data());
+  memory.half.keep_places({detail::longest_step_of_triples_m, false, true, true, known_places_.get(),
+                           longest_shared_step_m, driven_ways_.is_followed(device)});
   following.goes_through_places = true;
   if (stands) {
     memory.forget_pools();
@@ -196,6 +201,7 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Fol
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::note_places() {
   if (plan_.joined == 0) return;
+  if (joins_triples(search_settings({}))) note_ways();
   for (detail::ReceiverMemory& memory : receivers_) {
     if (!memory.half.place()) continue;
     if (const auto entered = memory.half.take_entered()) known_places_->note(entered);
@@ -212,6 +218,16 @@ void BasicSimulator<Surface, Index>::note_places() {
   }
   if (!known_places_->next_frame(most_known_places_)) return;
   known_pools_.keep([&](const Place& place, std::size_t) { return known_places_->holds(place); });
+}
+
+/// Where receivers have driven in the frame.
+template <SurfaceModel Surface, SpatialIndex Index>
+void BasicSimulator<Surface, Index>::note_ways() {
+  for (std::size_t device = 0; device < receivers_.size(); ++device) {
+    const DeviceState state = state_of(scene_.receivers()[device]);
+    driven_ways_.note(device, state.present ? std::optional(state.position_m) : std::nullopt);
+  }
+  driven_ways_.next_frame();
 }
 
 }  // namespace dcem

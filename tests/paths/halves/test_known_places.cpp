@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "dcem/paths/halves/kept_half.hpp"
@@ -254,6 +255,31 @@ TEST_CASE("work is done when it must be, and no frame does more than its share a
   }
   CHECK(even_share(10, 0, 0) == 10);  // late: now
   CHECK(even_share(10, 5, 5) == 3);
+}
+
+TEST_CASE("who drives fast makes places where he is followed, takes over those of others, and makes none for himself") {
+  const auto drive = [](bool is_first_followed, double step_m) {
+    Column column(2, step_m);
+    column.at_m = {30.0, 0.0};
+    std::set<const Place*> made, taken_over;
+    for (int frame = 0; frame < 80; ++frame) {
+      column.halves[0].keep_places({0.75, false, false, true, &column.known, 2.0, is_first_followed});
+      column.halves[1].keep_places({0.75, false, false, true, &column.known, 2.0, false});
+      column.go_on();
+      if (column.entered[0]) made.insert(column.entered[0].get());
+      if (column.entered[1]) {
+        CHECK(made.contains(column.entered[1].get()));
+        taken_over.insert(column.entered[1].get());
+      }
+    }
+    return std::pair(made.size(), taken_over.size());
+  };
+  const auto [made, taken_over] = drive(true, 1.4);
+  CHECK(made > 5);
+  CHECK(taken_over > 3);
+  CHECK(taken_over < made);
+  CHECK(drive(false, 1.4) == std::pair<std::size_t, std::size_t>(0, 0));
+  CHECK(drive(true, 2.1) == std::pair<std::size_t, std::size_t>(0, 0));
 }
 
 }  // namespace test_known_places
