@@ -28,14 +28,15 @@ struct HalfLists {
 
 /// How a device makes use of places.
 struct PlaceUse {
-  double longest_step_m = 0.0;         ///< one that moves by more from frame to frame does not
+  double longest_step_m = 0.0;         ///< for itself alone one that moves by more from frame to frame does not
   bool images_at_once = false;         ///< images are laid out at once, or when they are asked for
   bool over_mirrors = false;           ///< places know what is seen through their mirrors, too
   bool candidates = true;              ///< of links are found meanwhile: work is shared out with them
   const KnownPlaces* known = nullptr;  ///< the device takes over those that lie on its way; they must outlive it
-  /// The longest step of one whose way others come: somebody follows it, or it is where known places are.
+  /// The longest step of one whose way others come: of one with followers, which makes places for them, and of one that
+  /// follows, as long as it takes theirs over.
   double longest_shared_step_m = 0.0;
-  bool is_followed = false;
+  bool has_followers = false, follows = false;
 };
 
 class KeptHalf {
@@ -147,8 +148,8 @@ class KeptHalf {
   /// Whether it is then no farther aside than the box is wide.
   static bool leads_by(const PlaceBox& box, const Vec3& now_m, int frames, const Vec3& step_m);
 
-  /// Whether a device that has moved so far to where it is will be in a place for some frames, or others will.
-  bool pays(const Vec3& now_m, const Vec3& moved_m);
+  /// Notes whether a device that has moved so far to where it is will be in a place for some frames, or others will.
+  bool note_whether_it_pays(const Vec3& now_m, const Vec3& moved_m);
 
   /// A place that begins so far behind a device and lies where it is going.
   static PlaceBox place_ahead(const Vec3& before_m, const Vec3& now_m, double behind_m);

@@ -41,7 +41,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   if (!has_lists_ && frames_standing_ == 0 && !wanted.at_once) lists_ = {};  // those of where it stood
   const bool lists_follow = has_bodies_ && has_listed_bodies_ && !moved.empty();
   if (!stands) step_m_ = glm::length(step_m);
-  const bool goes_on = !stands && is_followed && !closer && pays(end.position_m, step_m);
+  const bool goes_on = !stands && is_followed && !closer && note_whether_it_pays(end.position_m, step_m);
   if (!stands && !goes_on) leave_places();
   if (!has_scenery_ && !(goes_on && follow(scene, outlines, end, step_m, settings))) {
     find_scenery(scene, outlines, end, settings, closer, goes_on ? nullptr : wanted.pool);
@@ -77,7 +77,7 @@ DCEM_INLINE bool KeptHalf::update_in_place(const Scene& scene, const FacetOutlin
   forget_views();  // those from where it stood, too, if it has gone away and come back since it was asked about
   lists_ = {};
   step_m_ = glm::length(step_m);
-  if (!is_followed || !pays(end.position_m, step_m)) {
+  if (!is_followed || !note_whether_it_pays(end.position_m, step_m)) {
     leave_places();
   } else if (follow(scene, outlines, end, step_m, settings)) {
     half_.find_bodies(scene, outlines, settings, moved);
@@ -88,15 +88,18 @@ DCEM_INLINE bool KeptHalf::update_in_place(const Scene& scene, const FacetOutlin
   return false;
 }
 
-DCEM_INLINE bool KeptHalf::pays(const Vec3& now_m, const Vec3& moved_m) {
+DCEM_INLINE bool KeptHalf::note_whether_it_pays(const Vec3& now_m, const Vec3& moved_m) {
+  is_on_shared_way_ = false;
   if (!places_) return false;
   const double length_m = glm::length(moved_m);
-  const auto is_shared = [&] {
-    return places_->is_followed || place_ ||
+  if (length_m <= places_->longest_step_m) return true;
+  const auto takes_over = [&] {
+    return place_ || next_ ||
            (places_->known != nullptr && places_->known->find(now_m, moved_m, places_->over_mirrors));
   };
-  is_on_shared_way_ = length_m > places_->longest_step_m && length_m <= places_->longest_shared_step_m && is_shared();
-  return length_m <= places_->longest_step_m || is_on_shared_way_;
+  is_on_shared_way_ =
+      length_m <= places_->longest_shared_step_m && (places_->has_followers || (places_->follows && takes_over()));
+  return is_on_shared_way_;
 }
 
 DCEM_INLINE void KeptHalf::forget() {
@@ -205,7 +208,7 @@ DCEM_INLINE void KeptHalf::see_whether_next_is_met(const Vec3& now_m, const Vec3
 DCEM_INLINE void KeptHalf::begin_next(const Vec3& now_m, const Vec3& step_m) {
   const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
   if (places_->known != nullptr) next_ = places_->known->find(then_m, step_m, places_->over_mirrors);
-  const bool pays_alone = step_m_ <= places_->longest_step_m || places_->is_followed;
+  const bool pays_alone = step_m_ <= places_->longest_step_m || places_->has_followers;
   if (next_ || !pays_alone) return;
   made_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m, behind_m(now_m, then_m)), places_->over_mirrors);
   next_ = made_;

@@ -25,7 +25,7 @@ namespace dcem::detail {
 inline double longest_pooled_step_m(std::size_t bodies) {
   return std::min(2.0, 400.0 / static_cast<double>(std::max<std::size_t>(1, bodies)));
 }
-/// … the same where sequences of three elements are joined …
+/// … the same where sequences of three elements are joined, and nobody follows who could take places over …
 inline constexpr double longest_step_of_triples_m = 0.75;
 /// … and where it is joined anew in each frame.
 inline constexpr double longest_step_in_place_m = 0.25;

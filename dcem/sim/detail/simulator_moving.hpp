@@ -1,6 +1,9 @@
 #pragma once
 /// How a `BasicSimulator` finds the paths of a link that moves, from what its ends see and from what is known of
 /// places; included by basic_simulator.hpp.
+#include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "dcem/paths/halves/half_joiner.hpp"
@@ -62,12 +65,17 @@ void BasicSimulator<Surface, Index>::look_for_triples(Following& following, deta
     return;
   }
   const HalfSettings settings = half_settings(search);
-  const bool pools = std::ranges::any_of(following.transmitters.halves,
-                                         [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; });
-  const double longest_shared_step_m = pools ? detail::longest_pooled_step_m(change_->bodies_there()) : 0.0;
+  // Where most transmitters have listed what they reach: other links are joined from what the place sees, which is
+  // more.
+  const auto listed = std::ranges::count_if(following.transmitters.halves,
+                                            [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; });
+  const bool mostly_pools = 2 * static_cast<std::size_t>(listed) > following.transmitters.link.size();
   const auto device = static_cast<std::size_t>(&memory - receivers_.data());
-  memory.half.keep_places({detail::longest_step_of_triples_m, false, true, true, known_places_.get(),
-                           longest_shared_step_m, driven_ways_.is_followed(device)});
+  PlaceUse use{detail::longest_step_of_triples_m, false, true, true, known_places_.get()};
+  use.longest_shared_step_m = mostly_pools ? detail::longest_pooled_step_m(change_->bodies_there()) : 0.0;
+  use.has_followers = driven_ways_.has_followers(device);
+  use.follows = driven_ways_.follows(device);
+  memory.half.keep_places(use);
   following.goes_through_places = true;
   if (stands) {
     memory.forget_pools();
@@ -201,7 +209,8 @@ std::vector<PathContribution> BasicSimulator<Surface, Index>::paths_in_place(Fol
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::note_places() {
   if (plan_.joined == 0) return;
-  if (joins_triples(search_settings({}))) note_ways();
+  const auto is_listed = [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; };
+  if (joins_triples(search_settings({})) && std::ranges::any_of(halves_, is_listed)) note_ways();
   for (detail::ReceiverMemory& memory : receivers_) {
     if (!memory.half.place()) continue;
     if (const auto entered = memory.half.take_entered()) known_places_->note(entered);
@@ -220,12 +229,13 @@ void BasicSimulator<Surface, Index>::note_places() {
   known_pools_.keep([&](const Place& place, std::size_t) { return known_places_->holds(place); });
 }
 
-/// Where receivers have driven in the frame.
+/// Where receivers have driven that may take over places.
 template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::note_ways() {
   for (std::size_t device = 0; device < receivers_.size(); ++device) {
-    const DeviceState state = state_of(scene_.receivers()[device]);
-    driven_ways_.note(device, state.present ? std::optional(state.position_m) : std::nullopt);
+    const detail::ReceiverMemory& memory = receivers_[device];
+    const bool takes_over = memory.end && is_remembered_[device] != 0 && memory.half.is_followed();
+    driven_ways_.note(device, takes_over ? std::optional(memory.end->position_m) : std::nullopt);
   }
   driven_ways_.next_frame();
 }

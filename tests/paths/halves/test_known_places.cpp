@@ -257,14 +257,20 @@ TEST_CASE("work is done when it must be, and no frame does more than its share a
   CHECK(even_share(10, 5, 5) == 3);
 }
 
-TEST_CASE("who drives fast makes places where he is followed, takes over those of others, and makes none for himself") {
-  const auto drive = [](bool is_first_followed, double step_m) {
+TEST_CASE(
+    "who drives fast makes places where he has followers, takes over those of others, and makes none for himself") {
+  const auto drive = [](bool has_followers, bool follows, double step_m) {
     Column column(2, step_m);
     column.at_m = {30.0, 0.0};
+    PlaceUse use{0.75, false, false, true, &column.known, 2.0};
     std::set<const Place*> made, taken_over;
     for (int frame = 0; frame < 80; ++frame) {
-      column.halves[0].keep_places({0.75, false, false, true, &column.known, 2.0, is_first_followed});
-      column.halves[1].keep_places({0.75, false, false, true, &column.known, 2.0, false});
+      use.has_followers = has_followers;
+      use.follows = false;
+      column.halves[0].keep_places(use);
+      use.has_followers = false;
+      use.follows = follows;
+      column.halves[1].keep_places(use);
       column.go_on();
       if (column.entered[0]) made.insert(column.entered[0].get());
       if (column.entered[1]) {
@@ -274,12 +280,14 @@ TEST_CASE("who drives fast makes places where he is followed, takes over those o
     }
     return std::pair(made.size(), taken_over.size());
   };
-  const auto [made, taken_over] = drive(true, 1.4);
+  const auto [made, taken_over] = drive(true, true, 1.4);
   CHECK(made > 5);
   CHECK(taken_over > 3);
   CHECK(taken_over < made);
-  CHECK(drive(false, 1.4) == std::pair<std::size_t, std::size_t>(0, 0));
-  CHECK(drive(true, 2.1) == std::pair<std::size_t, std::size_t>(0, 0));
+  constexpr std::pair<std::size_t, std::size_t> none(0, 0);
+  CHECK(drive(true, false, 1.4) == std::pair(made, std::size_t{0}));
+  CHECK(drive(false, true, 1.4) == none);
+  CHECK(drive(true, true, 2.1) == none);
 }
 
 }  // namespace test_known_places
