@@ -33,10 +33,10 @@ struct PlaceUse {
   bool over_mirrors = false;           ///< places know what is seen through their mirrors, too
   bool candidates = true;              ///< of links are found meanwhile: work is shared out with them
   const KnownPlaces* known = nullptr;  ///< the device takes over those that lie on its way; they must outlive it
-  /// The longest step of one whose way others come: of one with followers, which makes places for them, and of one that
-  /// follows, as long as it takes theirs over.
+  /// The longest step of one whose way others come: of one that leads them, and makes places for all, and of one that
+  /// follows, as long as it can take places over.
   double longest_shared_step_m = 0.0;
-  bool has_followers = false, follows = false;
+  bool leads = false, follows = false;
 };
 
 class KeptHalf {

@@ -98,7 +98,7 @@ DCEM_INLINE bool KeptHalf::note_whether_it_pays(const Vec3& now_m, const Vec3& m
            (places_->known != nullptr && places_->known->find(now_m, moved_m, places_->over_mirrors));
   };
   is_on_shared_way_ =
-      length_m <= places_->longest_shared_step_m && (places_->has_followers || (places_->follows && takes_over()));
+      length_m <= places_->longest_shared_step_m && (places_->leads || (places_->follows && takes_over()));
   return is_on_shared_way_;
 }
 
@@ -208,7 +208,7 @@ DCEM_INLINE void KeptHalf::see_whether_next_is_met(const Vec3& now_m, const Vec3
 DCEM_INLINE void KeptHalf::begin_next(const Vec3& now_m, const Vec3& step_m) {
   const Vec3 then_m = now_m + static_cast<double>(frames_to_next_) * step_m;
   if (places_->known != nullptr) next_ = places_->known->find(then_m, step_m, places_->over_mirrors);
-  const bool pays_alone = step_m_ <= places_->longest_step_m || places_->has_followers;
+  const bool pays_alone = step_m_ <= places_->longest_step_m || places_->leads;
   if (next_ || !pays_alone) return;
   made_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m, behind_m(now_m, then_m)), places_->over_mirrors);
   next_ = made_;

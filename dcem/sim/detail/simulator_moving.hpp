@@ -73,8 +73,8 @@ void BasicSimulator<Surface, Index>::look_for_triples(Following& following, deta
   const auto device = static_cast<std::size_t>(&memory - receivers_.data());
   PlaceUse use{detail::longest_step_of_triples_m, false, true, true, known_places_.get()};
   use.longest_shared_step_m = mostly_pools ? detail::longest_pooled_step_m(change_->bodies_there()) : 0.0;
-  use.has_followers = driven_ways_.has_followers(device);
   use.follows = driven_ways_.follows(device);
+  use.leads = !use.follows && driven_ways_.has_followers(device);  // one for all: each would take a frame and a half
   memory.half.keep_places(use);
   following.goes_through_places = true;
   if (stands) {

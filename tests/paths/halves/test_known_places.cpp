@@ -258,17 +258,17 @@ TEST_CASE("work is done when it must be, and no frame does more than its share a
 }
 
 TEST_CASE(
-    "who drives fast makes places where he has followers, takes over those of others, and makes none for himself") {
-  const auto drive = [](bool has_followers, bool follows, double step_m) {
+    "who drives fast makes places where he leads others, takes over those of others, and makes none for himself") {
+  const auto drive = [](bool leads, bool follows, double step_m) {
     Column column(2, step_m);
     column.at_m = {30.0, 0.0};
     PlaceUse use{0.75, false, false, true, &column.known, 2.0};
     std::set<const Place*> made, taken_over;
     for (int frame = 0; frame < 80; ++frame) {
-      use.has_followers = has_followers;
+      use.leads = leads;
       use.follows = false;
       column.halves[0].keep_places(use);
-      use.has_followers = false;
+      use.leads = false;
       use.follows = follows;
       column.halves[1].keep_places(use);
       column.go_on();
