@@ -28,9 +28,10 @@ class DrivenWays {
   std::size_t size() const { return cells_.size(); }
 
  private:
-  /// A way is remembered for some seconds: places of who came so long before are mostly forgotten, too. It takes some
-  /// frames until somebody counts as a follower, who then does so a little longer than he is seen.
-  static constexpr std::uint64_t lifetime_frames = 40, least_frames = 3, lasting_frames = 10;
+  /// A way is remembered no longer than the places on it are known: six for each receiver, each for four frames at
+  /// 1.4 m (`known_places_per_receiver`); for who comes later they would be made in vain. It takes some frames until
+  /// somebody counts as a follower, who then does so a little longer than he is seen.
+  static constexpr std::uint64_t lifetime_frames = 24, least_frames = 3, lasting_frames = 10;
   static constexpr double longest_step_m = 2.0;  ///< of those who take over places
   static constexpr double cell_m = 1.0;
   static constexpr double beside_m = 0.4, above_m = 0.1, least_cosine = 0.94;  ///< one place holds both: 20 degrees

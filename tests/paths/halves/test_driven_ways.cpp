@@ -64,7 +64,7 @@ TEST_CASE("of those who drive one behind the other all but the last have followe
       const Vec3 hair_m = draw.between(-0.18, 0.18) * aside + Vec3(0, 0, draw.between(-0.04, 0.04));
       return straight(at_m - later * step_m + hair_m, step_m);
     };
-    CHECK(roles({behind(0), behind(5), behind(30.5)}, 60) == AllRoles{first, middle, last});
+    CHECK(roles({behind(0), behind(5), behind(25.5)}, 60) == AllRoles{first, middle, last});
     CHECK(roles({behind(8.3), behind(0)}, 60) == AllRoles{last, first});
   }
 }
@@ -84,7 +84,7 @@ TEST_CASE("nobody follows who comes towards one, crosses, drives beside, above, 
   nobody(straight(start_m - Vec3(15, 0.6, 0), step_m));
   nobody(straight(start_m - Vec3(15, 0, 1.5), step_m));
   nobody(straight(start_m - Vec3(15, 0, 0), Vec3(0.0)));
-  nobody(straight(start_m - Vec3(1.4 * 45, 0, 0), step_m));
+  nobody(straight(start_m - Vec3(1.4 * 30, 0, 0), step_m));
   nobody(straight(start_m - Vec3(100, 0, 0), Vec3(2.2, 0, 0)));
   nobody([](int) { return std::nullopt; });
   // Side by side, and in one and the same place.
