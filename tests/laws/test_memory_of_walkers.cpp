@@ -40,7 +40,27 @@ WaypointMotion walk(Draw& draw) {
   });
 }
 
-Scene walked_street(Draw& draw) {
+/// Goes straight on, some frames each time, and then a step aside, up or down, or round a corner.
+WaypointMotion walk_straight(Draw& draw) {
+  Vec3 at_m = draw.inside(Vec3(-8, -3, 0.5), Vec3(8, 3, 2));
+  const double step_m = draw.magnitude(0.02, 0.3);
+  double yaw_rad = draw.between(-pi, pi);
+  std::size_t left = 16;  // until then it is in a place
+  return way_of(frames + 1, [&](double) {
+    const Vec3 ahead(std::cos(yaw_rad), std::sin(yaw_rad), 0), aside(-ahead.y, ahead.x, 0);
+    at_m += step_m * ahead;
+    if (left-- > 0) return Pose{at_m, 0, 0, 0};
+    left = 3 + draw.below(8);
+    const std::size_t how = draw.below(4);
+    if (how < 2) at_m += draw.magnitude(0.02, 0.5) * (draw.below(2) == 0 ? aside : -aside);
+    if (how == 2) at_m.z += draw.between(-0.08, 0.08);
+    if (how == 3) yaw_rad += draw.between(-1, 1);
+    return Pose{at_m, 0, 0, 0};
+  });
+}
+
+template <typename Walk>
+Scene walked_street(Draw& draw, Walk&& walk) {
   Scene scene = small_street(draw);
   const std::size_t cars = draw.below(3);
   for (std::size_t car = 0; car < cars; ++car) {
@@ -61,9 +81,10 @@ Scene walked_street(Draw& draw) {
   return scene;
 }
 
-MemoryTally follow_walk(std::uint64_t seed) {
+template <typename Walk>
+MemoryTally follow_walk(std::uint64_t seed, Walk&& walk) {
   Draw draw(seed);
-  const Scene scene = walked_street(draw);
+  const Scene scene = walked_street(draw, walk);
   const std::vector<MemoryOrders> orders{{3, 0, 1, 3}, {2, 0, 1, 3},       {2, 1, 1, 3},
                                          {3, 0, 0, 3}, {2, 0, 1, 3, true}, {2, 2, 1, 3}};
   SimulationSettings settings = memory_settings(orders[draw.below(orders.size())]);
@@ -83,7 +104,11 @@ MemoryTally follow_walk(std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE("memory changes no bit of walks through random streets, over three interactions") {
-  check_drives(24, follow_walk);
+  check_drives(24, [](std::uint64_t seed) { return follow_walk(seed, walk); });
+}
+
+TEST_CASE("nor of walks straight on that step aside") {
+  check_drives(24, [](std::uint64_t seed) { return follow_walk(seed, walk_straight); });
 }
 
 }  // namespace test_memory_of_walkers

@@ -25,8 +25,9 @@ TriangleMesh box_of(const Vec3& low_m, const Vec3& high_m, const std::string& ma
 }
 
 /// Follows a drive; the number of paths must change in the middle of it, and memory must have spared work.
-void check_changes(const Scene& scene, std::size_t frames, std::size_t least_changes = 1) {
-  MemoryTrial trial(scene, memory_settings(with_edges));
+void check_changes(const Scene& scene, std::size_t frames, std::size_t least_changes = 1,
+                   const MemoryOrders& orders = with_edges) {
+  MemoryTrial trial(scene, memory_settings(orders));
   std::size_t changes = 0, before = 0;
   for (std::size_t index = 0; index < frames; ++index) {
     const std::size_t paths = trial.advance_to(static_cast<double>(index), index).links[0].paths.size();
@@ -120,6 +121,52 @@ TEST_CASE("points run along mirrors far faster than the receiver, out from behin
   scene.add_receiver(moving_device("along it", straight_way(120, Vec3(0, 0.9, 1), Vec3(30, 1.2, 1))));
   scene.add_receiver(moving_device("across", straight_way(120, Vec3(12, 28, 1), Vec3(14, 3, 1))));
   check_changes(scene, 120);
+}
+
+/// Along a wall at y = 0, 30 cm beside it, and after some frames 70.
+WaypointMotion stepping_aside(double from_x_m, std::size_t when) {
+  return way_of(64, [=](double at) {
+    return Pose{Vec3(from_x_m + 0.14 * at, at < static_cast<double>(when) ? 0.3 : 0.7, 1.5), 0, 0, 0};
+  });
+}
+
+TEST_CASE(
+    "a receiver that has gone straight along a wall steps aside, and the point on the wall leaps by twenty metres") {
+  TriangleMesh mesh;
+  add_sheet(mesh, Vec3(17.5, 0, 3), Vec3(17.5, 0, 0), Vec3(0, 0, 3), "metal");  // it ends 35 m from the mast
+  add_box_faces(mesh, Vec3(60, -6, 0), Vec3(64, -5, 4), "metal");
+  for (const std::size_t when : {20U, 26U, 30U, 34U, 43U, 46U, 50U}) {
+    CAPTURE(when);
+    Scene scene = scene_of(mesh);
+    scene.add_transmitter(device_at("mast", Vec3(0, 0.3, 2), 30.0));
+    scene.add_receiver(moving_device("rx", stepping_aside(98, when)));
+    check_changes(scene, 64);
+  }
+}
+
+TEST_CASE("nor is that lost where two more mirrors are on the way") {
+  TriangleMesh mesh;
+  add_sheet(mesh, Vec3(-8.25, 0, 6.5), Vec3(11.25, 0, 0), Vec3(0, 0, 2.5), "metal");  // along which it goes
+  add_sheet(mesh, Vec3(5, 0, 8.1), Vec3(0, 2, 0), Vec3(0, 0, 0.9), "metal");          // before and behind the mast
+  add_sheet(mesh, Vec3(-20, 0, 6.5), Vec3(0, 2, 0), Vec3(0, 0, 1.5), "metal");
+  for (const std::size_t when : {20U, 26U, 30U, 34U, 43U, 46U, 50U}) {
+    CAPTURE(when);
+    Scene scene = scene_of(mesh);
+    scene.add_transmitter(device_at("mast", Vec3(0, 0.3, 8), 30.0));
+    scene.add_receiver(moving_device("rx", stepping_aside(78, when)));
+    check_changes(scene, 64, 1, {3, 0, 0, 3});
+  }
+}
+
+TEST_CASE("a way whose middle point is not there yet comes into being while the receiver drives") {
+  TriangleMesh mesh;
+  add_sheet(mesh, Vec3(1.5, 10, 3), Vec3(1, 0, 0), Vec3(0, 0, 3), "metal");
+  add_sheet(mesh, Vec3(10, 0, 3), Vec3(10, 0, 0), Vec3(0, 0, 3), "metal");
+  add_sheet(mesh, Vec3(0, 10, 3), Vec3(0, 10, 0), Vec3(0, 0, 3), "metal");
+  Scene scene = scene_of(mesh);
+  scene.add_transmitter(device_at("mast", Vec3(1, 5, 1.5), 30.0));
+  scene.add_receiver(moving_device("rx", straight_way(81, Vec3(2, 2, 1.5), Vec3(6, 2, 1.5))));
+  check_changes(scene, 81, 1, {3, 0, 0, 3});
 }
 
 TEST_CASE("a mast that is put up elsewhere while the receiver stays in its place") {

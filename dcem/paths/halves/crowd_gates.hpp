@@ -124,7 +124,7 @@ class CrowdGates {
       const auto lane = static_cast<std::size_t>(std::countr_zero(left));
       if (!(beside_m[lane] < too_vague_m)) continue;
       const Vec3 point_m = lanes_.origin_m() + Vec3(place[0][lane], place[1][lane], place[2][lane]);
-      pixels[lane] = sight.map().pixels_of_point(point_m, factor, beside_m[lane]);
+      pixels[lane] = sight.map().pixels_of_point(point_m, factor, Vec3(beside_m[lane]));
       if (pixels[lane]) sight.map().fetch_pixels(*pixels[lane]);
     }
     std::uint32_t seen = 0;

@@ -28,7 +28,7 @@ class WorkSteps {
 };
 
 /// What it takes to find the candidates of a place (`CandidatePool`), and those of three elements (`TriplePool`).
-inline constexpr int candidates_work = 20, triples_work = 1360;
+inline constexpr int candidates_work = 20, triples_work = 1290;
 
 /// What a frame does of work that is to be done within this many frames: an even share of what is left and of what the
 /// frame has spent already.

@@ -132,16 +132,17 @@ class ViewMap {
     int face;
     float nearness;
   };
-  /// Those of a point that is known to within `beside_m`, its distance divided by `nearer` ≥ 1; none where they say
-  /// nothing of it.
-  std::optional<PointPixels> pixels_of_point(const Vec3& point_m, double nearer, double beside_m = 0.0) const;
+  /// Those of a point that is known to within `beside_m`, axis by axis, its distance divided by `nearer` ≥ 1; none
+  /// where they say nothing of it.
+  std::optional<PointPixels> pixels_of_point(const Vec3& point_m, double nearer,
+                                             const Vec3& beside_m = Vec3(0.0)) const;
   /// Asks for the first of them before they are looked at.
   [[gnu::always_inline]] void fetch_pixels(const PointPixels& of) const {
     fetch(row(of.face, of.rows.first)[of.columns.first]);
   }
   /// Whether what is in them is hidden for sure.
   bool hides(const PointPixels& of) const;
-  bool hides(const Vec3& point_m, double nearer, double beside_m = 0.0) const {
+  bool hides(const Vec3& point_m, double nearer, const Vec3& beside_m = Vec3(0.0)) const {
     const std::optional<PointPixels> pixels = pixels_of_point(point_m, nearer, beside_m);
     return pixels && hides(*pixels);
   }

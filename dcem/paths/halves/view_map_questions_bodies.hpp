@@ -57,23 +57,28 @@ DCEM_INLINE bool ViewMap::shows(const Vec3& from_m, const Vec3& to_m, double nea
 }
 
 DCEM_INLINE std::optional<ViewMap::PointPixels> ViewMap::pixels_of_point(const Vec3& point_m, double nearer,
-                                                                         double beside_m) const {
+                                                                         const Vec3& beside_m) const {
   const Vec3 offset_m = point_m - from_m_, size = glm::abs(offset_m);
   const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   const double depth = size[axis];
-  if (depth < 1e-3 || point_m.z - beside_m < least_height_m_) return std::nullopt;
-  // Moved by beside_m, the point moves by less than this on the face; close to a rim of it the map says nothing.
-  const double blur = 2.5 * beside_m / depth;
-  if (blur > 0.5) return std::nullopt;
-  const double across = offset_m[(axis + 1) % 3] / depth, along = offset_m[(axis + 2) % 3] / depth;
-  if (beside_m > 0.0 && std::max(std::abs(across), std::abs(along)) + blur >= 1.0) return std::nullopt;
+  const double nearer_m = beside_m[axis], least_depth_m = depth - nearer_m;
+  if (depth < 1e-3 || least_depth_m < 0.5 * depth || point_m.z - beside_m.z < least_height_m_) return std::nullopt;
+  // On the face, x/d moves to (x + Δx)/(d + Δd), by (Δx − Δd x/d)/(d + Δd). Close to a rim of it the map says nothing.
+  const auto blur = [&](int at, double place) {
+    return (1.0 + 1e-6) * (beside_m[at] + std::abs(place) * nearer_m) / least_depth_m;
+  };
+  const int right = (axis + 1) % 3, up = (axis + 2) % 3;
+  const double across = offset_m[right] / depth, along = offset_m[up] / depth;
+  const double aside = blur(right, across), above = blur(up, along);
+  const bool is_vague = aside > 0.0 || above > 0.0;
+  if (is_vague && std::max(std::abs(across) + aside, std::abs(along) + above) >= 1.0) return std::nullopt;
   const auto pixel = [&](double place) {
     return std::clamp(static_cast<int>((place + 1.0) * 0.5 * pixels_), 0, pixels_ - 1);
   };
   const int face = 2 * axis + (offset_m[axis] < 0.0 ? 1 : 0);
-  const auto nearness = static_cast<float>(nearer * (1.0 + detail::nearness_rounding) / (depth - beside_m));
+  const auto nearness = static_cast<float>(nearer * (1.0 + detail::nearness_rounding) / least_depth_m);
   return PointPixels{
-      {pixel(along - blur), pixel(along + blur)}, {pixel(across - blur), pixel(across + blur)}, face, nearness};
+      {pixel(along - above), pixel(along + above)}, {pixel(across - aside), pixel(across + aside)}, face, nearness};
 }
 
 DCEM_INLINE bool ViewMap::hides(const PointPixels& of) const {

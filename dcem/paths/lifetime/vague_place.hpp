@@ -48,7 +48,7 @@ class VaguePlace {
     const Sight& sight = place_.sight();
     const double nearer = element.is_edge() ? sight.nearer_on(scene, outlines, element.edge())
                                             : sight.nearer_on(scene, outlines, element.mirror());
-    return sight.map().hides(point.at_m, nearer, point.moved_m);
+    return sight.map().hides(point.at_m, nearer, Vec3(point.moved_m));
   }
   /// Facets and edges of bodies, ascending, that may be seen while bodies and the end move.
   const SeenLayer& bodies() const { return bodies_; }

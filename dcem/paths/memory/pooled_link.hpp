@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dcem/paths/memory/known_pools.hpp"
+#include "dcem/paths/memory/receiver_way.hpp"
 #include "dcem/paths/memory/sure_blocker.hpp"
 #include "dcem/paths/memory/triple_ways.hpp"
 #include "dcem/paths/memory/way_finder.hpp"
@@ -66,18 +67,19 @@ class PooledLink {
   /// Calls `solve(sequence) -> bool` for candidates that may carry a path; it says whether they do.
   template <typename Index, typename Solve>
   void for_each_open(const PoolJudge<Index>& judge, Solve&& solve) {
-    note_step(judge.receiver.position_m);
+    go_on_to(judge.receiver.position_m);
     of_place_.pool->for_each_at(judge.receiver.position_m, [&](std::size_t number) {
       Slot& slot = slots_[number];
-      if (way_m_ < slot.refused_until_m || !of_place_.pool->aim(judge.gates, judge.receiver.position_m, number, way_))
+      if (receiver_way_.is_refused(slot) ||
+          !of_place_.pool->aim(judge.gates, judge.receiver.position_m, number, way_)) {
         return;
+      }
       const bool was_open = slot.is_open;
       slot.is_open = was_open && solve(way_.elements);
-      const auto reach_m = [&](double moved_m) {
-        return way_reach_m(judge.gates.scene(), judge.receiver.position_m, way_, moved_m);
+      const auto reach = [&](const Drift& receiver) {
+        return way_reach(judge.gates.scene(), judge.receiver.position_m, way_, receiver);
       };
-      if (slot.is_open || is_masked(judge, slot, reach_m) || is_stopped_by_any(judge, slot, reach_m) || was_open)
-        return;
+      if (slot.is_open || is_masked(judge, slot, reach) || is_stopped_by_any(judge, slot, reach) || was_open) return;
       slot.is_open = solve(way_.elements);
     });
   }
@@ -90,31 +92,30 @@ class PooledLink {
     const std::span<const Triple> all = of_place_.triples->candidates();
     for (std::size_t number = 0; number < all.size(); ++number) {
       Slot& slot = triple_slots_[number];
-      if (way_m_ < slot.refused_until_m) continue;
+      if (receiver_way_.is_refused(slot)) continue;
       const bool was_open = std::exchange(slot.is_open, false);
-      const auto refuses = [&](double moved_m) { return ways.refuses(all[number], moved_m); };
+      const auto refuses = [&](const Drift& receiver) { return ways.refuses(all[number], receiver); };
       // Most are refused, and for as long as they were the last time.
-      const bool is_refused = holds_ahead(slot, refuses) || holds_for_a_while(slot, refuses, Ahead::fails);
+      const bool is_refused = receiver_way_.holds_ahead(slot, refuses) ||
+                              receiver_way_.holds_for_a_while(slot, refuses, ReceiverWay::Ahead::fails);
       slot.is_masked = is_refused && ways.is_hidden();
       if (is_refused) continue;
       way_.elements.assign(all[number].begin(), all[number].end());
       way_.points_m = ways.points_m();
-      const auto reach_m = [&](double moved_m) {
-        ways.work_out(all[number], moved_m);
-        return ways.reach_m();
+      const auto reach = [&](const Drift& receiver) {
+        ways.work_out(all[number], receiver);
+        return ways.reach();
       };
       if (was_open) slot.is_open = solve(way_.elements);
-      if (slot.is_open || (ways.has_points() && is_stopped_by_any(judge, slot, reach_m)) || was_open) continue;
+      if (slot.is_open || (ways.has_points() && is_stopped_by_any(judge, slot, reach)) || was_open) continue;
       slot.is_open = solve(way_.elements);
     }
   }
 
  private:
-  struct Slot {
-    double refused_until_m = 0.0;  ///< of the way that the receiver has come
-    float ahead_m = 0.5F;          ///< for how far ahead that is asked the next time
-    Blocker blocker{};             ///< what stopped it last, where it is known
+  struct Slot : Refusal {
     bool is_known = false, is_open = false, is_masked = false;
+    Blocker blocker{};  ///< what stopped it last, where it is known
   };
 
   /// Takes over the candidates of a place from others, where they are known; `old` ones, too, that hold more than they
@@ -124,49 +125,43 @@ class PooledLink {
   int work_left() const { return (made_ ? made_->work_left() : 0) + (made_triples_ ? made_triples_->work_left() : 0); }
   int next_work() const { return made_->steps_left() > 0 ? made_->next_work() : made_triples_->next_work(); }
 
-  /// What is known of something for as far ahead as would be asked first: nothing, or that it does not hold; what may
-  /// move holds for now alone.
-  enum class Ahead { unknown, fails, not_asked };
-
-  /// It pays to ask for no less than the frame after the next one.
-  float shortest_ahead_m() const { return static_cast<float>(1.5 * step_m_); }
-
-  void note_step(const Vec3& receiver_m);
+  /// The receiver is at a point now.
+  void go_on_to(const Vec3& receiver_m);
 
   /// Goes over to the candidates of three elements of the next place.
   void enter_triples(const TriplePool* before);
 
   /// Whether something opaque surely stops the candidate aimed at; if so, until when, and what it is.
-  /// `reach_m(moved_m)` says how far the points of the way may move.
+  /// `reach(drift)` says how far the points of the way may move while the receiver does.
   template <typename Index, typename Reach>
-  bool is_stopped_by_any(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach_m) {
-    if (slot.is_known && is_stopped(judge, slot, reach_m)) return true;
+  bool is_stopped_by_any(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach) {
+    if (slot.is_known && is_stopped(judge, slot, reach)) return true;
     points_m_.assign(way_.points_m.rend() - static_cast<std::ptrdiff_t>(way_.elements.size()), way_.points_m.rend());
     const auto blocker =
         judge.ways.blocker(judge.transmitter, judge.receiver, way_.elements, points_m_, judge.counters);
     if (!blocker) return false;
     slot.blocker = *blocker;
     slot.is_known = true;
-    return is_stopped(judge, slot, reach_m);
+    return is_stopped(judge, slot, reach);
   }
 
   /// Whether an end surely does not see the point of the candidate aimed at that is next to it; if so, until when.
   template <typename Index, typename Reach>
-  bool is_masked(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach_m) const {
+  bool is_masked(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach) const {
     const Scene& scene = judge.gates.scene();
     const Sight &near = of_place_.pool->place().sight(), &far = judge.transmitter_half.sight();
-    slot.is_masked = holds_for_a_while(slot, [&](double receiver_moved_m) {
-      const WayReach moved_m = reach_m(receiver_moved_m);
-      return hides(scene, judge.outlines, near, 0, moved_m) ||
-             hides(scene, judge.outlines, far, way_.elements.size() - 1, moved_m);
+    slot.is_masked = receiver_way_.holds_for_a_while(slot, [&](const Drift& receiver) {
+      const WayReach moved = reach(receiver);
+      return hides(scene, judge.outlines, near, 0, moved) ||
+             hides(scene, judge.outlines, far, way_.elements.size() - 1, moved);
     });
     return slot.is_masked;
   }
   bool hides(const Scene& scene, const FacetOutlines& outlines, const Sight& sight, std::size_t at,
-             const WayReach& moved_m) const;
+             const WayReach& reach) const;
 
   template <typename Index, typename Reach>
-  bool is_stopped(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach_m) const {
+  bool is_stopped(const PoolJudge<Index>& judge, Slot& slot, Reach&& reach) const {
     const Scene& scene = judge.gates.scene();
     const std::size_t leg = slot.blocker.leg, count = way_.elements.size();
     std::array<FacetId, 4> own;
@@ -183,52 +178,22 @@ class PooledLink {
     if ((leg == 0 && touches(judge.transmitter)) || (leg == count && touches(judge.receiver))) return false;
     VagueLeg vague{leg == 0 ? judge.transmitter.position_m : way_.points_m[count - leg],
                    leg == count ? judge.receiver.position_m : way_.points_m[count - 1 - leg],
-                   0.0,
-                   0.0,
+                   Drift(),
+                   Drift(),
                    std::span(own).first(owned),
                    {judge.transmitter.ignored_body, judge.receiver.ignored_body}};
     const bool may_move = scene.facet(facet).body != BodyId(0);
-    return holds_for_a_while(
+    return receiver_way_.holds_for_a_while(
         slot,
-        [&](double receiver_moved_m) {
-          const WayReach moved_m = reach_m(receiver_moved_m);
-          vague.from_moved_m = leg == 0 ? 0.0 : moved_m[count - leg];
-          vague.to_moved_m = leg == count ? receiver_moved_m : moved_m[count - 1 - leg];
+        [&](const Drift& receiver) {
+          const WayReach moved = reach(receiver);
+          vague.from = leg == 0 ? Drift() : moved[count - leg];
+          vague.to = leg == count ? receiver : moved[count - 1 - leg];
           return surely_stops(scene, judge.outlines, slot.blocker.triangle, vague);
         },
-        may_move ? Ahead::not_asked : Ahead::unknown);
+        may_move ? ReceiverWay::Ahead::not_asked : ReceiverWay::Ahead::unknown);
   }
 
-  /// Whether something holds for as far ahead as is asked for next; notes it.
-  template <typename Holds>
-  bool holds_ahead(Slot& slot, Holds&& holds) const {
-    const float moved_m = std::min(slot.ahead_m, longest_ahead_m);
-    if (moved_m < shortest_ahead_m() || !holds(moved_m)) return false;
-    slot.refused_until_m = way_m_ + moved_m;
-    slot.ahead_m = 2.0F * moved_m;
-    return true;
-  }
-
-  /// Whether something holds now; if it does for some while, too, notes until when: `holds(moved_m)` is asked for all
-  /// places that the receiver may have moved to.
-  template <typename Holds>
-  bool holds_for_a_while(Slot& slot, Holds&& holds, Ahead ahead = Ahead::unknown) const {
-    if (!holds(0.0)) return false;
-    // Twice as far as the last time that it held, a quarter as far as the last time that it did not.
-    const float shortest_m = shortest_ahead_m();
-    for (int attempt = 0; attempt < 2 && ahead != Ahead::not_asked; ++attempt) {
-      const float moved_m = std::min(slot.ahead_m, longest_ahead_m);
-      if (moved_m < shortest_m) break;
-      const bool held = (attempt > 0 || ahead != Ahead::fails) && holds(moved_m);
-      if (held) slot.refused_until_m = way_m_ + moved_m;
-      slot.ahead_m = held ? 2.0F * moved_m : 0.25F * moved_m;
-      if (held) break;
-    }
-    if (slot.ahead_m < shortest_m) slot.ahead_m *= 1.25F;  // it may be asked again some day
-    return true;
-  }
-
-  static constexpr float longest_ahead_m = 4.0F;
   PlacePools of_place_, next_;
   // The next ones, as long as they are found for this link.
   std::shared_ptr<CandidatePool> made_;
@@ -236,8 +201,7 @@ class PooledLink {
   bool has_news_ = false;
   std::vector<Slot> triple_slots_;
   std::vector<Slot> slots_;
-  double way_m_ = 0.0, step_m_ = 0.0;  ///< that the receiver has come, in all and since the frame before
-  std::optional<Vec3> before_m_;
+  ReceiverWay receiver_way_;
   CandidateWay way_;
   std::vector<Vec3> points_m_;
 };

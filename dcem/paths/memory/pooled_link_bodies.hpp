@@ -72,7 +72,7 @@ DCEM_INLINE void PooledLink::enter(const PoolSource& source, std::shared_ptr<con
   for (std::size_t number = 0; number < slots.size(); ++number) {
     if (const auto before = known.find(next_.pool->key(number))) slots[number] = slots_[*before];
     // What is hidden from one place may be seen from the other.
-    if (slots[number].is_masked) slots[number].refused_until_m = 0.0;
+    if (slots[number].is_masked) slots[number].until_m = 0.0;
   }
   slots_ = std::move(slots);
   const PlacePools before = std::exchange(of_place_, std::exchange(next_, {}));
@@ -87,10 +87,11 @@ DCEM_INLINE void PooledLink::renew(const PoolSource& source, const std::shared_p
   if (work_left() == 0) enter(source, place);
 }
 
-DCEM_INLINE void PooledLink::note_step(const Vec3& receiver_m) {
-  if (before_m_) step_m_ = glm::distance(*before_m_, receiver_m);
-  way_m_ += 1.000001 * step_m_ + 1e-9;
-  before_m_ = receiver_m;
+DCEM_INLINE void PooledLink::go_on_to(const Vec3& receiver_m) {
+  if (receiver_way_.go_on(receiver_m)) return;
+  for (std::vector<Slot>* const slots : {&slots_, &triple_slots_}) {
+    for (Slot& slot : *slots) slot.forget_course();
+  }
 }
 
 DCEM_INLINE void PooledLink::enter_triples(const TriplePool* before) {
@@ -104,16 +105,16 @@ DCEM_INLINE void PooledLink::enter_triples(const TriplePool* before) {
     if (then == old.size()) break;
     if (old[then] != all[now]) continue;
     triple_slots_[now] = known[then];
-    if (known[then].is_masked) triple_slots_[now].refused_until_m = 0.0;
+    if (known[then].is_masked) triple_slots_[now].until_m = 0.0;
   }
 }
 
 DCEM_INLINE bool PooledLink::hides(const Scene& scene, const FacetOutlines& outlines, const Sight& sight,
-                                   std::size_t at, const WayReach& moved_m) const {
+                                   std::size_t at, const WayReach& reach) const {
   const SequenceElement element = way_.elements[at];
   const double nearer = element.is_edge() ? sight.nearer_on(scene, outlines, element.edge())
                                           : sight.nearer_on(scene, outlines, element.mirror());
-  return sight.map().hides(way_.points_m[at], nearer, moved_m[at]);
+  return sight.map().hides(way_.points_m[at], nearer, spread_over(scene, element, reach[at]));
 }
 
 }  // namespace dcem

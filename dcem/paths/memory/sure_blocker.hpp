@@ -13,11 +13,11 @@
 
 namespace dcem {
 
-/// A straight leg, each of its ends known to within so many metres, and what it ignores: facets `own` at either end,
-/// and bodies that are not there.
+/// A straight leg, how far each of its ends may have moved, and what it ignores: facets `own` at either end, and bodies
+/// that are not there.
 struct VagueLeg {
   Vec3 from_m, to_m;
-  double from_moved_m = 0.0, to_moved_m = 0.0;
+  Drift from, to;
   std::span<const FacetId> own;
   IgnoredBodies ignored;
 };
@@ -41,7 +41,7 @@ inline bool is_well_inside(const std::array<Vec3, 3>& corners_m, const Vec3& nor
 /// How far from where it crosses a plane a leg may meet what strays from the plane by at most `stray_m`; `apart_m`: how
 /// far its ends are from the plane, together.
 inline double grazing_reach_m(const VagueLeg& leg, double apart_m, double stray_m) {
-  const double moved_m = leg.from_moved_m + leg.to_moved_m;
+  const double moved_m = leg.from.most_m() + leg.to.most_m();
   return stray_m * (glm::distance(leg.from_m, leg.to_m) + moved_m) / (apart_m - moved_m);
 }
 
@@ -59,9 +59,10 @@ inline bool surely_stops(const Scene& scene, const FacetOutlines& outlines, std:
   const double clear_m = 2e-3 + 2.0 * outline.lift_m;
   const double from = signed_distance_m(facet.plane, leg.from_m), to = signed_distance_m(facet.plane, leg.to_m);
   if ((from > 0.0) == (to > 0.0)) return false;
-  if (!(std::abs(from) > clear_m + leg.from_moved_m && std::abs(to) > clear_m + leg.to_moved_m)) return false;
+  const double from_room_m = clear_m + leg.from.most_m(), to_room_m = clear_m + leg.to.most_m();
+  if (!(std::abs(from) > from_room_m && std::abs(to) > to_room_m)) return false;
   const Vec3 point_m = leg.from_m + from / (from - to) * (leg.to_m - leg.from_m);
-  const double reach_m = crossing_reach_m(facet.plane, leg.from_m, leg.from_moved_m, leg.to_m, leg.to_moved_m) +
+  const double reach_m = crossing_reach_m(facet.plane, leg.from_m, leg.from, leg.to_m, leg.to) +
                          detail::grazing_reach_m(leg, std::abs(from) + std::abs(to), outline.stray_m);
   const bool is_inside = outline.fills_hull ? outlines.is_over(id, point_m, -(clear_m + reach_m))
                                             : detail::is_well_inside(scene.corners_m(triangle), facet.plane.normal,

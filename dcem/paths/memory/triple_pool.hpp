@@ -34,8 +34,8 @@ class TriplePool {
   void go_on(const Scene& scene, const FacetOutlines& outlines, const LaneScene& lanes);
   int steps_left() const { return steps_left_; }
   /// As `Place` has them.
-  int next_work() const { return step_work; }
-  int work_left() const { return step_work * steps_left_; }
+  int next_work() const { return WorkSteps(step_work).next(steps_left_); }
+  int work_left() const { return WorkSteps(step_work).left(steps_left_); }
 
   /// All of them, each once, in order.
   std::span<const Triple> candidates() const { return candidates_; }
@@ -43,8 +43,9 @@ class TriplePool {
  private:
   struct Finder;
 
-  static constexpr int steps = 8, step_work = 170;
-  static_assert(steps * step_work == triples_work);
+  static constexpr int steps = 12;  ///< the last one puts all of them in order, too
+  static constexpr std::array<int, steps> step_work{100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 190};
+  static_assert(sum_of(step_work) == triples_work);
   std::shared_ptr<const Place> place_;
   const BeamLists& reached_;
   JoinOrders orders_;

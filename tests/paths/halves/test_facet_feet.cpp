@@ -691,8 +691,9 @@ TEST_CASE("a view map hides nothing below the height that it is told, until it l
   map.hide_nothing_below(-0.5);
   CHECK(hides_all(-0.4));
   CHECK_FALSE(hides_all(-0.6));
-  CHECK(map.hides(Vec3(3, 0, -0.4), 1.0, 0.05));
-  CHECK_FALSE(map.hides(Vec3(3, 0, -0.4), 1.0, 0.15));  // it may be lower
+  CHECK(map.hides(Vec3(3, 0, -0.4), 1.0, Vec3(0.05)));
+  CHECK_FALSE(map.hides(Vec3(3, 0, -0.4), 1.0, Vec3(0.15)));  // it may be lower
+  CHECK(map.hides(Vec3(3, 0, -0.4), 1.0, Vec3(0.15, 0.15, 0)));
   map.look_from(Vec3(0.0));
   map.cover(wall_m, wall);
   CHECK(hides_all(-0.6));

@@ -114,6 +114,41 @@ TEST_CASE("points of facets that rays reach are never masked, and many of the ot
   CHECK(masked > blocked / 2);  // or the mask is not worth having
 }
 
+TEST_CASE("a point that is hidden wherever it may be is hidden at each of these places") {
+  Draw draw(12);
+  std::size_t hidden_any_way = 0, hidden_on_level = 0, lost = 0;
+  for (int round = 0; round < 4; ++round) {
+    TracedScene<> traced(scene_of(heap_of_boxes(draw, 30)));
+    const FacetOutlines outlines(traced.scene);
+    PathHalf half;
+    for (int place = 0; place < 10; ++place) {
+      const LinkEnd end = traced.end(draw.inside(Vec3(-30, -30, 0.2), Vec3(30, 30, 20)));
+      half.find_scenery(traced.scene, outlines, end, {});
+      const ViewMap& map = half.sight().map();
+      for (int point = 0; point < 2'000; ++point) {
+        const bool is_low = draw.below(2) == 0;
+        const Vec3 point_m = draw.inside(Vec3(-40, -40, is_low ? 0 : -2), Vec3(40, 40, is_low ? 0 : 20));
+        const double nearer = draw.between(1.0, 1.05), moved_m = draw.magnitude(1e-3, 5.0);
+        const Vec3 any_way_m(moved_m), level_m(moved_m, moved_m, 0);
+        hidden_any_way += map.hides(point_m, nearer, any_way_m) ? 1 : 0;
+        hidden_on_level += map.hides(point_m, nearer, level_m) ? 1 : 0;
+        const Vec3 beside_m = moved_m * draw.inside(Vec3(0), Vec3(1));
+        for (const Vec3& spread_m : {any_way_m, level_m, beside_m}) {
+          if (!map.hides(point_m, nearer, spread_m)) continue;
+          for (int at = 0; at < 12; ++at) {
+            const Vec3 share = at < 8 ? Vec3((at & 1) != 0 ? 1 : -1, (at & 2) != 0 ? 1 : -1, (at & 4) != 0 ? 1 : -1)
+                                      : draw.inside(Vec3(-1), Vec3(1));
+            lost += map.hides(point_m + 0.999999 * share * spread_m, nearer) ? 0 : 1;
+          }
+        }
+      }
+    }
+  }
+  CHECK(lost == 0);
+  CHECK(hidden_any_way > 5'000);
+  CHECK(10 * hidden_on_level > 11 * hidden_any_way);  // what moves along the ground is seen from low above it to stay
+}
+
 TEST_CASE("what fills the whole view hides everything behind it, and nothing in front") {
   ViewMap map(64);
   map.look_from(Vec3(0.0));

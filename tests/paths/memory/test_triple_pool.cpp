@@ -2,6 +2,7 @@
 /// and refused nowhere near; every path at all is among what its beams and the transmitter's lists are joined to.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +24,8 @@ namespace {
 
 struct Tally {
   std::size_t paths = 0, over_bodies = 0, missed = 0, not_listed = 0, wrongly_refused = 0;
-  std::size_t asked = 0, refused = 0;
+  std::size_t asked = 0, refused = 0, refused_ahead = 0;
+  std::size_t points = 0, too_far = 0, nearly = 0;
 };
 
 /// A street, a mast with its lists and a place with its candidates.
@@ -93,6 +95,25 @@ struct PlaceInStreet {
   std::set<Triple> candidates;
 };
 
+/// From where the receiver is now to where it gets to the points of a way move no farther than was said.
+void compare_points(const PlaceInStreet& in, const Vec3& here_m, const Vec3& there_m, const Triple& path,
+                    const Drift& drift, Tally& tally) {
+  const JoinGates gates(in.scene(), in.outlines);
+  TripleWays here(gates, in.outlines, here_m, in.place->sight(), *in.mast.lists());
+  TripleWays there(gates, in.outlines, there_m, in.place->sight(), *in.mast.lists());
+  if (!here.work_out(path, Drift()) || !here.has_points()) return;
+  if (!there.work_out(path, Drift()) || !there.has_points()) return;
+  here.work_out(path, drift);
+  const WayReach reach = here.reach();
+  for (std::size_t at = 0; at < reach.size(); ++at) {
+    if (!reach[at].is_known()) continue;
+    const double moved_m = glm::distance(here.points_m()[at], there.points_m()[at]);
+    ++tally.points;
+    tally.too_far += moved_m > reach[at].most_m() * (1.0 + 1e-6) + 1e-6 ? 1 : 0;
+    tally.nearly += moved_m > 0.5 * reach[at].most_m() ? 1 : 0;
+  }
+}
+
 /// A receiver somewhere in the place asks whether what leads to another point may be forgotten until it gets there.
 void ask_from_elsewhere(const PlaceInStreet& in, Draw& draw, const Vec3& to_m, const std::vector<Triple>& paths,
                         Tally& tally) {
@@ -101,11 +122,20 @@ void ask_from_elsewhere(const PlaceInStreet& in, Draw& draw, const Vec3& to_m, c
     const Vec3 here_m = at < 3 ? in.point_m(draw) : to_m + draw.magnitude(1e-3, 2) * draw.direction();
     if (!in.place->box().holds(here_m)) continue;
     TripleWays ways(gates, in.outlines, here_m, in.place->sight(), *in.mast.lists());
-    const double away_m = glm::distance(here_m, to_m) * 1.000001 + 1e-9;
-    for (const Triple& path : paths) tally.wrongly_refused += ways.refuses(path, away_m) ? 1 : 0;
+    const double away_m = glm::distance(here_m, to_m) * 1.000001 + 1e-9, aside_m = draw.magnitude(1e-3, 0.2);
+    // Any way, and along a line that leads there, or a little past it.
+    const Vec3 ahead = glm::normalize(to_m - here_m + draw.between(0, aside_m) * draw.direction());
+    const std::array<Drift, 3> drifts{Drift(away_m), Drift(away_m, ahead, aside_m), Drift(away_m, -ahead, aside_m)};
+    for (const Triple& path : paths) {
+      for (const Drift& drift : drifts) {
+        tally.wrongly_refused += ways.refuses(path, drift) ? 1 : 0;
+        compare_points(in, here_m, to_m, path, drift, tally);
+      }
+    }
     for (const Triple& candidate : in.candidates) {
       ++tally.asked;
-      tally.refused += ways.refuses(candidate, 0.5) ? 1 : 0;
+      tally.refused += ways.refuses(candidate, Drift(0.5)) ? 1 : 0;
+      tally.refused_ahead += ways.refuses(candidate, {0.5, ahead, 0.05}) ? 1 : 0;
     }
   }
 }
@@ -142,13 +172,18 @@ TEST_CASE("all paths of three interactions in a place are among what it knows") 
   Tally tally;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) try_place(7919 * seed, tally);
   MESSAGE(tally.paths << " paths, " << tally.over_bodies << " over bodies; of " << tally.asked << " candidates "
-                      << tally.refused << " are refused for half a metre");
+                      << tally.refused << " are refused for half a metre any way, " << tally.refused_ahead
+                      << " straight on");
   CHECK(tally.missed == 0);
   CHECK(tally.not_listed == 0);
   CHECK(tally.wrongly_refused == 0);
+  CHECK(tally.too_far == 0);
+  CHECK(tally.points > 20'000);
+  CHECK(tally.nearly > tally.points / 20);  // or too much is said
   CHECK(tally.paths > 4'000);
   CHECK(tally.over_bodies > 1'000);
   CHECK(tally.refused > tally.asked / 20);
+  CHECK(tally.refused_ahead > tally.refused);
 }
 
 }  // namespace test_triple_pool
