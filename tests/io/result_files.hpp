@@ -30,9 +30,13 @@ inline std::map<std::string, std::string> files_of(const std::filesystem::path& 
   return files;
 }
 
+/// In their order. The files may hold gigabytes, and are not read.
 inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
-  for (const auto& [name, bytes] : files_of(folder)) names.push_back(name);
+  if (!std::filesystem::exists(folder)) return names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
   return names;
 }
 
