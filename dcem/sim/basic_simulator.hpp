@@ -210,6 +210,7 @@ class BasicSimulator {
   std::vector<PathContribution> paths_of_moving(FollowedLink& link, const KeptHalf& half) const;
   bool joins_anew(const Following& following, const detail::ReceiverMemory& memory, const LinkToFollow& link) const;
   bool all_rest(const TransmitterEnds& transmitters) const;
+  bool some_rest(const TransmitterEnds& transmitters) const;
   bool may_pool(const Following& following, const KeptHalf& half, std::size_t transmitter, bool rests) const;
   void prepare_pool(FollowedLink& link, const KeptHalf& half) const;
   std::vector<PathContribution> paths_in_place(FollowedLink& link, const KeptHalf& half) const;

@@ -101,6 +101,29 @@ MemoryTally follow_walk(std::uint64_t seed, Walk&& walk) {
   return trial.tally();
 }
 
+/// Everybody walks, most of the time straight on: nobody has candidates, all are in places of their own.
+MemoryTally follow_all_walking(std::uint64_t seed) {
+  Draw draw(seed);
+  Scene scene = small_street(draw);
+  const auto way = [&] {
+    Vec3 at_m = draw.inside(Vec3(-6, -3, 0.5), Vec3(6, 3, 2));
+    const double step_m = draw.magnitude(0.01, 0.2), turn_rad = draw.below(2) == 0 ? draw.between(-0.004, 0.004) : 0.0;
+    double yaw_rad = draw.between(-pi, pi);
+    return way_of(frames + 1, [&, at_m, step_m, turn_rad, yaw_rad](double) mutable {
+      yaw_rad += turn_rad;
+      return Pose{at_m += step_m * Vec3(std::cos(yaw_rad), std::sin(yaw_rad), 0), 0, 0, 0};
+    });
+  };
+  scene.add_transmitter(moving_device("sender", way()));
+  scene.add_receiver(moving_device("walker", way()));
+  scene.add_receiver(moving_device("other", way()));
+  const std::vector<MemoryOrders> orders{{2, 0, 1, 2}, {2, 0, 1, 3}, {3, 0, 1, 3}, {2, 1, 1, 2}};
+  MemoryTrial trial(scene, memory_settings(orders[draw.below(orders.size())]));
+  CAPTURE(seed);
+  trial.follow(frames);
+  return trial.tally();
+}
+
 }  // namespace
 
 TEST_CASE("memory changes no bit of walks through random streets, over three interactions") {
@@ -109,6 +132,14 @@ TEST_CASE("memory changes no bit of walks through random streets, over three int
 
 TEST_CASE("nor of walks straight on that step aside") {
   check_drives(24, [](std::uint64_t seed) { return follow_walk(seed, walk_straight); });
+}
+
+TEST_CASE("nor where both ends walk") {
+  MemoryTally sum;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) sum += follow_all_walking(seed);
+  MESSAGE(sum.frames << " frames, " << sum.paths << " paths, " << sum.different << " different");
+  CHECK(sum.different == 0);
+  CHECK(sum.paths > 10'000);
 }
 
 }  // namespace test_memory_of_walkers

@@ -12,6 +12,7 @@
 #include "dcem/paths/halves/known_places.hpp"
 #include "dcem/paths/halves/path_half.hpp"
 #include "dcem/paths/halves/place.hpp"
+#include "dcem/paths/halves/spread_work.hpp"
 
 namespace dcem {
 
@@ -37,6 +38,7 @@ struct PlaceUse {
   /// follows, as long as it can take places over.
   double longest_shared_step_m = 0.0;
   bool leads = false, follows = false;
+  double early = 0.5;  ///< what of a step of work may be done ahead of time (`early_of`)
 };
 
 class KeptHalf {
@@ -84,9 +86,10 @@ class KeptHalf {
   std::shared_ptr<const Place> next_place() const { return next_ && next_->is_known() ? next_ : nullptr; }
   /// The place that it has come into; told once.
   std::shared_ptr<const Place> take_entered() { return std::exchange(has_entered_, false) ? place_ : nullptr; }
-  int frames_to_next() const { return frames_to_next_; }
-  /// What the frame at hand has spent on it, and on entering the place that the device is in now.
+  /// What the frame at hand has spent on the next one, and on entering the place that the device is in now.
   int work_on_next() const { return work_on_next_; }
+  /// What others may do for it.
+  WorkAhead work_ahead() const { return {frames_to_next_, work_on_next_, places_->early}; }
 
  private:
   void note(const LinkEnd& end, std::size_t receivers) {
@@ -184,6 +187,7 @@ class KeptHalf {
   std::shared_ptr<Place> made_;  ///< the next one, as long as it is being made
   bool has_entered_ = false;
   int frames_to_next_ = 0, work_on_next_ = 0;
+  WorkAllowance allowance_;     ///< for the next place
   int misses_ = 0, pause_ = 0;  ///< places that were not come into, one after the other; frames to wait after the last
   double step_m_ = 0.0;         ///< from the frame before
   bool is_on_shared_way_ = false;  ///< where longer steps pay

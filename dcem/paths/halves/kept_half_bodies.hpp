@@ -7,7 +7,6 @@
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/kept_half.hpp"
-#include "dcem/paths/halves/spread_work.hpp"
 
 namespace dcem {
 
@@ -15,8 +14,9 @@ namespace detail {
 
 /// A place that leaves a gap to the last one begins so far behind where the device comes into it.
 inline constexpr double least_behind_m = 0.25;
-/// Frames over which the work on the next place is spread: of a device in a place, and of one that looks itself.
-inline constexpr int most_frames = 8, most_frames_of_looking = 12;
+/// Frames over which the work on the next place is spread: of a device in a place, of one that looks itself, and of one
+/// that no candidates are found for, to which a place brings less.
+inline constexpr int most_frames = 8, frames_of_looking = 12, most_frames_of_looking = 24;
 /// What an end that stands spends on its lists in a frame, for each of its links: about what one takes from scratch in
 /// Munich.
 inline constexpr double list_work_us = 2000.0;
@@ -178,8 +178,9 @@ DCEM_INLINE void KeptHalf::prepare_next(const Scene& scene, const FacetOutlines&
   if (place_ && frames_to_next_ > detail::most_frames) return;
   if (!next_) begin_next(now_m, step_m);
   if (!next_) return;
-  const int share = even_share(next_->work_left() + work_of_others, work_on_next_, frames_to_next_);
-  while (!next_->is_known() && fits(next_->next_work(), work_on_next_, share)) {
+  allowance_.next_frame(next_->work_left() + work_of_others, frames_to_next_);
+  while (!next_->is_known() && allowance_.covers(next_->next_work(), places_->early)) {
+    allowance_.spend(next_->next_work());
     work_on_next_ += next_->next_work();
     made_->go_on(scene, outlines, settings);
   }
@@ -212,6 +213,8 @@ DCEM_INLINE void KeptHalf::begin_next(const Vec3& now_m, const Vec3& step_m) {
   if (next_ || !pays_alone) return;
   made_ = std::make_shared<Place>(place_ahead(then_m - step_m, then_m, behind_m(now_m, then_m)), places_->over_mirrors);
   next_ = made_;
+  allowance_ = {};
+  allowance_.spend(work_on_next_);  // on entering the one before
 }
 
 DCEM_INLINE double KeptHalf::behind_m(const Vec3& now_m, const Vec3& then_m) const {
@@ -229,10 +232,11 @@ DCEM_INLINE int KeptHalf::frames_until_out(const PlaceBox& box, const Vec3& now_
 }
 
 DCEM_INLINE int KeptHalf::frames_of_looking() const {
-  constexpr int many = detail::most_frames_of_looking;
-  const int few = places_->over_mirrors ? 8 : 4;
   constexpr double aside_m = 0.25;  // half of what a place leaves to each side
-  return 0.5 * many * (many + 1) * turns_by_m_ <= aside_m ? many : few;
+  const auto leads_into_it = [&](int frames) { return 0.5 * frames * (frames + 1) * turns_by_m_ <= aside_m; };
+  if (!places_->candidates && leads_into_it(detail::most_frames_of_looking)) return detail::most_frames_of_looking;
+  if (leads_into_it(detail::frames_of_looking)) return detail::frames_of_looking;
+  return places_->over_mirrors ? 8 : 4;
 }
 
 DCEM_INLINE int KeptHalf::frames_until_in(const PlaceBox& box, const Vec3& now_m, const Vec3& step_m, int most) {

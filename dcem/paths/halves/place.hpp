@@ -105,10 +105,10 @@ class Place {
   void take_mirrors(const Scene& scene, const FacetOutlines& outlines, int step);
   void look_through_mirrors(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int step);
 
-  static constexpr int mirror_steps = 2, beam_steps = 12, steps_without_beams = Sight::scenery_steps + mirror_steps;
+  static constexpr int mirror_steps = 2, beam_steps = 13, steps_without_beams = Sight::scenery_steps + mirror_steps;
   /// Four faces of the map, two of them, what is seen in it, its mirrors; then what is seen through these.
-  static constexpr std::array<int, steps_without_beams + beam_steps> step_work{8,  8,  6,  5,  2,  6,  5,  5,  200, 70,
-                                                                               70, 70, 70, 70, 70, 70, 70, 70, 70,  70};
+  static constexpr std::array<int, steps_without_beams + beam_steps> step_work{
+      8, 8, 6, 5, 2, 6, 5, 5, 130, 70, 70, 70, 70, 70, 70, 70, 70, 70, 70, 70, 70};
   WorkSteps work() const { return WorkSteps(std::span(step_work).first(step_work.size() - (beams_ ? 0 : beam_steps))); }
 
   PlaceBox box_;

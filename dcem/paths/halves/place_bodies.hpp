@@ -61,19 +61,24 @@ DCEM_INLINE void Place::go_on(const Scene& scene, const FacetOutlines& outlines,
   look_through_mirrors(scene, outlines, settings, step - steps_without_beams);
 }
 
-/// One of `beam_steps` parts of them. The first one, in which the ground is, has half as many as the others.
+/// One of `beam_steps` parts of them. The first two are one part and the facets that its first mirror lights, which is
+/// the ground; in it are half as many as in the others.
 DCEM_INLINE void Place::look_through_mirrors(const Scene& scene, const FacetOutlines& outlines,
                                              const HalfSettings& settings, int step) {
-  constexpr std::size_t halves = 2 * beam_steps - 1;
+  constexpr std::size_t halves = 2 * beam_steps - 3;
   const auto before = [&](int part) {
-    return part == 0 ? 0 : mirrors_.size() * (2 * static_cast<std::size_t>(part) - 1) / halves;
+    return part <= 1 ? 0 : mirrors_.size() * (2 * static_cast<std::size_t>(part) - 3) / halves;
   };
   std::vector<Vec3> images_m;
+  const auto shared = [&](std::size_t at) {
+    find_images(scene.facet(mirrors_[at].facet).plane, mirrors_[at], images_m);
+    return SharedMirror{mirrors_[at].facet, mirrors_[at].cone, images_m};
+  };
+  if (step == 0 && !mirrors_.empty()) beams_->find_lit_facets(scene, outlines, settings, shared(0), 0, false);
   for (std::size_t at = before(step); at < before(step + 1); ++at) {
-    const PlaceMirror& mirror = mirrors_[at];
-    find_images(scene.facet(mirror.facet).plane, mirror, images_m);
-    const SharedMirror shared{mirror.facet, mirror.cone, images_m};
-    beams_->look_through(scene, outlines, outlines.middle_m(), settings, shared, static_cast<std::uint32_t>(at), false);
+    const auto place = static_cast<std::uint32_t>(at);
+    if (at > 0) beams_->find_lit_facets(scene, outlines, settings, shared(at), place, false);
+    beams_->find_lit_edges(scene, outlines, outlines.middle_m(), settings, shared(at), place);
   }
   if (steps_left_ > 0) return;
   beams_->lay_out(scene);

@@ -26,7 +26,15 @@ class SharedBeams {
   /// Looks through a mirror, the place of which is noted; `bodies`: at what moves, too. The cone counts from
   /// `origin_m`.
   void look_through(const Scene& scene, const FacetOutlines& outlines, const Vec3& origin_m,
-                    const HalfSettings& settings, const SharedMirror& mirror, std::uint32_t place, bool bodies);
+                    const HalfSettings& settings, const SharedMirror& mirror, std::uint32_t place, bool bodies) {
+    find_lit_facets(scene, outlines, settings, mirror, place, bodies);
+    find_lit_edges(scene, outlines, origin_m, settings, mirror, place);
+  }
+  /// The same in two parts, the first of which takes three times as long.
+  void find_lit_facets(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings,
+                       const SharedMirror& mirror, std::uint32_t place, bool bodies);
+  void find_lit_edges(const Scene& scene, const FacetOutlines& outlines, const Vec3& origin_m,
+                      const HalfSettings& settings, const SharedMirror& mirror, std::uint32_t place);
   /// All mirrors have been looked through.
   void lay_out(const Scene& scene);
   /// What has been found stays, room to look is given back.
@@ -57,8 +65,6 @@ class SharedBeams {
     std::vector<std::uint32_t> first_, mirrors_;
   };
 
-  void find_lit_edges(const Scene& scene, const FacetOutlines& outlines, const Vec3& origin_m,
-                      const HalfSettings& settings, const SharedMirror& mirror, std::uint32_t place);
   static bool may_light(const Scene& scene, const HalfSettings& settings, const SharedMirror& mirror, WedgeId id);
 
   static constexpr int view_pixels = 128;

@@ -29,13 +29,12 @@ DCEM_INLINE void SharedBeams::begin(bool all_between) {
   lit_.clear();
 }
 
-DCEM_INLINE void SharedBeams::look_through(const Scene& scene, const FacetOutlines& outlines, const Vec3& origin_m,
-                                           const HalfSettings& settings, const SharedMirror& mirror,
-                                           std::uint32_t place, bool bodies) {
+DCEM_INLINE void SharedBeams::find_lit_facets(const Scene& scene, const FacetOutlines& outlines,
+                                              const HalfSettings& settings, const SharedMirror& mirror,
+                                              std::uint32_t place, bool bodies) {
   sight_.look_through(scene, outlines, mirror.facet, mirror.images_m, all_between_);
   sight_.find_facets(scene, outlines, settings, bodies, seen_);
   for (const FacetId seen : seen_) pairs_.add(seen.value, place);
-  if (settings.edges) find_lit_edges(scene, outlines, origin_m, settings, mirror, place);
 }
 
 DCEM_INLINE void SharedBeams::lay_out(const Scene& scene) {
@@ -55,6 +54,7 @@ DCEM_INLINE void SharedBeams::fit() {
 DCEM_INLINE void SharedBeams::find_lit_edges(const Scene& scene, const FacetOutlines& outlines, const Vec3& origin_m,
                                              const HalfSettings& settings, const SharedMirror& mirror,
                                              std::uint32_t place) {
+  if (!settings.edges) return;
   collect_edges(scene, seen_, edges_);
   for (const WedgeId id : edges_) {
     if (!may_light(scene, settings, mirror, id)) continue;

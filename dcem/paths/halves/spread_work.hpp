@@ -1,6 +1,7 @@
 #pragma once
 /// Work that must be done by some frame, spread over the frames before it: none of them is to wait for all of it.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <span>
@@ -30,16 +31,34 @@ class WorkSteps {
 /// What it takes to find the candidates of a place (`CandidatePool`), and those of three elements (`TriplePool`).
 inline constexpr int candidates_work = 20, triples_work = 1290;
 
-/// What a frame does of work that is to be done within this many frames: an even share of what is left and of what the
-/// frame has spent already.
-inline int even_share(int left, int spent, int frames) {
-  frames = std::max(1, frames);
-  return (left + spent + frames - 1) / frames;
-}
+/// Where a frame stands with work that some frames share.
+struct WorkAhead {
+  int frames = 1;      ///< that are left for it, this one among them
+  int spent = 0;       ///< by this frame, on other parts of it
+  double early = 0.5;  ///< as `early_of` has it
+};
 
-/// Whether a frame takes one more step: rather than not if half of it fits into its share.
-inline bool fits(int next, int spent, int share) {
-  return 2 * spent + next <= 2 * share;
+/// How much a frame may do of work that is to be done within some frames: an even share of what is left, and what the
+/// frames before have not done of theirs. What they have done beyond it is taken off.
+class WorkAllowance {
+ public:
+  /// Another frame begins, the first of so many in which what is left is to be done.
+  void next_frame(int left, int frames) { allowed_ += (left - allowed_) / std::max(1, frames); }
+  void spend(int work) { allowed_ -= work; }
+
+  /// Whether the next step may be taken; `early` is what of it may still be missing, from 0 to 1.
+  bool covers(int step, double early) const { return allowed_ >= (1.0 - early) * step; }
+
+ private:
+  double allowed_ = 0.0;
+};
+
+/// Which share of a step a device takes early. Where all take as much, all that have set out together take their steps
+/// in the same frames, with nothing in those between: no two of a few are close to each other here.
+inline double early_of(std::size_t device) {
+  constexpr double golden = 0.6180339887498949;
+  const double turns = 0.5 + golden * static_cast<double>(device);
+  return turns - std::floor(turns);
 }
 
 }  // namespace dcem

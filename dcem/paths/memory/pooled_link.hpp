@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "dcem/paths/halves/spread_work.hpp"
 #include "dcem/paths/memory/known_pools.hpp"
 #include "dcem/paths/memory/receiver_way.hpp"
 #include "dcem/paths/memory/sure_blocker.hpp"
@@ -46,9 +47,8 @@ class PooledLink {
   void forget();
   bool is_of(const Place& place) const { return of_place_.pool && &of_place_.pool->place() == &place; }
 
-  /// Finds candidates of a place that will be entered after so many frames: a share of them, in a frame that has spent
-  /// some work on the place itself.
-  void prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames, int spent);
+  /// Finds candidates of a place that will be entered after some frames: a share of them.
+  void prepare(const PoolSource& source, std::shared_ptr<const Place> place, const WorkAhead& work);
 
   /// Goes over to another place. What is known of a candidate that both places have is kept.
   void enter(const PoolSource& source, std::shared_ptr<const Place> place);
@@ -198,6 +198,7 @@ class PooledLink {
   // The next ones, as long as they are found for this link.
   std::shared_ptr<CandidatePool> made_;
   std::shared_ptr<TriplePool> made_triples_;
+  WorkAllowance allowance_;
   bool has_news_ = false;
   std::vector<Slot> triple_slots_;
   std::vector<Slot> slots_;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "dcem/core/build_mode.hpp"
-#include "dcem/paths/halves/spread_work.hpp"
 #include "dcem/paths/memory/key_table.hpp"
 #include "dcem/paths/memory/pooled_link.hpp"
 
@@ -38,6 +37,7 @@ DCEM_INLINE void PooledLink::begin(const PoolSource& source, std::shared_ptr<con
       place->beams() == nullptr ? nullptr : std::make_shared<TriplePool>(place, source.reached, source.orders);
   made_ = std::make_shared<CandidatePool>(std::move(place), source.reached, source.orders);
   next_ = {made_, made_triples_};
+  allowance_ = {};
 }
 
 DCEM_INLINE void PooledLink::go_on(const PoolSource& source) {
@@ -48,12 +48,13 @@ DCEM_INLINE void PooledLink::go_on(const PoolSource& source) {
   }
 }
 
-DCEM_INLINE void PooledLink::prepare(const PoolSource& source, std::shared_ptr<const Place> place, int frames,
-                                     int spent) {
+DCEM_INLINE void PooledLink::prepare(const PoolSource& source, std::shared_ptr<const Place> place,
+                                     const WorkAhead& work) {
   begin(source, std::move(place), false);
-  const int share = even_share(work_left(), spent, frames);
-  while (work_left() > 0 && fits(next_work(), spent, share)) {
-    spent += next_work();
+  allowance_.spend(work.spent);
+  allowance_.next_frame(work_left(), work.frames);
+  while (work_left() > 0 && allowance_.covers(next_work(), work.early)) {
+    allowance_.spend(next_work());
     go_on(source);
   }
 }

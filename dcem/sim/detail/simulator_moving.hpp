@@ -31,7 +31,9 @@ void BasicSimulator<Surface, Index>::look_from_receiver(Following& following, de
   }
   const double longest_step_m =
       pools ? detail::longest_pooled_step_m(change_->bodies_there()) : detail::longest_step_in_place_m;
-  memory.half.keep_places({longest_step_m, false, false, pools, known_places_.get()});
+  PlaceUse use{longest_step_m, false, false, some_rest(following.transmitters), known_places_.get()};
+  use.early = early_of(static_cast<std::size_t>(&memory - receivers_.data()));
+  memory.half.keep_places(use);
   following.goes_through_places = true;
   const HalfSettings settings = half_settings(search);
   if (stands || !memory.half.is_followed()) {
@@ -71,7 +73,8 @@ void BasicSimulator<Surface, Index>::look_for_triples(Following& following, deta
                                             [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; });
   const bool mostly_pools = 2 * static_cast<std::size_t>(listed) > following.transmitters.link.size();
   const auto device = static_cast<std::size_t>(&memory - receivers_.data());
-  PlaceUse use{detail::longest_step_of_triples_m, false, true, true, known_places_.get()};
+  PlaceUse use{detail::longest_step_of_triples_m, false, true, some_rest(following.transmitters), known_places_.get()};
+  use.early = early_of(device);
   use.longest_shared_step_m = mostly_pools ? detail::longest_pooled_step_m(change_->bodies_there()) : 0.0;
   use.follows = driven_ways_.follows(device);
   use.leads = !use.follows && driven_ways_.has_followers(device);  // one for all: each would take a frame and a half
@@ -102,6 +105,15 @@ bool BasicSimulator<Surface, Index>::all_rest(const TransmitterEnds& transmitter
     if (transmitters.link[transmitter] && transmitter_rests_[transmitters.number(transmitter)] == 0) return false;
   }
   return true;
+}
+
+/// Whether any of them is: a link with it has candidates in the receiver's places, or will have.
+template <SurfaceModel Surface, SpatialIndex Index>
+bool BasicSimulator<Surface, Index>::some_rest(const TransmitterEnds& transmitters) const {
+  for (std::size_t transmitter = 0; transmitter < transmitters.link.size(); ++transmitter) {
+    if (transmitters.link[transmitter] && transmitter_rests_[transmitters.number(transmitter)] != 0) return true;
+  }
+  return false;
 }
 
 /// All paths of a link, from sequences found from both ends. Where the ends stand, all that may carry a path later is
@@ -154,7 +166,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::prepare_pool(FollowedLink& link, const KeptHalf& half) const {
   auto next = half.next_place();
   if (!next) return;
-  link.pooled().prepare(pool_source(link), std::move(next), half.frames_to_next(), half.work_on_next());
+  link.pooled().prepare(pool_source(link), std::move(next), half.work_ahead());
 }
 
 /// What the candidates of a link are found with.

@@ -50,8 +50,11 @@ BasicSimulator<Surface, Index>::BasicSimulator(Scene scene, SimulationSettings s
   halves_ =
       kept_halves(transmitters, detail::pixels_for_facets(detail::view_pixels_for(transmitters), outlines_->size()));
   if (cache_ != CacheMode::exact) return;
-  for (KeptHalf& half : halves_)
-    half.keep_places({detail::longest_step_in_place_m, true, false, false, known_places_.get()});
+  for (std::size_t transmitter = 0; transmitter < halves_.size(); ++transmitter) {
+    PlaceUse use{detail::longest_step_in_place_m, true, false, false, known_places_.get()};
+    use.early = early_of(receivers_.size() + transmitter);
+    halves_[transmitter].keep_places(use);
+  }
 }
 
 /// What a model of the caller's own cannot do would otherwise be left out in silence.

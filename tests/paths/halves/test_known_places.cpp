@@ -235,26 +235,45 @@ TEST_CASE("a device that is alone leaves gaps between its places, and none once 
   }
 }
 
-TEST_CASE("work is done when it must be, and no frame does more than its share and half of a step") {
+TEST_CASE(
+    "of work that some frames share as much is done as frames have gone by, to within a step, and all of it in time") {
   Draw draw(8);
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < 400; ++round) {
     std::vector<int> work(1 + draw.below(15));
     for (int& one : work) one = 1 + static_cast<int>(draw.below(20));
     const WorkSteps steps(work);
-    const int frames = 1 + static_cast<int>(draw.below(9)), largest = *std::ranges::max_element(work);
+    const int frames = 1 + static_cast<int>(draw.below(30)), all = steps.left(steps.count());
+    const double early = draw.between(0.01, 0.99), largest = *std::ranges::max_element(work), hair = 1e-9;
     int steps_left = steps.count();
-    const int all = steps.left(steps_left);
-    for (int left = frames; left > 0; --left) {
-      const int share = even_share(steps.left(steps_left), 0, left);
-      int spent = 0;
-      while (steps_left > 0 && fits(steps.next(steps_left), spent, share)) spent += steps.next(steps_left--);
-      CHECK(2 * spent <= 2 * share + largest);
-      CHECK(spent <= all / frames + 1 + 2 * largest);  // shares hardly grow
+    WorkAllowance allowance;
+    for (int frame = 1; frame <= frames; ++frame) {
+      allowance.next_frame(steps.left(steps_left), frames + 1 - frame);
+      while (steps_left > 0 && allowance.covers(steps.next(steps_left), early)) {
+        allowance.spend(steps.next(steps_left--));
+      }
+      const double done = all - steps.left(steps_left), even = static_cast<double>(all) * frame / frames;
+      CHECK(done <= even + early * largest + hair);
+      CHECK(done >= even - (1.0 - early) * largest - hair);
     }
     CHECK(steps_left == 0);
   }
-  CHECK(even_share(10, 0, 0) == 10);  // late: now
-  CHECK(even_share(10, 5, 5) == 3);
+  WorkAllowance late, busy;
+  late.next_frame(10, 0);
+  CHECK(late.covers(10, 0.5));  // now
+  busy.spend(5);                // with something else
+  busy.next_frame(10, 5);
+  CHECK_FALSE(busy.covers(1, 0.5));
+}
+
+TEST_CASE("what devices take early is far apart, of one beside the next and of a few") {
+  for (std::size_t device = 0; device < 1'000; ++device) {
+    CHECK(early_of(device) > 0.0);
+    CHECK(early_of(device) < 1.0);
+    for (std::size_t other = 1; other <= 10; ++other) {
+      const double apart = std::abs(early_of(device + other) - early_of(device));
+      CHECK(std::min(apart, 1.0 - apart) > 0.3 / static_cast<double>(other));
+    }
+  }
 }
 
 TEST_CASE(

@@ -55,7 +55,8 @@ TEST_CASE("candidates of a place are found once for each transmitter, whoever co
       PooledLink first, second, third;
       first.enter(street.source(known, mast), street.places[place]);
       CHECK(first.is_of(*street.places[place]));
-      second.prepare(street.source(known, mast), street.places[place], 3, 0);  // found for itself, at the same time
+      second.prepare(street.source(known, mast), street.places[place],
+                     {.frames = 3});  // found for itself, at the same time
       const std::optional<PlacePools> news = first.news();
       REQUIRE(news);
       CHECK(!first.news());  // once
@@ -113,7 +114,7 @@ TEST_CASE("candidates from before the transmitter knew its edges are taken over 
   CHECK(known.find(*street.places[0], 0)->pool->is_outdated());
   hurried.enter(source, street.places[0]);  // takes them nevertheless: they miss nothing
   CHECK(!hurried.news());
-  late.prepare(source, street.places[0], 3, 0);
+  late.prepare(source, street.places[0], {.frames = 3});
   late.enter(source, street.places[0]);
   const auto news = late.news();
   REQUIRE(news);
