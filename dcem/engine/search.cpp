@@ -1,4 +1,5 @@
 // What an end of a link sees and lists, and how a scene is searched.
+#include "dcem/paths/discover/edge_meetings_bodies.hpp"
 #include "dcem/paths/discover/edge_reach_bodies.hpp"
 #include "dcem/paths/discover/half_pairs_bodies.hpp"
 #include "dcem/paths/discover/launch_sphere_bodies.hpp"

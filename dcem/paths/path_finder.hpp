@@ -47,7 +47,7 @@ void look_from_edges(const SceneTracer<Index>& tracer, const PathSearchSettings&
 
 inline bool remembers_all(const PathCache& cache, std::span<const std::optional<LinkEnd>> transmitters) {
   for (std::size_t index = 0; index < transmitters.size(); ++index) {
-    if (transmitters[index] && !cache.sequences(index)) return false;
+    if (transmitters[index] && cache.sequences(index) == nullptr) return false;
   }
   return true;
 }
@@ -55,21 +55,22 @@ inline bool remembers_all(const PathCache& cache, std::span<const std::optional<
 /// Writes the cache for the next frame and counts what came and went.
 inline void remember(PathCache& cache, std::span<const std::optional<LinkEnd>> transmitters,
                      std::span<const LinkPaths> links, CacheCounters& counters) {
-  const std::vector<PathCache::Link> before = cache.begin_frame(transmitters.size());
+  cache.begin_frame(transmitters.size());
   for (std::size_t index = 0; index < transmitters.size(); ++index) {
-    SequenceTable old;
-    if (index < before.size() && before[index]) {
-      for (const Sequence& sequence : *before[index]) old.insert(sequence);
-    }
+    const SequenceTable* const before = cache.sequences_before(index);
+    const std::size_t there_were = before != nullptr ? before->size() : 0;
     if (!transmitters[index]) {
-      counters.died += old.size();
+      counters.died += there_were;
       continue;
     }
     cache.remember(index, links[index].paths);
+    const SequenceTable& now = *cache.sequences(index);
     std::uint64_t stayed = 0;
-    for (const Sequence& sequence : *cache.sequences(index)) stayed += old.contains(sequence) ? 1U : 0U;
-    counters.born += cache.sequences(index)->size() - stayed;
-    counters.died += old.size() - stayed;
+    for (std::size_t number = 0; before != nullptr && number < now.size(); ++number) {
+      stayed += before->contains(now[number]) ? 1U : 0U;
+    }
+    counters.born += now.size() - stayed;
+    counters.died += there_were - stayed;
   }
 }
 
@@ -85,8 +86,9 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSe
   DCEM_ASSERT(settings.joined == 0 || proposed.size() == transmitters.size());
   detail::PathSearch<Index> search(tracer, settings, receiver, transmitters, counters);
   const bool steady = cache != nullptr && detail::remembers_all(*cache, transmitters);
-  EdgeReach seen_now;
-  EdgeReach& seen = cache != nullptr ? cache->reach() : seen_now;
+  PathCache forgotten;
+  PathCache& kept = cache != nullptr ? *cache : forgotten;
+  EdgeReach& seen = kept.reach();
   const bool joins_edges = settings.max_diffractions > 0 && (settings.exhaustive || needs_rays(settings));
   EdgeReach* const noted = joins_edges ? &seen : nullptr;
   if (cache != nullptr) search.revalidate(*cache);
@@ -98,7 +100,7 @@ std::vector<LinkPaths> find_paths(const SceneTracer<Index>& tracer, const PathSe
     search.shoot(key, rays, cache != nullptr ? &cache->proposals() : nullptr, noted);
     if (noted != nullptr) detail::look_from_edges(tracer, settings, receiver, key.frame, rays, seen, counters);
   }
-  if (noted != nullptr) search.join(seen.edges(), reached);
+  if (noted != nullptr) search.join(seen.edges(), reached, kept.room());
   if (noted != nullptr) seen.next_frame(detail::proposal_lifetime_frames(settings));
   std::vector<LinkPaths> links = search.take();
   if (cache != nullptr) detail::remember(*cache, transmitters, links, counters.cache);

@@ -4,9 +4,11 @@
 /// Transmissions are no part of it: which sheets a path crosses follows from where its legs run.
 #include <algorithm>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
-#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "dcem/core/error.hpp"
@@ -48,6 +50,10 @@ class SequenceList {
     elements_.insert(elements_.end(), sequence.begin(), sequence.end());
     ends_.push_back(elements_.size());
   }
+  void clear() {
+    elements_.clear();
+    ends_.clear();
+  }
   std::size_t size() const { return ends_.size(); }
   std::span<const SequenceElement> operator[](std::size_t index) const {
     const std::size_t first = index == 0 ? 0 : ends_[index - 1];
@@ -60,23 +66,73 @@ class SequenceList {
 };
 
 struct SequenceHash {
-  std::size_t operator()(const Sequence& sequence) const noexcept {
+  std::size_t operator()(std::span<const SequenceElement> sequence) const noexcept {
     std::uint64_t hash = sequence.size();
     for (const SequenceElement element : sequence) hash = hash_values(hash, element.code());
     return static_cast<std::size_t>(hash);
   }
 };
 
-/// Sequences seen so far. Two sequences are the same only if all their members are: a hash collision loses nothing.
+/// Sequences seen so far, each once, in the order in which they came. Two are the same only if all their members are: a
+/// hash collision loses nothing. One that is cleared and filled again asks for no memory that it has had.
 class SequenceTable {
  public:
   /// True when the sequence was not there before.
-  bool insert(const Sequence& sequence) { return sequences_.insert(sequence).second; }
-  bool contains(const Sequence& sequence) const { return sequences_.contains(sequence); }
-  std::size_t size() const { return sequences_.size(); }
+  bool insert(std::span<const SequenceElement> sequence) {
+    if (2 * (size() + 1) > places_.size()) grow();
+    std::uint32_t& place = places_[place_of(sequence)];
+    if (place != nobody) return false;
+    place = static_cast<std::uint32_t>(size());
+    list_.add(sequence);
+    return true;
+  }
+  /// Adds one that is known to be new, to a table that nobody asks for one.
+  void append(std::span<const SequenceElement> sequence) { list_.add(sequence); }
+  /// Its number.
+  std::optional<std::size_t> find(std::span<const SequenceElement> sequence) const {
+    const std::uint32_t number = places_.empty() ? nobody : places_[place_of(sequence)];
+    return number == nobody ? std::nullopt : std::optional<std::size_t>(number);
+  }
+  bool contains(std::span<const SequenceElement> sequence) const { return find(sequence).has_value(); }
+
+  std::size_t size() const { return list_.size(); }
+  std::span<const SequenceElement> operator[](std::size_t number) const { return list_[number]; }
+  void clear() {
+    list_.clear();
+    std::ranges::fill(places_, nobody);
+  }
+  /// Drops those for which `gone(sequence)` holds; the others close up.
+  template <typename Gone>
+  void erase_if(Gone&& gone) {
+    SequenceTable kept;
+    std::size_t number = 0;
+    while (number < size() && !gone(list_[number])) ++number;
+    if (number == size()) return;
+    for (number = 0; number < size(); ++number) {
+      if (!gone(list_[number])) kept.insert(list_[number]);
+    }
+    *this = std::move(kept);
+  }
 
  private:
-  std::unordered_set<Sequence, SequenceHash> sequences_;
+  static constexpr std::uint32_t nobody = 0xffffffffU;
+
+  void grow() {
+    places_.assign(std::max<std::size_t>(16, 2 * places_.size()), nobody);
+    for (std::size_t number = 0; number < size(); ++number) {
+      places_[place_of(list_[number])] = static_cast<std::uint32_t>(number);
+    }
+  }
+  /// Where a sequence stands, or the free place where it would.
+  std::size_t place_of(std::span<const SequenceElement> sequence) const {
+    const std::size_t mask = places_.size() - 1;
+    std::size_t place = SequenceHash{}(sequence)&mask;
+    while (places_[place] != nobody && !std::ranges::equal(list_[places_[place]], sequence)) place = (place + 1) & mask;
+    return place;
+  }
+
+  SequenceList list_;
+  std::vector<std::uint32_t> places_;  ///< numbers, by hash; a power of two, at most half of them taken
 };
 
 }  // namespace dcem

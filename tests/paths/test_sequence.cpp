@@ -51,6 +51,25 @@ TEST_CASE("two sequences with one hash are still two") {
   CHECK(table.size() == 2);
 }
 
+TEST_CASE("a table knows the number of each of thousands, keeps their order, and forgets some or all of them") {
+  SequenceTable table;
+  const auto one = [](std::uint32_t number) { return sequence({number % 7, number, number / 3}); };
+  CHECK_FALSE(table.contains(one(0)));  // of an empty one, too
+  for (std::uint32_t number = 0; number < 5'000; ++number) CHECK(table.insert(one(number)));
+  for (std::uint32_t number = 0; number < 5'000; ++number) CHECK(table.find(one(number)) == number);
+  CHECK_FALSE(table.find(one(5'000)).has_value());
+  const auto is_of_third_mirror = [](std::span<const SequenceElement> all) { return all[0].code() == 3; };
+  table.erase_if(is_of_third_mirror);
+  CHECK(table.size() == 5'000 - 714);
+  for (std::uint32_t number = 0; number < 5'000; ++number) CHECK(table.contains(one(number)) == (number % 7 != 3));
+  CHECK(table[3].front().code() == 4);
+  table.clear();
+  CHECK(table.size() == 0);
+  CHECK_FALSE(table.contains(one(1)));
+  CHECK(table.insert(one(1)));
+  CHECK(table.find(one(1)) == 0);
+}
+
 TEST_CASE("order and length matter") {
   SequenceTable table;
   const std::vector<Sequence> all{sequence({}),     sequence({0}),       sequence({0, 0}), sequence({1, 2}),

@@ -18,10 +18,12 @@ namespace dcem {
 /// The edges that one end reaches. A half is a sequence that counts from the end and whose last element is the edge.
 class EdgeReach {
  public:
+  using Mirrors = std::span<const SequenceElement>;  ///< from the end to an edge
+
   struct Edge {
     WedgeId id;
-    std::vector<std::span<const SequenceElement>> mirrors;  ///< from the end to the edge, one list per way
-    std::vector<FacetId> in_view;                           ///< mirrors that rays from the edge met, ascending
+    std::span<const Mirrors> mirrors;  ///< one list per way, in the order in which they were noted
+    std::span<const FacetId> in_view;  ///< mirrors that rays from the edge met, ascending
   };
 
   /// Notes that the edge may be reached over `mirrors`.
@@ -56,19 +58,24 @@ class EdgeReach {
 
   std::size_t size() const { return halves_.size(); }
 
-  /// All edges, ascending. Valid until the reach changes.
-  std::vector<Edge> edges() const;
+  /// All edges, ascending. Valid until halves come or go, or it is asked again.
+  std::span<const Edge> edges();
 
  private:
-  void add_views(std::span<Edge> edges) const;
+  void list_ways();
+  void list_views();
 
   ProposalMemory halves_;
   ProposalMemory views_;  ///< an edge and a mirror each
   Sequence half_;
+  std::vector<Edge> edges_;          ///< what `edges` has handed out last, with the lists to which it points
+  std::vector<Mirrors> ways_;        ///< by edge
+  std::vector<FacetId> viewed_;      ///< by edge
+  std::vector<std::uint64_t> keys_;  ///< of halves or views, as they are sorted: the edge comes first
 };
 
 /// The edges of one end, ascending.
-using ReachedEdges = std::vector<EdgeReach::Edge>;
+using ReachedEdges = std::span<const EdgeReach::Edge>;
 
 /// Bounds of a chain with edges.
 struct ChainLimits {
@@ -76,7 +83,7 @@ struct ChainLimits {
   std::size_t max_diffractions = 1;
   std::size_t max_interactions = 3;  ///< reflections and diffractions together
   bool mirrors_between = false;      ///< try every mirror between two edges, too: for small scenes
-  bool pairs_apart = false;          ///< chains over two edges are somebody else's
+  bool few_apart = false;            ///< chains over one edge or two are somebody else's
 };
 
 /// Calls `visit(sequence)` for every chain that joins a half of the receiver's with a half of a transmitter's: at one
@@ -103,10 +110,6 @@ class ChainJoiner {
     std::size_t reflections = 0, diffractions = 0;
   };
 
-  /// Where pairs are somebody else's, and three edges are too many, chains have one.
-  std::size_t most_edges() const {
-    return limits_.pairs_apart && limits_.max_diffractions == 2 ? 1 : limits_.max_diffractions;
-  }
   bool fits(const Spent& spent) const {
     return spent.reflections <= limits_.max_reflections && spent.diffractions <= limits_.max_diffractions &&
            spent.reflections + spent.diffractions <= limits_.max_interactions;
@@ -115,10 +118,10 @@ class ChainJoiner {
   /// Ends the chain at its last element where that is an edge the transmitter reaches, and goes on over further ones.
   template <typename Visit>
   void extend(const Spent& spent, std::span<const EdgeReach::Edge> transmitter, Visit& visit) {
-    if (chain_.back().is_edge() && !(limits_.pairs_apart && spent.diffractions == 2)) {
+    if (chain_.back().is_edge() && !(limits_.few_apart && spent.diffractions <= 2)) {
       end_here(spent, transmitter, visit);
     }
-    if (spent.diffractions == most_edges()) return;
+    if (spent.diffractions == limits_.max_diffractions) return;
     const auto go_on = [&](SequenceElement element, const Spent& then) {
       if (!fits(then) || element == chain_.back()) return;
       chain_.push_back(element);

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "dcem/paths/discover/cache_counters.hpp"
+#include "dcem/paths/discover/edge_meetings.hpp"
 #include "dcem/paths/discover/edge_reach.hpp"
 #include "dcem/paths/discover/proposal_memory.hpp"
 #include "dcem/paths/path.hpp"
@@ -19,21 +18,28 @@
 namespace dcem {
 
 /// The mirrors and edges of a path, counted from the receiver.
-Sequence sequence_of(const Path& path);
+void sequence_of(const Path& path, Sequence& sequence);
+inline Sequence sequence_of(const Path& path) {
+  Sequence sequence;
+  sequence_of(path, sequence);
+  return sequence;
+}
+
+/// Room in which the chains of a link are joined.
+struct JoinRoom {
+  EdgeMeetings meetings;
+  SequenceList chains;
+};
 
 /// The memory of one receiver, one list per transmitter. A list is written anew in each frame from the paths of that
-/// frame, so what is not found again is forgotten without further ado.
+/// frame, so what is not found again is forgotten without further ado; its room is that of the list before the last.
 class PathCache {
  public:
-  /// The sequences of one link; nothing where there was no link.
-  using Link = std::optional<std::vector<Sequence>>;
-
-  /// The sequences that carried a path between the receiver and a transmitter in the frame before; nothing where there
-  /// was no such link.
-  const Link& sequences(std::size_t transmitter) const {
-    static const Link none;
-    return transmitter < links_.size() ? links_[transmitter] : none;
-  }
+  /// The sequences that carried a path between the receiver and a transmitter in the last frame; none where there was
+  /// no such link.
+  const SequenceTable* sequences(std::size_t transmitter) const { return sequences_of(links_, transmitter); }
+  /// The same of the frame before, as soon as a new one has begun.
+  const SequenceTable* sequences_before(std::size_t transmitter) const { return sequences_of(before_, transmitter); }
 
   /// Forgets everything, as when the receiver was away; returns how many sequences that were.
   std::size_t clear();
@@ -44,32 +50,49 @@ class PathCache {
 
   ProposalMemory& proposals() { return proposals_; }
   EdgeReach& reach() { return reach_; }
+  /// Holds nothing from frame to frame but memory that need not be asked for again.
+  JoinRoom& room() { return room_; }
 
   /// Forgets the sequences for which `gone(element)` holds at any element; returns how many.
   template <typename Gone>
   std::size_t forget(Gone&& gone) {
     std::size_t forgotten = 0;
-    for (Link& link : links_) {
-      if (!link) continue;
-      forgotten += std::erase_if(
-          *link, [&](const Sequence& sequence) { return std::any_of(sequence.begin(), sequence.end(), gone); });
-    }
+    for (Link& link : links_) forgotten += forget_in(link, gone);
     return forgotten;
   }
 
-  /// Starts the lists of a new frame with this many transmitters, none of which has a link yet; returns the old ones.
-  std::vector<Link> begin_frame(std::size_t transmitters) {
-    return std::exchange(links_, std::vector<Link>(transmitters));
-  }
+  /// Starts the lists of a new frame with this many transmitters, none of which has a link yet.
+  void begin_frame(std::size_t transmitters);
 
   /// The paths of a link in the new frame.
   void remember(std::size_t transmitter, std::span<const Path> paths);
 
  private:
-  std::vector<Link> links_;
+  struct Link {
+    bool is_there = false;
+    SequenceTable sequences;
+  };
+
+  static const SequenceTable* sequences_of(std::span<const Link> links, std::size_t transmitter) {
+    return transmitter < links.size() && links[transmitter].is_there ? &links[transmitter].sequences : nullptr;
+  }
+  static std::size_t count_in(std::span<const Link> links);
+
+  template <typename Gone>
+  std::size_t forget_in(Link& link, Gone&& gone) {
+    if (!link.is_there) return 0;
+    const std::size_t before = link.sequences.size();
+    link.sequences.erase_if(
+        [&](std::span<const SequenceElement> sequence) { return std::ranges::any_of(sequence, gone); });
+    return before - link.sequences.size();
+  }
+
+  std::vector<Link> links_, before_;
   std::vector<std::uint32_t> transmitters_;  ///< those of `links_`, where they have been selected
+  Sequence sequence_;                        ///< room for one
   ProposalMemory proposals_;
   EdgeReach reach_;
+  JoinRoom room_;
 };
 
 }  // namespace dcem

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,18 +12,22 @@
 
 namespace dcem {
 
-DCEM_INLINE Sequence sequence_of(const Path& path) {
-  Sequence sequence;
+DCEM_INLINE void sequence_of(const Path& path, Sequence& sequence) {
+  sequence.clear();
   for (auto interaction = path.interactions.rbegin(); interaction != path.interactions.rend(); ++interaction) {
     if (interaction->kind == InteractionKind::reflection) sequence.emplace_back(interaction->facet);
     if (interaction->kind == InteractionKind::diffraction) sequence.emplace_back(interaction->wedge);
   }
-  return sequence;
+}
+
+DCEM_INLINE std::size_t PathCache::count_in(std::span<const Link> links) {
+  std::size_t count = 0;
+  for (const Link& link : links) count += link.is_there ? link.sequences.size() : 0;
+  return count;
 }
 
 DCEM_INLINE std::size_t PathCache::clear() {
-  std::size_t forgotten = 0;
-  for (const Link& link : links_) forgotten += link ? link->size() : 0;
+  const std::size_t forgotten = count_in(links_);
   links_.clear();
   proposals_.clear();
   reach_.clear();
@@ -37,18 +40,28 @@ DCEM_INLINE std::size_t PathCache::select(std::span<const std::uint32_t> transmi
     const auto before = std::lower_bound(transmitters_.begin(), transmitters_.end(), transmitters[link]);
     if (before == transmitters_.end() || *before != transmitters[link]) continue;
     const auto place = static_cast<std::size_t>(before - transmitters_.begin());
-    if (place < links_.size()) kept[link] = std::exchange(links_[place], std::nullopt);
+    if (place < links_.size()) kept[link] = std::exchange(links_[place], {});
   }
-  std::size_t forgotten = 0;
-  for (const Link& link : links_) forgotten += link ? link->size() : 0;
+  const std::size_t forgotten = count_in(links_);
   links_ = std::move(kept);
   transmitters_.assign(transmitters.begin(), transmitters.end());
   return forgotten;
 }
 
+DCEM_INLINE void PathCache::begin_frame(std::size_t transmitters) {
+  std::swap(links_, before_);
+  links_.resize(transmitters);
+  for (Link& link : links_) link.is_there = false;
+}
+
 DCEM_INLINE void PathCache::remember(std::size_t transmitter, std::span<const Path> paths) {
-  std::vector<Sequence>& sequences = links_.at(transmitter).emplace();
-  for (const Path& path : paths) sequences.push_back(sequence_of(path));
+  Link& link = links_.at(transmitter);
+  link.is_there = true;
+  link.sequences.clear();
+  for (const Path& path : paths) {
+    sequence_of(path, sequence_);
+    link.sequences.insert(sequence_);
+  }
 }
 
 }  // namespace dcem

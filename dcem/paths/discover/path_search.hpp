@@ -75,11 +75,13 @@ class PathSearch {
 
   /// Solves what was remembered of each link.
   void revalidate(const PathCache& cache) {
-    tried_.resize(transmitters_.size());
+    cache_ = &cache;
+    Sequence sequence;
     for (std::size_t index = 0; index < transmitters_.size(); ++index) {
-      if (!transmitters_[index] || !cache.sequences(index)) continue;
-      for (const Sequence& sequence : *cache.sequences(index)) {
-        tried_[index].insert(sequence);
+      const SequenceTable* const remembered = cache.sequences(index);
+      if (!transmitters_[index] || remembered == nullptr) continue;
+      for (std::size_t number = 0; number < remembered->size(); ++number) {
+        sequence.assign((*remembered)[number].begin(), (*remembered)[number].end());
         const bool valid = keep(index, solver_.solve(*transmitters_[index], receiver_, sequence));
         ++counters_.cache.revalidated;
         ++(valid ? counters_.cache.reused : counters_.cache.expired);
@@ -128,14 +130,15 @@ class PathSearch {
   }
 
   /// Solves every chain that joins what the receiver reaches with what each transmitter reaches.
-  void join(const ReachedEdges& own, std::span<const ReachedEdges> transmitters) {
+  void join(ReachedEdges own, std::span<const ReachedEdges> transmitters, JoinRoom& room) {
     ChainLimits limits = chain_limits(settings_);
-    limits.pairs_apart = !settings_.exhaustive;
+    limits.few_apart = !settings_.exhaustive;
     ChainJoiner joiner(tracer_.scene(), limits);
     for (std::size_t index = 0; index < transmitters_.size(); ++index) {
       if (!transmitters_[index]) continue;
+      if (limits.few_apart) join_few(index, own, transmitters[index], room);
+      if (limits.few_apart && limits.max_diffractions <= 2) continue;
       joiner.for_each_chain(own, transmitters[index], [&](const Sequence& sequence) { try_chain(index, sequence); });
-      if (limits.pairs_apart) join_pairs(index, own, transmitters[index]);
     }
   }
 
@@ -152,7 +155,9 @@ class PathSearch {
  private:
   void try_again(const ProposalMemory& memory) {
     std::vector<Vec3> images_m;
-    memory.for_each([&](const Sequence& sequence) {
+    Sequence sequence;
+    memory.for_each([&](std::span<const SequenceElement> elements) {
+      sequence.assign(elements.begin(), elements.end());
       images_m.assign(1, receiver_.position_m);
       for (const SequenceElement element : sequence) {
         append_image(images_m, tracer_.scene().facet(element.mirror()).plane);
@@ -171,15 +176,17 @@ class PathSearch {
     }
   }
 
-  /// Solves the chains over two edges of a link.
-  void join_pairs(std::size_t transmitter, const ReachedEdges& own, const ReachedEdges& reached) {
-    SequenceList pairs;
-    join_edge_pairs(tracer_.scene(), chain_limits(settings_), {receiver_.position_m, own},
-                    {transmitters_[transmitter]->position_m, reached}, pairs, counters_.pairs);
-    Sequence sequence;
-    for (std::size_t number = 0; number < pairs.size(); ++number) {
-      sequence.assign(pairs[number].begin(), pairs[number].end());
-      try_chain(transmitter, sequence);
+  /// Solves the chains over one edge or two of a link.
+  void join_few(std::size_t transmitter, ReachedEdges own, ReachedEdges reached, JoinRoom& room) {
+    const ChainLimits limits = chain_limits(settings_);
+    const ReachingEnd near{receiver_.position_m, own}, far{transmitters_[transmitter]->position_m, reached};
+    room.chains.clear();
+    room.meetings.join(tracer_.scene(), limits, near, far, room.chains);
+    join_edge_pairs(tracer_.scene(), limits, near, far, room.chains, counters_.pairs);
+    Sequence chain;
+    for (std::size_t number = 0; number < room.chains.size(); ++number) {
+      chain.assign(room.chains[number].begin(), room.chains[number].end());
+      try_chain(transmitter, chain);
     }
   }
 
@@ -194,7 +201,8 @@ class PathSearch {
   bool is_joined(const Sequence& sequence) const { return halves_cover(settings_.joined, sequence); }
 
   bool is_remembered(std::size_t transmitter, const Sequence& sequence) const {
-    return !tried_.empty() && tried_[transmitter].contains(sequence);
+    const SequenceTable* const remembered = cache_ != nullptr ? cache_->sequences(transmitter) : nullptr;
+    return remembered != nullptr && remembered->contains(sequence);
   }
 
   bool keep(std::size_t transmitter, std::optional<Path>&& path) {
@@ -209,7 +217,7 @@ class PathSearch {
   SearchCounters& counters_;
   PathSolver<Index> solver_;
   std::vector<LinkPaths> links_;
-  std::vector<SequenceTable> tried_;  ///< per transmitter: the sequences that were remembered; none where nothing was
+  const PathCache* cache_ = nullptr;  ///< its sequences have been tried; none where nothing was remembered
 };
 
 }  // namespace detail

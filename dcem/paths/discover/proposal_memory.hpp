@@ -2,7 +2,7 @@
 /// What rays have proposed in the last few frames.
 #include <cstddef>
 #include <cstdint>
-#include <unordered_map>
+#include <span>
 #include <vector>
 
 #include "dcem/paths/sequence.hpp"
@@ -10,14 +10,17 @@
 namespace dcem {
 
 /// Sequences that rays have proposed lately, whether or not they carried a path. Each is kept for a number of frames
-/// after a ray followed it last.
+/// after a ray followed it last. While as many come as go it asks for no memory.
 class ProposalMemory {
  public:
   /// Notes that a ray followed a sequence; returns whether it is in the memory already.
-  bool note(const Sequence& sequence);
+  bool note(std::span<const SequenceElement> sequence);
 
   /// Adds a sequence that is known to be new and that no later frame will ask for: the memory is filled once and read.
-  void append(const Sequence& sequence) { proposals_.push_back({sequence, frame_}); }
+  void append(std::span<const SequenceElement> sequence) {
+    known_.append(sequence);
+    last_frame_.push_back(frame_);
+  }
 
   /// Goes on to the next frame and forgets what no ray has followed in the last `lifetime_frames` frames.
   void next_frame(std::uint32_t lifetime_frames);
@@ -25,20 +28,19 @@ class ProposalMemory {
   /// In the order in which they were first proposed.
   template <typename Visit>
   void for_each(Visit&& visit) const {
-    for (const Proposal& proposal : proposals_) visit(proposal.sequence);
+    for (std::size_t number = 0; number < known_.size(); ++number) visit(known_[number]);
   }
 
-  std::size_t size() const { return proposals_.size(); }
-  void clear() { *this = {}; }
+  std::size_t size() const { return known_.size(); }
+  std::span<const SequenceElement> operator[](std::size_t number) const { return known_[number]; }
+  void clear() {
+    known_.clear();
+    last_frame_.clear();
+  }
 
  private:
-  struct Proposal {
-    Sequence sequence;
-    std::uint64_t last_frame = 0;
-  };
-
-  std::vector<Proposal> proposals_;
-  std::unordered_map<Sequence, std::size_t, SequenceHash> index_;
+  SequenceTable known_, kept_;             ///< the second is room for those that stay
+  std::vector<std::uint64_t> last_frame_;  ///< by number
   std::uint64_t frame_ = 0;
 };
 

@@ -1,30 +1,36 @@
 #pragma once
 /// Bodies of proposal_memory.hpp.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/discover/proposal_memory.hpp"
 
 namespace dcem {
 
-DCEM_INLINE bool ProposalMemory::note(const Sequence& sequence) {
-  const auto [entry, is_new] = index_.try_emplace(sequence, proposals_.size());
-  if (is_new) {
-    proposals_.push_back({sequence, frame_});
-  } else {
-    proposals_[entry->second].last_frame = frame_;
+DCEM_INLINE bool ProposalMemory::note(std::span<const SequenceElement> sequence) {
+  if (const auto number = known_.find(sequence)) {
+    last_frame_[*number] = frame_;
+    return true;
   }
-  return !is_new;
+  known_.insert(sequence);
+  last_frame_.push_back(frame_);
+  return false;
 }
 
 DCEM_INLINE void ProposalMemory::next_frame(std::uint32_t lifetime_frames) {
   ++frame_;
-  const std::size_t forgotten = std::erase_if(
-      proposals_, [&](const Proposal& proposal) { return proposal.last_frame + lifetime_frames < frame_; });
-  if (forgotten == 0) return;
-  index_.clear();
-  for (std::size_t index = 0; index < proposals_.size(); ++index) index_.emplace(proposals_[index].sequence, index);
+  const auto is_old = [&](std::uint64_t last) { return last + lifetime_frames < frame_; };
+  if (std::ranges::none_of(last_frame_, is_old)) return;
+  kept_.clear();
+  for (std::size_t number = 0; number < last_frame_.size(); ++number) {
+    if (!is_old(last_frame_[number])) kept_.insert(known_[number]);
+  }
+  std::swap(known_, kept_);
+  std::erase_if(last_frame_, is_old);
 }
 
 }  // namespace dcem

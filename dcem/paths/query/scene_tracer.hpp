@@ -62,9 +62,15 @@ class SceneTracer {
         leg, filter.hit_filter(), [&](const TriangleHit& hit) { return test(hit.triangle); }, &counters);
   }
 
-  /// Facets within `radius_m` of a point, ascending by id.
+  /// Facets within `radius_m` of a point, ascending by id; `near` is overwritten.
+  void facets_near(const Vec3& point_m, double radius_m, const IgnoredBodies& ignored, std::vector<FacetId>& near,
+                   TraversalCounters& counters) const;
   std::vector<FacetId> facets_near(const Vec3& point_m, double radius_m, const IgnoredBodies& ignored,
-                                   TraversalCounters& counters) const;
+                                   TraversalCounters& counters) const {
+    std::vector<FacetId> near;
+    facets_near(point_m, radius_m, ignored, near, counters);
+    return near;
+  }
 
   /// Whether a point on the facet's plane lies where the facet reflects: on it, and not on its rim, unless coplanar
   /// facets go on there. A path whose point is on the very rim of a mirror is no path: it is the boundary of the lit
@@ -187,9 +193,9 @@ void SceneTracer<Index>::merge_in_order(std::vector<Crossing>& crossings, const 
 }
 
 template <typename Index>
-std::vector<FacetId> SceneTracer<Index>::facets_near(const Vec3& point_m, double radius_m, const IgnoredBodies& ignored,
-                                                     TraversalCounters& counters) const {
-  std::vector<FacetId> near;
+void SceneTracer<Index>::facets_near(const Vec3& point_m, double radius_m, const IgnoredBodies& ignored,
+                                     std::vector<FacetId>& near, TraversalCounters& counters) const {
+  near.clear();
   index_.overlapping(
       inflated(Aabb<double>{point_m, point_m}, radius_m),
       [&](std::uint32_t triangle) {
@@ -200,7 +206,6 @@ std::vector<FacetId> SceneTracer<Index>::facets_near(const Vec3& point_m, double
       &counters);
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
-  return near;
 }
 
 template <typename Index>

@@ -44,15 +44,16 @@ class LegWalker {
     return std::nullopt;
   }
 
-  /// The path over the points, with the sheets that its legs cross; none where a leg is not free. `in_shadow`: of each
-  /// point, for those on edges.
-  std::optional<Path> follow(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
-                             const std::vector<Vec3>& points_m, const std::vector<bool>& in_shadow,
-                             SolverCounters& counters) {
+  /// The path over the points, with the sheets that its legs cross, until the next is followed; none where a leg is not
+  /// free. `in_shadow`: of each point, for those on edges.
+  const Path* follow(const LinkEnd& transmitter, const LinkEnd& receiver, const Sequence& sequence,
+                     const std::vector<Vec3>& points_m, const std::vector<bool>& in_shadow, SolverCounters& counters) {
     const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
     // Most candidates die on a leg, and of several legs on one in the middle.
-    if (is_blocked_between(sequence, points_m, ignored, counters)) return std::nullopt;
-    Path path;
+    if (is_blocked_between(sequence, points_m, ignored, counters)) return nullptr;
+    path_.interactions.clear();
+    path_.length_m = 0.0;
+    path_.foliage.clear();
     std::size_t left = max_transmissions_;
     Vec3 from_m = transmitter.position_m;
     Stop before{}, here{};
@@ -63,16 +64,17 @@ class LegWalker {
       const LegEnd end = last ? LegEnd{receiver.mounted_on, {}} : here.end();
       const Vec3 to_m = last ? receiver.position_m : points_m[leg];
       const bool is_free = max_transmissions_ == 0 && leg > 0 && !last;  // then it was asked above
-      if (!is_free && !is_open(from_m, to_m, start, end, ignored, left, counters)) return std::nullopt;
-      walk(from_m, to_m, ignored, path);
+      if (!is_free && !is_open(from_m, to_m, start, end, ignored, left, counters)) return nullptr;
+      walk(from_m, to_m, ignored);
       left -= crossings_.size();
       if (!last) {
-        path.interactions.push_back(interaction_at(sequence[sequence.size() - 1 - leg], points_m[leg], in_shadow[leg]));
+        path_.interactions.push_back(
+            interaction_at(sequence[sequence.size() - 1 - leg], points_m[leg], in_shadow[leg]));
       }
       from_m = to_m;
       before = here;
     }
-    return path;
+    return &path_;
   }
 
  private:
@@ -111,14 +113,14 @@ class LegWalker {
     return false;
   }
 
-  /// Adds a leg and the sheets noted to a path.
-  void walk(const Vec3& from_m, const Vec3& to_m, const IgnoredBodies& ignored, Path& path) const {
+  /// Adds a leg and the sheets noted to the path.
+  void walk(const Vec3& from_m, const Vec3& to_m, const IgnoredBodies& ignored) {
     for (const Crossing& crossing : crossings_) {
-      path.interactions.push_back(
+      path_.interactions.push_back(
           {InteractionKind::transmission, crossing.facet, from_m + crossing.t * (to_m - from_m)});
     }
-    path.length_m += glm::distance(from_m, to_m);
-    add_foliage_along(scene(), from_m, to_m, ignored, path.foliage);
+    path_.length_m += glm::distance(from_m, to_m);
+    add_foliage_along(scene(), from_m, to_m, ignored, path_.foliage);
   }
 
   Interaction interaction_at(SequenceElement element, const Vec3& point_m, bool in_shadow) const {
@@ -129,6 +131,7 @@ class LegWalker {
   const SceneTracer<Index>& tracer_;
   std::size_t max_transmissions_;
   std::vector<Crossing> crossings_;
+  Path path_;  ///< the one that is followed: most end on a leg
 };
 
 }  // namespace dcem

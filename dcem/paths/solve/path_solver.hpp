@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -56,10 +55,10 @@ class PathSolver {
     had_choice_ = false;
     std::optional<Path> path = solve_as_given(transmitter, receiver, sequence, images_m);
     if (!path || sequence.empty()) return path;
-    Sequence chosen = sequence;
-    while (std::optional<std::pair<Sequence, Path>> better =
-               preferred_duplicate(transmitter, receiver, chosen, *path)) {
-      std::tie(chosen, *path) = std::move(*better);
+    std::optional<std::pair<Sequence, Path>> better = preferred_duplicate(transmitter, receiver, sequence, *path);
+    while (better) {
+      path = std::move(better->second);
+      better = preferred_duplicate(transmitter, receiver, better->first, *path);
     }
     return path;
   }
@@ -77,13 +76,14 @@ class PathSolver {
       if (!holds) return std::nullopt;
     }
     // What touches an edge takes longer to ask than whether the legs are free.
-    std::optional<Path> path = legs_.follow(transmitter, receiver, sequence, points_.points_m(), in_shadow_, counters_);
-    for (std::size_t index = 0; index < sequence.size() && path; ++index) {
+    const Path* const path = legs_.follow(transmitter, receiver, sequence, points_.points_m(), in_shadow_, counters_);
+    if (path == nullptr) return std::nullopt;
+    for (std::size_t index = 0; index < sequence.size(); ++index) {
       const SequenceElement element = sequence[sequence.size() - 1 - index];
       if (!element.is_edge()) continue;
       if (touches_third(element.edge(), index, ignored) || leaves_face(index, sequence)) return std::nullopt;
     }
-    return path;
+    return *path;
   }
 
   /// Whether an end is mounted on the first surface that it would see: such a mirror does not reflect for it, and along
@@ -166,9 +166,8 @@ class PathSolver {
     const WorldWedge& wedge = scene().wedge(id);
     if (contact_at(id, rules_).is_free(along_edge_m(wedge.edge, points_.points_m()[index]))) return false;
     const double tolerance_m = scene().settings().weld_tolerance_m + wedge.edge.stray_m;
-    const std::vector<FacetId> near =
-        tracer_.facets_near(points_.points_m()[index], tolerance_m, ignored, counters_.traversal);
-    return std::any_of(near.begin(), near.end(),
+    tracer_.facets_near(points_.points_m()[index], tolerance_m, ignored, near_, counters_.traversal);
+    return std::any_of(near_.begin(), near_.end(),
                        [&](FacetId facet) { return facet != wedge.facets[0] && facet != wedge.facets[1]; });
   }
 
@@ -196,48 +195,44 @@ class PathSolver {
     };
     if (std::ranges::all_of(sequence, stands_alone)) return std::nullopt;
     const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
-    std::vector<std::vector<SequenceElement>> choices(sequence.size());
+    choices_.clear();
     bool any = false;
-    std::size_t index = sequence.size();
-    for (const Interaction& interaction : path.interactions) {
-      if (interaction.kind == InteractionKind::transmission) continue;
-      --index;
-      choices[index] = interaction.kind == InteractionKind::reflection
-                           ? preferred_mirrors(sequence[index].mirror(), interaction.point_m, ignored)
-                           : std::vector{sequence[index]};
-      any = any || choices[index].size() > 1;
+    for (auto interaction = path.interactions.rbegin(); interaction != path.interactions.rend(); ++interaction) {
+      if (interaction->kind == InteractionKind::transmission) continue;
+      choice_.assign(1, sequence[choices_.size()]);
+      if (interaction->kind == InteractionKind::reflection) prefer_mirrors(interaction->point_m, ignored);
+      choices_.add(choice_);
+      any = any || choice_.size() > 1;
     }
     if (!any) return std::nullopt;
     had_choice_ = true;
     Sequence candidate = sequence;
-    return first_valid(transmitter, receiver, sequence, choices, 0, candidate);
+    return first_valid(transmitter, receiver, sequence, 0, candidate);
   }
 
-  /// Coplanar facets at a point that stand before `own`, in order, and `own` last.
-  std::vector<SequenceElement> preferred_mirrors(FacetId own, const Vec3& point_m, const IgnoredBodies& ignored) {
-    std::vector<FacetId> facets =
-        tracer_.facets_near(point_m, scene().settings().weld_tolerance_m, ignored, counters_.traversal);
-    std::erase_if(facets, [&](FacetId other) {
+  /// Puts coplanar facets at a point that stand before the one mirror of `choice_` in front of it, in order.
+  void prefer_mirrors(const Vec3& point_m, const IgnoredBodies& ignored) {
+    const FacetId own = choice_.front().mirror();
+    tracer_.facets_near(point_m, scene().settings().weld_tolerance_m, ignored, near_, counters_.traversal);
+    std::erase_if(near_, [&](FacetId other) {
       return other == own || !tracer_.precedes(other, own) || !tracer_.parallel(other, own);
     });
-    std::sort(facets.begin(), facets.end(), [&](FacetId a, FacetId b) { return tracer_.precedes(a, b); });
-    facets.push_back(own);
-    return {facets.begin(), facets.end()};
+    std::sort(near_.begin(), near_.end(), [&](FacetId a, FacetId b) { return tracer_.precedes(a, b); });
+    choice_.insert(choice_.begin(), near_.begin(), near_.end());
   }
 
   std::optional<std::pair<Sequence, Path>> first_valid(const LinkEnd& transmitter, const LinkEnd& receiver,
-                                                       const Sequence& sequence,
-                                                       const std::vector<std::vector<SequenceElement>>& choices,
-                                                       std::size_t index, Sequence& candidate) {
+                                                       const Sequence& sequence, std::size_t index,
+                                                       Sequence& candidate) {
     if (index == sequence.size()) {
       if (candidate == sequence) return std::nullopt;  // nothing stands before the path itself
       std::optional<Path> path = solve_as_given(transmitter, receiver, candidate, nullptr);
       if (!path) return std::nullopt;
       return std::pair(candidate, std::move(*path));
     }
-    for (const SequenceElement choice : choices[index]) {
+    for (const SequenceElement choice : choices_[index]) {
       candidate[index] = choice;
-      if (auto found = first_valid(transmitter, receiver, sequence, choices, index + 1, candidate)) return found;
+      if (auto found = first_valid(transmitter, receiver, sequence, index + 1, candidate)) return found;
     }
     return std::nullopt;
   }
@@ -248,6 +243,9 @@ class PathSolver {
   SolverCounters counters_;
   ChainPoints points_;
   std::vector<bool> in_shadow_;
+  std::vector<FacetId> near_;
+  SequenceList choices_;  ///< by element of a sequence: what may stand in its place, in order of precedence
+  Sequence choice_;
   bool had_choice_ = false;
 };
 

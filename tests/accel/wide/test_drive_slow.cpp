@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <new>
 #include <string>
 #include <vector>
@@ -12,11 +11,13 @@
 #include "dcem/accel/wide/update/updater.hpp"
 #include "dcem/accel/wide_bvh.hpp"
 #include "tests/accel/wide/wide_scenes.hpp"
+#include "tests/support/counted_allocations.hpp"
 #include "tests/support/shared_data.hpp"
 
 namespace test_drive_slow {
 
 using namespace dcem;
+using dcem_test::allocations;
 using dcem_test::any_ray;
 using dcem_test::between;
 using dcem_test::fault_of_closest;
@@ -25,53 +26,6 @@ using dcem_test::infinity;
 using dcem_test::random_in_cube;
 using dcem_test::text_of;
 using dcem_test::WideMesh;
-
-namespace {
-
-thread_local std::size_t allocations = 0;
-
-void* counted_allocation(std::size_t size, std::size_t alignment) noexcept {
-  ++allocations;
-  // aligned_alloc wants a multiple of the alignment.
-  return std::aligned_alloc(alignment, (size + alignment) / alignment * alignment);
-}
-void* or_throw(void* memory) {
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-
-}  // namespace
-
-}  // namespace test_drive_slow
-
-// Counts what the program allocates; the rest of the test program is served as before. Never inlined: compilers and
-// sanitizers would see free() beside an operator new.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  return test_drive_slow::or_throw(test_drive_slow::counted_allocation(size, alignof(std::max_align_t)));
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-  return test_drive_slow::or_throw(test_drive_slow::counted_allocation(size, static_cast<std::size_t>(alignment)));
-}
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  return test_drive_slow::counted_allocation(size, alignof(std::max_align_t));
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t&) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
-
-namespace test_drive_slow {
 
 namespace {
 

@@ -25,7 +25,7 @@ EdgeReach reach_of(const std::vector<std::uint32_t>& edges, std::uint32_t first_
   return reach;
 }
 
-double made(const ReachedEdges& near, const ReachedEdges& far, ChainLimits limits) {
+double made(ReachedEdges near, ReachedEdges far, ChainLimits limits) {
   const Scene empty;
   double count = 0.0;
   ChainJoiner(empty, limits).for_each_chain(near, far, [&](const Sequence&) { ++count; });
@@ -35,7 +35,7 @@ double made(const ReachedEdges& near, const ReachedEdges& far, ChainLimits limit
 }  // namespace
 
 TEST_CASE("chains are counted exactly where both ends reach different edges") {
-  const EdgeReach near = reach_of({0, 1, 2, 3, 5}, 100), far = reach_of({10, 11, 13, 14}, 200);
+  EdgeReach near = reach_of({0, 1, 2, 3, 5}, 100), far = reach_of({10, 11, 13, 14}, 200);
   for (std::size_t reflections = 0; reflections <= 6; ++reflections) {
     const ChainLimits limits{reflections, 2, reflections + 2};
     const std::vector<double> counted = count_chains(near.edges(), far.edges(), limits);
@@ -47,7 +47,7 @@ TEST_CASE("chains are counted exactly where both ends reach different edges") {
 }
 
 TEST_CASE("at one edge chains are counted exactly, and an edge twice in a row is counted along") {
-  const EdgeReach near = reach_of({1, 2, 3, 7}, 100), far = reach_of({2, 3, 4, 7}, 200);
+  EdgeReach near = reach_of({1, 2, 3, 7}, 100), far = reach_of({2, 3, 4, 7}, 200);
   const auto counted = [&](std::size_t diffractions) {
     return count_chains(near.edges(), far.edges(), {3, diffractions, 3 + diffractions}).back();
   };
