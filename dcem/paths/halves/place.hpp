@@ -106,10 +106,12 @@ class Place {
   void look_through_mirrors(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, int step);
 
   static constexpr int mirror_steps = 2, beam_steps = 13, steps_without_beams = Sight::scenery_steps + mirror_steps;
-  /// Four faces of the map, two of them, what is seen in it, its mirrors; then what is seen through these.
-  static constexpr std::array<int, steps_without_beams + beam_steps> step_work{
-      8, 8, 6, 5, 2, 6, 5, 5, 130, 70, 70, 70, 70, 70, 70, 70, 70, 70, 70, 70, 70};
-  WorkSteps work() const { return WorkSteps(std::span(step_work).first(step_work.size() - (beams_ ? 0 : beam_steps))); }
+  /// Four faces of the map, two of them, what is seen in it, its mirrors …
+  static constexpr std::array<int, steps_without_beams> work_without_beams{6, 6, 6, 7, 4, 6, 6, 4};
+  /// … and what is seen through these, where more is to be known of what is seen, too.
+  static constexpr std::array<int, steps_without_beams + beam_steps> work_with_beams{
+      4, 5, 4, 5, 3, 20, 3, 1, 115, 80, 80, 80, 80, 80, 80, 80, 80, 80, 80, 80, 80};
+  WorkSteps work() const { return beams_ ? WorkSteps(work_with_beams) : WorkSteps(work_without_beams); }
 
   PlaceBox box_;
   std::array<Vec3, 8> corners_m_;

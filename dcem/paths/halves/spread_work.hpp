@@ -29,7 +29,7 @@ class WorkSteps {
 };
 
 /// What it takes to find the candidates of a place (`CandidatePool`), and those of three elements (`TriplePool`).
-inline constexpr int candidates_work = 20, triples_work = 1290;
+inline constexpr int candidates_work = 24, triples_work = 1170;
 
 /// Where a frame stands with work that some frames share.
 struct WorkAhead {

@@ -79,7 +79,7 @@ class CandidatePool {
   void fit();
 
   static constexpr int steps = 6;  ///< mirrors in five parts of them, then edges
-  static constexpr std::array<int, steps> step_work{6, 2, 3, 3, 3, 3};
+  static constexpr std::array<int, steps> step_work{7, 4, 3, 4, 4, 2};
   static_assert(sum_of(step_work) == candidates_work);
   std::shared_ptr<const Place> place_;
   const BeamLists& reached_;

@@ -44,7 +44,7 @@ class TriplePool {
   struct Finder;
 
   static constexpr int steps = 12;  ///< the last one puts all of them in order, too
-  static constexpr std::array<int, steps> step_work{100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 190};
+  static constexpr std::array<int, steps> step_work{120, 90, 90, 90, 90, 90, 90, 90, 90, 90, 90, 150};
   static_assert(sum_of(step_work) == triples_work);
   std::shared_ptr<const Place> place_;
   const BeamLists& reached_;
