@@ -79,7 +79,7 @@ class SequenceTable {
  public:
   /// True when the sequence was not there before.
   bool insert(std::span<const SequenceElement> sequence) {
-    if (2 * (size() + 1) > places_.size()) grow();
+    while (2 * (size() + 1) > places_.size()) grow();
     std::uint32_t& place = places_[place_of(sequence)];
     if (place != nobody) return false;
     place = static_cast<std::uint32_t>(size());
@@ -119,6 +119,7 @@ class SequenceTable {
 
   void grow() {
     places_.assign(std::max<std::size_t>(16, 2 * places_.size()), nobody);
+    if (2 * size() > places_.size()) return;  // some have been appended: once more
     for (std::size_t number = 0; number < size(); ++number) {
       places_[place_of(list_[number])] = static_cast<std::uint32_t>(number);
     }

@@ -70,6 +70,15 @@ TEST_CASE("a table knows the number of each of thousands, keeps their order, and
   CHECK(table.find(one(1)) == 0);
 }
 
+TEST_CASE("a table that was appended to takes more, and knows all of them then") {
+  SequenceTable table;
+  for (std::uint32_t number = 0; number < 100; ++number) table.append(sequence({number, 7}));
+  CHECK(table.insert(sequence({200})));
+  CHECK_FALSE(table.insert(sequence({99, 7})));
+  for (std::uint32_t number = 0; number < 100; ++number) CHECK(table.find(sequence({number, 7})) == number);
+  CHECK(table.size() == 101);
+}
+
 TEST_CASE("order and length matter") {
   SequenceTable table;
   const std::vector<Sequence> all{sequence({}),     sequence({0}),       sequence({0, 0}), sequence({1, 2}),

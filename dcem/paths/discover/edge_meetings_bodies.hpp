@@ -16,14 +16,15 @@ namespace dcem {
 
 namespace detail {
 
-/// Points this far beside a mirror or an edge are left to the solver. Far above rounding.
+/// Points this far beside an edge are left to the solver, and five times as far beside the box around a mirror. Far
+/// above rounding, even of edges of a centimetre seen from a kilometre, thousands of kilometres from the origin.
 inline constexpr double beside_meeting_m = 2e-3;
 
 /// Whether a point of its plane is in the box around a facet, or a little beside.
 inline bool is_by_facet(const Scene& scene, const WorldFacet& facet, const Vec3& point_m) {
   Aabb<double> box;
   for (const Vec3& corner_m : scene.hull_m(facet)) box.extend(corner_m);
-  constexpr double away_m = 5.0 * beside_meeting_m;  // its triangles may stray from its plane
+  constexpr double away_m = 5.0 * beside_meeting_m;
   return glm::all(glm::greaterThanEqual(point_m, box.min - away_m)) &&
          glm::all(glm::lessThanEqual(point_m, box.max + away_m));
 }

@@ -89,10 +89,13 @@ class PathSearch {
     }
   }
 
-  /// Solves every sequence of mirrors there is. Edges within reach are noted where `reach` is given.
+  /// Solves every sequence of mirrors there is. Edges within reach take the place of what `reach` holds, where given.
   void search_all(EdgeReach* reach) {
     ExactSearch search(tracer_.scene(), settings_.max_reflections);
-    if (reach != nullptr) search.note_edges(*reach, settings_.edges, most_mirrors_of_a_half(settings_));
+    if (reach != nullptr) {
+      reach->clear();
+      search.note_edges(*reach, settings_.edges, most_mirrors_of_a_half(settings_));
+    }
     search.for_each_sequence(
         receiver_, [&](const Sequence& sequence, const std::vector<Vec3>& images_m) { try_all(sequence, images_m); });
   }

@@ -27,10 +27,13 @@ DCEM_INLINE void ProposalMemory::next_frame(std::uint32_t lifetime_frames) {
   if (std::ranges::none_of(last_frame_, is_old)) return;
   kept_.clear();
   for (std::size_t number = 0; number < last_frame_.size(); ++number) {
-    if (!is_old(last_frame_[number])) kept_.insert(known_[number]);
+    if (is_old(last_frame_[number])) continue;
+    // One that was appended may be there twice: the later counts.
+    const bool is_new = kept_.insert(known_[number]);
+    last_frame_[is_new ? kept_.size() - 1 : *kept_.find(known_[number])] = last_frame_[number];
   }
   std::swap(known_, kept_);
-  std::erase_if(last_frame_, is_old);
+  last_frame_.resize(known_.size());
 }
 
 }  // namespace dcem

@@ -31,9 +31,12 @@ TEST_CASE("no path over one edge is lost, and few chains are left") {
     CAPTURE(seed);
     Draw draw(47'000 + seed);
     TracedScene<> traced(draw.below(3) == 0 ? town_on_grid(draw) : small_town(draw));
-    const LinkEnd from = traced.end(draw.inside(Vec3(-25, -25, 0.5), Vec3(25, 25, 14)));
-    const LinkEnd to = traced.end(draw.inside(Vec3(-25, -25, 0.5), Vec3(25, 25, 3)));
+    const bool on_grid = draw.below(3) == 0;  // in planes of walls, above edges
+    const auto place = [&](const Vec3& point_m) { return on_grid ? glm::round(point_m) + Vec3(0, 0, 0.5) : point_m; };
+    const LinkEnd from = traced.end(place(draw.inside(Vec3(-25, -25, 0.5), Vec3(25, 25, 14))));
+    const LinkEnd to = traced.end(place(draw.inside(Vec3(-25, -25, 0.5), Vec3(25, 25, 3))));
     PathSearchSettings settings;
+    settings.edges.free_edges = draw.below(2) == 0;
     settings.max_reflections = static_cast<int>(3 - draw.below(4));
     settings.max_diffractions = 1;
     settings.max_interactions = 3 - static_cast<int>(draw.below(2));
@@ -49,7 +52,7 @@ TEST_CASE("no path over one edge is lost, and few chains are left") {
     }
     CHECK(joined.size() == list.size());  // each once
     std::size_t known = 0;
-    PathSolver<WideIndex> solver(traced.tracer, 0);
+    PathSolver<WideIndex> solver(traced.tracer, 0, settings.edges);
     ChainJoiner(traced.scene, limits).for_each_chain(near_edges, far_edges, [&](const Sequence& chain) {
       ++chains;
       known += joined.contains(chain) ? 1U : 0U;

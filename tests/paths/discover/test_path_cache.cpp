@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -55,8 +56,9 @@ std::vector<Sequence> listed(const SequenceTable* table) {
 
 }  // namespace
 
-// What is remembered is a list of numbers of facets and edges: there is no room for a point, a length or a gain.
+// What is handed out is lists of numbers of facets and edges: no point, no length and no gain.
 static_assert(std::is_same_v<decltype(PathCache().sequences(0)), const SequenceTable*>);
+static_assert(std::is_same_v<decltype((*PathCache().sequences(0))[0]), std::span<const SequenceElement>>);
 static_assert(sizeof(SequenceElement) == sizeof(std::uint32_t));
 
 TEST_CASE("the mirrors and edges of a path count from the receiver and leave out what it crosses") {
@@ -97,6 +99,22 @@ TEST_CASE("proposals are kept for their lifetime after the last ray that followe
   memory.clear();
   CHECK(memory.size() == 0);
   CHECK_FALSE(memory.note(other));
+}
+
+TEST_CASE("what is appended again in later frames is kept once, for its lifetime after the last time") {
+  ProposalMemory memory;
+  for (int frame = 0; frame < 6; ++frame) {
+    for (std::size_t mirror = 0; mirror < 40; ++mirror) {
+      if (frame < 3 || mirror % 2 == 0) memory.append(Sequence{facet(mirror)});
+    }
+    memory.next_frame(2);
+  }
+  CHECK(memory.size() == 40);  // of the last two frames, as they came
+  memory.next_frame(2);
+  CHECK(memory.size() == 20);
+  for (std::size_t number = 0; number < memory.size(); ++number) CHECK(memory[number][0] == facet(2 * number));
+  CHECK(memory.note(Sequence{facet(4)}));
+  CHECK_FALSE(memory.note(Sequence{facet(5)}));
 }
 
 TEST_CASE("a cache knows no link until one is remembered, and a link without paths is one all the same") {
