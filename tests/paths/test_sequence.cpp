@@ -8,17 +8,14 @@
 #include <unordered_map>
 #include <vector>
 
+#include "tests/paths/sequences.hpp"
+
 namespace test_sequence {
 
 using namespace dcem;
+using namespace dcem::test;
 
 namespace {
-
-Sequence sequence(std::initializer_list<std::uint32_t> facets) {
-  Sequence result;
-  for (const std::uint32_t facet : facets) result.push_back(FacetId(facet));
-  return result;
-}
 
 /// Two different pairs of facets with one hash. The hash of (a, b) is a bijection of H(a) xor b, H the hash so far; so
 /// any two a whose H agree in their upper 32 bits collide for suitable b. By the birthday paradox 2^18 values of a hold
@@ -31,7 +28,7 @@ std::pair<Sequence, Sequence> colliding_pairs() {
     const auto [at, is_new] = seen.try_emplace(stirred >> 32, a, stirred);
     if (is_new) continue;
     const auto difference = static_cast<std::uint32_t>(stirred ^ at->second.second);
-    return {sequence({at->second.first, 7}), sequence({a, 7 ^ difference})};
+    return {over({at->second.first, 7}), over({a, 7 ^ difference})};
   }
   return {};
 }
@@ -53,7 +50,7 @@ TEST_CASE("two sequences with one hash are still two") {
 
 TEST_CASE("a table knows the number of each of thousands, keeps their order, and forgets some or all of them") {
   SequenceTable table;
-  const auto one = [](std::uint32_t number) { return sequence({number % 7, number, number / 3}); };
+  const auto one = [](std::uint32_t number) { return over({number % 7, number, number / 3}); };
   CHECK_FALSE(table.contains(one(0)));  // of an empty one, too
   for (std::uint32_t number = 0; number < 5'000; ++number) CHECK(table.insert(one(number)));
   for (std::uint32_t number = 0; number < 5'000; ++number) CHECK(table.find(one(number)) == number);
@@ -72,17 +69,17 @@ TEST_CASE("a table knows the number of each of thousands, keeps their order, and
 
 TEST_CASE("a table that was appended to takes more, and knows all of them then") {
   SequenceTable table;
-  for (std::uint32_t number = 0; number < 100; ++number) table.append(sequence({number, 7}));
-  CHECK(table.insert(sequence({200})));
-  CHECK_FALSE(table.insert(sequence({99, 7})));
-  for (std::uint32_t number = 0; number < 100; ++number) CHECK(table.find(sequence({number, 7})) == number);
+  for (std::uint32_t number = 0; number < 100; ++number) table.append(over({number, 7}));
+  CHECK(table.insert(over({200})));
+  CHECK_FALSE(table.insert(over({99, 7})));
+  for (std::uint32_t number = 0; number < 100; ++number) CHECK(table.find(over({number, 7})) == number);
   CHECK(table.size() == 101);
 }
 
 TEST_CASE("order and length matter") {
   SequenceTable table;
-  const std::vector<Sequence> all{sequence({}),     sequence({0}),       sequence({0, 0}), sequence({1, 2}),
-                                  sequence({2, 1}), sequence({1, 2, 1}), sequence({1}),    sequence({1, 2, 2})};
+  const std::vector<Sequence> all{over({}),     over({0}),       over({0, 0}), over({1, 2}),
+                                  over({2, 1}), over({1, 2, 1}), over({1}),    over({1, 2, 2})};
   for (const Sequence& one : all) CHECK(table.insert(one));
   for (const Sequence& one : all) CHECK_FALSE(table.insert(one));
   CHECK(table.size() == all.size());
@@ -95,8 +92,8 @@ TEST_CASE("sequences of a scene spread over all hash values") {
   std::set<std::size_t> buckets;
   for (std::uint32_t a = 0; a < 256; ++a) {
     for (std::uint32_t b = 0; b <= a; ++b) {
-      hashes.insert(SequenceHash{}(sequence({a, b})));
-      buckets.insert(SequenceHash{}(sequence({a, b})) % 65536);
+      hashes.insert(SequenceHash{}(over({a, b})));
+      buckets.insert(SequenceHash{}(over({a, b})) % 65536);
     }
   }
   CHECK(hashes.size() == 32896);

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "dcem/paths/discover/half_pairs.hpp"
+#include "dcem/paths/discover/edge_reach.hpp"
 
 namespace dcem {
 

@@ -24,9 +24,7 @@ inline constexpr double beside_meeting_m = 2e-3;
 inline bool is_by_facet(const Scene& scene, const WorldFacet& facet, const Vec3& point_m) {
   Aabb<double> box;
   for (const Vec3& corner_m : scene.hull_m(facet)) box.extend(corner_m);
-  constexpr double away_m = 5.0 * beside_meeting_m;
-  return glm::all(glm::greaterThanEqual(point_m, box.min - away_m)) &&
-         glm::all(glm::lessThanEqual(point_m, box.max + away_m));
+  return inflated(box, 5.0 * beside_meeting_m).contains(point_m);
 }
 
 inline bool fits_one_edge(const ChainLimits& limits, std::size_t mirrors) {

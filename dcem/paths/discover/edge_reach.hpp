@@ -77,6 +77,12 @@ class EdgeReach {
 /// The edges of one end, ascending.
 using ReachedEdges = std::span<const EdgeReach::Edge>;
 
+/// One end of a link, and the edges that it reaches.
+struct ReachingEnd {
+  Vec3 position_m{0.0};
+  ReachedEdges edges;
+};
+
 /// Bounds of a chain with edges.
 struct ChainLimits {
   std::size_t max_reflections = 2;

@@ -6,21 +6,12 @@
 /// around them, then of eight at once in single precision with how far each number may be off
 /// (paths/discover/half_packs.hpp). What is refused cannot be a path, so nothing is lost; what is left the solver
 /// decides.
-#include <cstddef>
-#include <span>
-
 #include "dcem/paths/discover/edge_reach.hpp"
 #include "dcem/paths/discover/search_counters.hpp"
 #include "dcem/paths/sequence.hpp"
 #include "dcem/scene/scene.hpp"
 
 namespace dcem {
-
-/// One end of a link, and the edges that it reaches.
-struct ReachingEnd {
-  Vec3 position_m{0.0};
-  std::span<const EdgeReach::Edge> edges;
-};
 
 /// Appends the chains over two edges within some limits, from the receiver outwards, each once, without those that
 /// surely carry no path. Between the edges lies nothing, or one of the mirrors that one of them sees.

@@ -13,18 +13,6 @@ namespace test_edge_meetings {
 using namespace dcem;
 using namespace dcem::test;
 
-namespace {
-
-/// All that an end reaches.
-EdgeReach reach_of(TracedScene<>& traced, const LinkEnd& end, const PathSearchSettings& settings) {
-  EdgeReach reach;
-  SearchCounters counters;
-  find_reach(traced.tracer, settings, end, {"end", 0}, 0, reach, counters);
-  return reach;
-}
-
-}  // namespace
-
 TEST_CASE("no path over one edge is lost, and few chains are left") {
   std::size_t paths = 0, chains = 0, proposed = 0, over_mirrors = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {

@@ -4,20 +4,16 @@
 #include <doctest/doctest.h>
 
 #include <cstddef>
-#include <initializer_list>
 #include <vector>
+
+#include "tests/paths/sequences.hpp"
 
 namespace test_edge_reach {
 
 using namespace dcem;
+using namespace dcem::test;
 
 namespace {
-
-Sequence over(std::initializer_list<std::size_t> mirrors) {
-  Sequence sequence;
-  for (const std::size_t mirror : mirrors) sequence.emplace_back(FacetId(mirror));
-  return sequence;
-}
 
 struct Listed {
   std::size_t edge;

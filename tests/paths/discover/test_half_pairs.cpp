@@ -16,14 +16,6 @@ using namespace dcem::test;
 
 namespace {
 
-/// All that an end reaches.
-EdgeReach reach_of(TracedScene<>& traced, const LinkEnd& end, const PathSearchSettings& settings) {
-  EdgeReach reach;
-  SearchCounters counters;
-  find_reach(traced.tracer, settings, end, {"end", 0}, 0, reach, counters);
-  return reach;
-}
-
 struct Joined {
   std::set<Sequence> chains;
   std::size_t count = 0;

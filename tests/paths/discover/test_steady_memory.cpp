@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "dcem/paths/discover/path_cache.hpp"
 #include "dcem/paths/path_finder.hpp"
 #include "tests/paths/halves/small_town.hpp"
+#include "tests/paths/sequences.hpp"
 #include "tests/support/counted_allocations.hpp"
 
 namespace test_steady_memory {
@@ -31,12 +31,6 @@ std::size_t allocated(std::size_t after, std::size_t calls, Action&& action) {
     action(call);
   }
   return allocations - before;
-}
-
-Sequence over(std::initializer_list<std::size_t> mirrors) {
-  Sequence sequence;
-  for (const std::size_t mirror : mirrors) sequence.emplace_back(FacetId(mirror));
-  return sequence;
 }
 
 }  // namespace
@@ -88,13 +82,9 @@ TEST_CASE("joining two ends asks for nothing, and solving for the paths that the
   settings.max_diffractions = 1;
   settings.max_interactions = 3;
   settings.max_transmissions = 0;
-  EdgeReach far;
-  std::vector<EdgeReach> near(receivers.size());
-  SearchCounters counters;
-  find_reach(traced.tracer, settings, from, {"tx", 0}, 0, far, counters);
-  for (std::size_t receiver = 0; receiver < receivers.size(); ++receiver) {
-    find_reach(traced.tracer, settings, receivers[receiver], {"rx", 0}, 0, near[receiver], counters);
-  }
+  EdgeReach far = reach_of(traced, from, settings);
+  std::vector<EdgeReach> near;
+  for (const LinkEnd& receiver : receivers) near.push_back(reach_of(traced, receiver, settings));
   JoinRoom room;
   PathSolver<WideIndex> solver(traced.tracer, 0);
   Sequence sequence;

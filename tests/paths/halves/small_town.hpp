@@ -40,6 +40,14 @@ inline Scene small_town(Draw& draw) {
   return scene;
 }
 
+/// All edges that an end reaches.
+inline EdgeReach reach_of(TracedScene<>& traced, const LinkEnd& end, const PathSearchSettings& settings) {
+  EdgeReach reach;
+  SearchCounters counters;
+  find_reach(traced.tracer, settings, end, {"end", 0}, 0, reach, counters);
+  return reach;
+}
+
 /// How two ends are searched.
 struct Asked {
   int transmissions = 0;
@@ -56,8 +64,7 @@ inline std::vector<Path> all_sequences(TracedScene<>& traced, const LinkEnd& fro
   settings.max_transmissions = asked.transmissions;
   settings.edges.free_edges = asked.free_edges;
   SearchCounters counters;
-  EdgeReach reach;
-  find_reach(traced.tracer, settings, from, {"tx", 0}, 0, reach, counters);
+  EdgeReach reach = reach_of(traced, from, settings);
   const std::vector<std::optional<LinkEnd>> ends{from};
   const std::vector<ReachedEdges> reached{reach.edges()};
   return find_paths(traced.tracer, settings, to, {"rx", 0}, ends, counters, nullptr, reached).front().paths;
