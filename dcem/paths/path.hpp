@@ -2,7 +2,6 @@
 /// A propagation path is geometry and nothing else: which surfaces it touches, where, and how long it is. It knows no
 /// material constant, no frequency and no gain; those are computed anew from it in the room `channel`.
 #include <algorithm>
-#include <compare>
 #include <string>
 #include <vector>
 
@@ -48,24 +47,7 @@ inline std::string kinds(const Path& path) {
 
 /// The order in which the paths of a link are reported: by length (hence delay), then kinds, then point coordinates;
 /// should all of that be equal, by what they touch.
-inline bool reported_before(const Path& a, const Path& b) {
-  if (a.length_m != b.length_m) return a.length_m < b.length_m;
-  const std::string kinds_a = kinds(a), kinds_b = kinds(b);
-  if (kinds_a != kinds_b) return kinds_a < kinds_b;
-  const auto compare = [&](auto&& before) {
-    return std::lexicographical_compare_three_way(a.interactions.begin(), a.interactions.end(), b.interactions.begin(),
-                                                  b.interactions.end(), before);
-  };
-  const auto points = compare([](const Interaction& x, const Interaction& y) {
-    return lexicographic_less(x.point_m, y.point_m)   ? std::strong_ordering::less
-           : lexicographic_less(y.point_m, x.point_m) ? std::strong_ordering::greater
-                                                      : std::strong_ordering::equal;
-  });
-  if (points != 0) return points < 0;
-  return compare([](const Interaction& x, const Interaction& y) {
-           return x.facet != y.facet ? x.facet <=> y.facet : x.wedge <=> y.wedge;
-         }) < 0;
-}
+bool reported_before(const Path& a, const Path& b);
 
 /// Whether two paths are the same: same kinds on the same facets and edges in the same order.
 inline bool same_sequence(const Path& a, const Path& b) {
@@ -75,4 +57,15 @@ inline bool same_sequence(const Path& a, const Path& b) {
                     });
 }
 
+namespace detail {
+
+/// Puts paths in the order in which they are reported, each once.
+void sort_and_drop_repeated(std::vector<Path>& paths);
+
+}  // namespace detail
+
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/path_bodies.hpp"
+#endif

@@ -99,7 +99,7 @@ class SequenceTable {
   std::span<const SequenceElement> operator[](std::size_t number) const { return list_[number]; }
   void clear() {
     list_.clear();
-    std::ranges::fill(places_, nobody);
+    std::fill(places_.begin(), places_.end(), nobody);
   }
   /// Drops those for which `gone(sequence)` holds; the others close up.
   template <typename Gone>

@@ -141,7 +141,7 @@ class DiffuseIntegral {
       const LitParts& kept = transmitter.view.parts.of(piece.source, piece.place, lit,
                                                        [&](LitParts& found) { find(std::nullopt, found); });
       const std::optional<BodyId>& ridden = receiver.link.ignored_body;
-      if (!ridden || std::ranges::find(kept.bodies, *ridden) == kept.bodies.end()) return kept;
+      if (!ridden || std::find(kept.bodies.begin(), kept.bodies.end(), *ridden) == kept.bodies.end()) return kept;
       find(ridden, lit);
       return lit;
     }
@@ -188,7 +188,8 @@ class DiffuseIntegral {
                 const TriangleCorners& corners_m, LitParts& found, TraversalCounters& traversal) {
     found.bodies.clear();
     const auto note = [&](BodyId body) {
-      if (body != BodyId{} && std::ranges::find(found.bodies, body) == found.bodies.end()) found.bodies.push_back(body);
+      if (body != BodyId{} && std::find(found.bodies.begin(), found.bodies.end(), body) == found.bodies.end())
+        found.bodies.push_back(body);
     };
     found.parts.clear();
     found.parts.add(corners_m, {});

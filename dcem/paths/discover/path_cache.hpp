@@ -83,7 +83,7 @@ class PathCache {
     if (!link.is_there) return 0;
     const std::size_t before = link.sequences.size();
     link.sequences.erase_if(
-        [&](std::span<const SequenceElement> sequence) { return std::ranges::any_of(sequence, gone); });
+        [&](std::span<const SequenceElement> sequence) { return std::any_of(sequence.begin(), sequence.end(), gone); });
     return before - link.sequences.size();
   }
 

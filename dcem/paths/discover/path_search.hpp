@@ -42,12 +42,6 @@ struct SphereKey {
 
 namespace detail {
 
-inline void sort_and_drop_repeated(std::vector<Path>& paths) {
-  std::sort(paths.begin(), paths.end(), reported_before);
-  // The same sequence gives the same bits, so repeated paths stand side by side.
-  paths.erase(std::unique(paths.begin(), paths.end(), same_sequence), paths.end());
-}
-
 /// How long proposals are tried again: three times the frames in which the few rays of a steady frame add up to a full
 /// search. Longer brings nothing (office, six seeds), and each proposal costs a solution per link and frame.
 inline std::uint32_t proposal_lifetime_frames(const PathSearchSettings& settings) {

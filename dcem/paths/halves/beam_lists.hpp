@@ -68,7 +68,7 @@ class BeamLists {
     for (const BeamTable& table : tables_) table.for_each_mirror_before(facet, cone, visit);
   }
   bool lights(FacetId facet) const {
-    return std::ranges::any_of(tables_, [&](const BeamTable& table) { return table.lights(facet); });
+    return std::any_of(tables_.begin(), tables_.end(), [&](const BeamTable& table) { return table.lights(facet); });
   }
   /// … the parts of edges that the end may see …
   std::vector<EdgePart> parts() const {
@@ -91,7 +91,7 @@ class BeamLists {
   }
   /// … and those that mirrors may light.
   bool lights(WedgeId edge) const {
-    return std::ranges::any_of(tables_, [&](const BeamTable& table) { return table.lights(edge); });
+    return std::any_of(tables_.begin(), tables_.end(), [&](const BeamTable& table) { return table.lights(edge); });
   }
   template <typename Visit>
   void for_each_lit_part(WedgeId edge, const Vec3& point, float radius_m, Visit&& visit) const {

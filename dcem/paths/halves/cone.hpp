@@ -24,8 +24,9 @@ namespace dcem {
 /// Whether some point within a radius of a point may lie in a cone.
 inline bool may_hold(std::span<const HalfSpace> cone, const Vec3& point, float radius_m) {
   const auto x = static_cast<float>(point.x), y = static_cast<float>(point.y), z = static_cast<float>(point.z);
-  return std::ranges::none_of(
-      cone, [&](const HalfSpace& plane) { return plane.x * x + plane.y * y + plane.z * z + radius_m < plane.offset; });
+  return std::none_of(cone.begin(), cone.end(), [&](const HalfSpace& plane) {
+    return plane.x * x + plane.y * y + plane.z * z + radius_m < plane.offset;
+  });
 }
 
 /// Adds half spaces mirrored in a plane, each wider by `slack_m`. All count from `origin_m`.
@@ -177,41 +178,11 @@ class ConeClusters {
     boxes.used |= 1U << lane;
   }
 
-  static std::vector<EightBoxes> in_eights(const std::vector<Aabb<double>>& boxes) {
-    std::vector<EightBoxes> eights((boxes.size() + simd_lanes - 1) / simd_lanes);
-    for (std::size_t at = 0; at < boxes.size(); ++at) set(eights[at / simd_lanes], at % simd_lanes, boxes[at]);
-    return eights;
-  }
+  static std::vector<EightBoxes> in_eights(const std::vector<Aabb<double>>& boxes);
   /// Boxes around eight of them each.
-  static std::vector<Aabb<double>> around_eights(const std::vector<Aabb<double>>& boxes) {
-    std::vector<Aabb<double>> around((boxes.size() + simd_lanes - 1) / simd_lanes);
-    for (std::size_t at = 0; at < boxes.size(); ++at) around[at / simd_lanes].extend(boxes[at]);
-    return around;
-  }
-
+  static std::vector<Aabb<double>> around_eights(const std::vector<Aabb<double>>& boxes);
   /// Halves along the longest side, at whole clusters and, where there are many, at whole groups.
-  void arrange(std::span<std::uint32_t> items, const std::vector<Vec3>& centre) {
-    if (items.empty()) return;
-    if (items.size() <= simd_lanes) {
-      items_.insert(items_.end(), items.begin(), items.end());
-      items_.resize((items_.size() + simd_lanes - 1) / simd_lanes * simd_lanes, nothing);
-      return;
-    }
-    Aabb<double> box;
-    for (const std::uint32_t item : items) box.extend(centre[item]);
-    const Vec3 size = box.extent();
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::size_t group = std::size_t{simd_lanes} * simd_lanes;
-    const std::size_t unit = items.size() > group ? group : simd_lanes;
-    const std::size_t first = std::max<std::size_t>(1, (items.size() + unit - 1) / unit / 2) * unit;
-    const auto middle = items.begin() + static_cast<std::ptrdiff_t>(first);
-    std::nth_element(items.begin(), middle, items.end(), [&](std::uint32_t one, std::uint32_t other) {
-      const double a = centre[one][axis], b = centre[other][axis];
-      return a != b ? a < b : one < other;
-    });
-    arrange(items.first(first), centre);
-    arrange(items.subspan(first), centre);
-  }
+  void arrange(std::span<std::uint32_t> items, const std::vector<Vec3>& centre);
 
   std::vector<std::uint32_t> items_;
   std::vector<EightBoxes> clusters_, groups_, blocks_, item_boxes_;
@@ -219,3 +190,7 @@ class ConeClusters {
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/halves/cone_bodies.hpp"
+#endif

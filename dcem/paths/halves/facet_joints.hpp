@@ -1,10 +1,8 @@
 #pragma once
 /// Façades that meet along a vertical line, with the same numbers: nothing passes between them.
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -22,8 +20,7 @@ struct FacetJoint {
 class FacetJoints {
  public:
   /// `takes(facet)`: those that hide what their hull does. Where very many meet on one line, none of them is noted.
-  template <typename Takes>
-  void find(const Scene& scene, std::uint32_t facets, Takes&& takes);
+  void find(const Scene& scene, std::uint32_t facets, const std::function<bool(FacetId)>& takes);
 
   std::span<const FacetJoint> of(FacetId facet) const {
     if (facet.value + std::size_t{1} >= first_.size()) return {};
@@ -43,6 +40,7 @@ class FacetJoints {
 
   /// Whether all corners of a facet that lie at a side's line lie on it.
   static bool is_straight(const Scene& scene, const WorldFacet& facet, const Side& side);
+  /// Corners of hulls are rounded: the numbers are those of the mesh.
   static Vec3 nearest_corner_m(const Scene& scene, const WorldFacet& facet, const Vec3& point_m);
   static void add_sides(const Scene& scene, std::uint32_t facet, std::vector<Side>& sides);
 
@@ -50,73 +48,8 @@ class FacetJoints {
   std::vector<FacetJoint> joints_;
 };
 
-// ---------------------------------------------------------------------------------------------------------------------
-
-inline bool FacetJoints::is_straight(const Scene& scene, const WorldFacet& facet, const Side& side) {
-  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    for (const Vec3& corner_m : scene.corners_m(facet.first_triangle + triangle)) {
-      if (corner_m.x == side.x_m && corner_m.y == side.y_m) continue;
-      if (std::hypot(corner_m.x - side.x_m, corner_m.y - side.y_m) < close_m) return false;
-    }
-  }
-  return true;
-}
-
-/// Corners of hulls are rounded: the numbers are those of the mesh.
-inline Vec3 FacetJoints::nearest_corner_m(const Scene& scene, const WorldFacet& facet, const Vec3& point_m) {
-  Vec3 nearest_m = scene.corners_m(facet.first_triangle)[0];
-  for (std::uint32_t triangle = 0; triangle < facet.triangle_count; ++triangle) {
-    for (const Vec3& corner_m : scene.corners_m(facet.first_triangle + triangle)) {
-      if (glm::distance(corner_m, point_m) < glm::distance(nearest_m, point_m)) nearest_m = corner_m;
-    }
-  }
-  return nearest_m;
-}
-
-inline void FacetJoints::add_sides(const Scene& scene, std::uint32_t facet, std::vector<Side>& sides) {
-  const WorldFacet& held = scene.facets()[facet];
-  const std::span<const Vec3> hull_m = scene.hull_m(held);
-  for (std::uint32_t at = 0; at < hull_m.size(); ++at) {
-    const Vec3 &hull_from = hull_m[at], &hull_to = hull_m[(at + 1) % hull_m.size()];
-    if (std::hypot(hull_from.x - hull_to.x, hull_from.y - hull_to.y) > 2.0 * close_m) continue;
-    const Vec3 from = nearest_corner_m(scene, held, hull_from), to = nearest_corner_m(scene, held, hull_to);
-    if (from.x != to.x || from.y != to.y || std::abs(from.z - to.z) < least_length_m) continue;
-    const Side side{from.x, from.y, std::min(from.z, to.z), std::max(from.z, to.z), facet, at};
-    if (is_straight(scene, held, side)) sides.push_back(side);
-  }
-}
-
-template <typename Takes>
-void FacetJoints::find(const Scene& scene, std::uint32_t facets, Takes&& takes) {
-  std::vector<Side> sides;
-  for (std::uint32_t facet = 0; facet < facets; ++facet) {
-    if (takes(FacetId(facet))) add_sides(scene, facet, sides);
-  }
-  const auto line = [](const Side& side) { return std::array{side.x_m, side.y_m}; };
-  std::ranges::stable_sort(sides, {}, line);
-  struct Found {
-    std::uint32_t facet;
-    FacetJoint joint;
-  };
-  std::vector<Found> found;
-  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
-    for (last = first + 1; last < sides.size() && sides[last].is_on_line_of(sides[first]);) ++last;
-    for (std::size_t one = first; one < last && last - first <= most_on_line; ++one) {
-      for (std::size_t other = first; other < last; ++other) {
-        const Side &own = sides[one], &beside = sides[other];
-        if (own.facet >= beside.facet) continue;
-        if (std::min(own.high_m, beside.high_m) - std::max(own.low_m, beside.low_m) < least_length_m) continue;
-        found.push_back({own.facet, {FacetId(beside.facet), own.side, beside.side}});
-      }
-    }
-  }
-  std::ranges::stable_sort(found, {}, &Found::facet);
-  first_.assign(facets + std::size_t{1}, 0);
-  for (const Found& one : found) {
-    ++first_[one.facet + std::size_t{1}];
-    joints_.push_back(one.joint);
-  }
-  for (std::size_t facet = 1; facet < first_.size(); ++facet) first_[facet] += first_[facet - 1];
-}
-
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/halves/facet_joints_bodies.hpp"
+#endif

@@ -42,8 +42,9 @@ class MirrorBeam {
       : mirror_(mirror), hides_beyond_m_(room_m + 2.0 * lift_m) {
     const Vec3 beyond = signed_distance_m(plane, images_m[0]) > 0.0 ? -plane.normal : plane.normal;
     sides_.push_back({beyond, glm::dot(beyond, plane.point_m) - room_m});
-    const bool is_close = std::ranges::any_of(
-        images_m, [&](const Vec3& image_m) { return std::abs(signed_distance_m(plane, image_m)) < 20.0 * room_m; });
+    const bool is_close = std::any_of(images_m.begin(), images_m.end(), [&](const Vec3& image_m) {
+      return std::abs(signed_distance_m(plane, image_m)) < 20.0 * room_m;
+    });
     if (!is_close) inwards_.push_back(beyond);
     for_each_common_side(outline, plane, beyond, images_m, [&](const Vec3& normal, double offset_m) {
       const double length = glm::length(normal);
@@ -77,8 +78,8 @@ class MirrorBeam {
   /// Whether all of an outline is so far beyond the mirror, and `more_m`.
   bool is_occluder(std::span<const Vec3> corners_m, double more_m) const {
     const double least_m = sides_[0].offset_m + hides_beyond_m_ + more_m;
-    return std::ranges::all_of(corners_m,
-                               [&](const Vec3& corner_m) { return glm::dot(sides_[0].normal, corner_m) >= least_m; });
+    return std::all_of(corners_m.begin(), corners_m.end(),
+                       [&](const Vec3& corner_m) { return glm::dot(sides_[0].normal, corner_m) >= least_m; });
   }
 
  private:

@@ -147,7 +147,7 @@ class Sight {
   }
   /// Whether all points are above the feet of the façades that stand on the lowest level of the scenery.
   bool is_above_feet(const FacetOutlines& outlines) const {
-    return std::ranges::all_of(points_m_, [&](const Vec3& point_m) {
+    return std::all_of(points_m_.begin(), points_m_.end(), [&](const Vec3& point_m) {
       return point_m.z > outlines.feet().lowest_m() + FacetFeet::least_height_m;
     });
   }
@@ -209,8 +209,9 @@ class Sight {
                     const FaceSpan& faces) const;
   /// Whether all points are in a facet's plane: nothing is reflected there, though its edges may diffract.
   static bool are_along(std::span<const Vec3> points_m, const Plane& plane) {
-    return std::ranges::all_of(
-        points_m, [&](const Vec3& point_m) { return std::abs(signed_distance_m(plane, point_m)) <= in_plane_guard_m; });
+    return std::all_of(points_m.begin(), points_m.end(), [&](const Vec3& point_m) {
+      return std::abs(signed_distance_m(plane, point_m)) <= in_plane_guard_m;
+    });
   }
   /// Whether all of a box is farther away than anything that is looked for.
   bool is_beyond(const Aabb<double>& box) const {
@@ -221,8 +222,8 @@ class Sight {
   bool is_out_of_view(const Aabb<double>& box) const { return is_beyond(box) || (beam_ && beam_->is_beside(box)); }
   /// Whether all points are between the faces of a wedge, where it is solid.
   static bool are_inside(std::span<const Vec3> points_m, const Wedge& wedge) {
-    return std::ranges::none_of(points_m,
-                                [&](const Vec3& point_m) { return may_face(wedge, point_m - wedge.start_m); });
+    return std::none_of(points_m.begin(), points_m.end(),
+                        [&](const Vec3& point_m) { return may_face(wedge, point_m - wedge.start_m); });
   }
   /// `pool`: asks about the edges, of a map that is settled; none: the calling thread does.
   void finish(const Scene& scene, const FacetOutlines& outlines, const HalfSettings& settings, SeenLayer& layer,

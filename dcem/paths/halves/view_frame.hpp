@@ -86,7 +86,7 @@ class ViewFaces {
   explicit ViewFaces(std::span<const Vec3> inwards) : count_(0) {
     for (const int face : {0, 1, 2, 3, 4, 5}) {
       const bool is_outside =
-          std::ranges::any_of(inwards, [&](const Vec3& normal) { return looks_away(face, normal); });
+          std::any_of(inwards.begin(), inwards.end(), [&](const Vec3& normal) { return looks_away(face, normal); });
       if (!is_outside) cube_[static_cast<std::size_t>(count_++)] = face;
     }
   }

@@ -166,7 +166,7 @@ class ViewMap {
 
   void clear(int pixels) {
     make_room(pixels);
-    std::ranges::fill(nearness_, 0.0F);
+    std::fill(nearness_.begin(), nearness_.end(), 0.0F);
   }
   /// The same, but for the pixels.
   void make_room(int pixels) {

@@ -143,7 +143,7 @@ class VagueJoiner {
   }
   bool is_in(std::span<const HalfSpace> cone, const Aabb<double>& box) const {
     const Vec3 middle = box.center() - outlines_.middle_m(), half = 0.5 * box.extent();
-    return std::ranges::all_of(cone, [&](const HalfSpace& side) {
+    return std::all_of(cone.begin(), cone.end(), [&](const HalfSpace& side) {
       const double reach = side.x * middle.x + side.y * middle.y + side.z * middle.z + std::abs(side.x) * half.x +
                            std::abs(side.y) * half.y + std::abs(side.z) * half.z;
       return reach + 1e-6 * glm::length(middle) >= side.offset;

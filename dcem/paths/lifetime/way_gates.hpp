@@ -118,7 +118,7 @@ class WayGates {
   static bool is_in_solid(const Wedge& edge, std::span<const Vec3> points_m) {
     const Vec2 along(std::cos(edge.exterior_angle_rad), std::sin(edge.exterior_angle_rad));
     const Vec3 other = along.y * edge.tangent - along.x * edge.normal;  // of face n, on the exterior side
-    return std::ranges::all_of(points_m, [&](const Vec3& point_m) {
+    return std::all_of(points_m.begin(), points_m.end(), [&](const Vec3& point_m) {
       const Vec3 away_m = point_m - edge.start_m;
       return glm::dot(away_m, edge.normal) <= 0.5 * in_plane_guard_m &&
              glm::dot(away_m, other) <= 0.5 * in_plane_guard_m;

@@ -74,7 +74,8 @@ class WayLegs {
                             if (is_near || !may_touch(leg, triangle)) return;
                             const FacetId id = scene().facet_of_triangle(triangle);
                             is_near = !passes(id);
-                            if (!is_near && std::ranges::find(sheets, id) == sheets.end()) sheets.push_back(id);
+                            if (!is_near && std::find(sheets.begin(), sheets.end(), id) == sheets.end())
+                              sheets.push_back(id);
                           });
     return is_near || !crosses_all(leg, sheets);
   }
@@ -83,7 +84,7 @@ class WayLegs {
   /// Whether sheets near a leg surely are and stay crossed, one after another.
   bool crosses_all(const VagueStretch& leg, std::span<const FacetId> sheets) const {
     std::vector<LegCrossing> crossed;
-    return std::ranges::all_of(sheets, [&](FacetId id) {
+    return std::all_of(sheets.begin(), sheets.end(), [&](FacetId id) {
       return tracer_.meets(id, leg.line.from.at_m, leg.line.to.at_m) && crossings_.add_sheet(leg, id, crossed);
     });
   }

@@ -40,7 +40,9 @@ class StandingLink {
   /// Drops sequences over bodies that have moved.
   template <typename HasMoved>
   void drop(HasMoved&& has_moved) {
-    std::erase_if(entries_, [&](const Entry& entry) { return std::ranges::any_of(entry.way.sequence, has_moved); });
+    std::erase_if(entries_, [&](const Entry& entry) {
+      return std::any_of(entry.way.sequence.begin(), entry.way.sequence.end(), has_moved);
+    });
   }
 
  private:

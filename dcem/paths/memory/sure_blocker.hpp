@@ -70,7 +70,7 @@ inline bool surely_stops(const Scene& scene, const FacetOutlines& outlines, std:
   if (!is_inside) return false;
   constexpr double along_cosine = 0.98;  // what lies along a mirror does not stop legs to it
   const double clear_of_own_m = std::max(0.05, 2.0 * scene.settings().weld_tolerance_m);
-  return std::ranges::none_of(leg.own, [&](FacetId mirror) {
+  return std::none_of(leg.own.begin(), leg.own.end(), [&](FacetId mirror) {
     if (mirror == id) return true;
     const Plane& plane = scene.facet(mirror).plane;
     return std::abs(glm::dot(facet.plane.normal, plane.normal)) >= along_cosine &&

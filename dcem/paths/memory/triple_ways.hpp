@@ -42,7 +42,7 @@ class TripleWays {
   /// Of what was asked for or worked out last, and not refused: the points, from the receiver outwards, unless one is
   /// not known …
   bool has_points() const {
-    return std::ranges::all_of(points_, [](const Point& point) { return point.drift.is_known(); });
+    return std::all_of(points_.begin(), points_.end(), [](const Point& point) { return point.drift.is_known(); });
   }
   std::array<Vec3, 3> points_m() const { return {points_[0].at_m, points_[1].at_m, points_[2].at_m}; }
   /// … and how far each of them may move.

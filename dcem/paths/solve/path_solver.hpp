@@ -193,7 +193,7 @@ class PathSolver {
     const auto stands_alone = [&](SequenceElement element) {
       return element.is_edge() || is_unstacked(element.mirror(), rules_);
     };
-    if (std::ranges::all_of(sequence, stands_alone)) return std::nullopt;
+    if (std::all_of(sequence.begin(), sequence.end(), stands_alone)) return std::nullopt;
     const IgnoredBodies ignored{transmitter.ignored_body, receiver.ignored_body};
     choices_.clear();
     bool any = false;

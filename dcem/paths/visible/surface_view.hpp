@@ -1,7 +1,5 @@
 #pragma once
 /// What an end of a link sees of the surfaces of a scene: which facets, and what stands before them.
-#include <algorithm>
-#include <span>
 #include <vector>
 
 #include "dcem/paths/halves/sight.hpp"
@@ -16,15 +14,8 @@ struct SurfaceView {
 };
 
 /// A view of the same number of pixels gives the same facets.
-inline SurfaceView look_at_surfaces(Sight& sight, const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
-                                    int max_transmissions) {
-  SurfaceView view;
-  sight.look_from(end);
-  sight.find_facets(scene, outlines, {false, max_transmissions}, true, view.facets);
-  std::ranges::sort(view.facets);
-  view.shades = Shades(scene, outlines, end, view.facets);
-  return view;
-}
+SurfaceView look_at_surfaces(Sight& sight, const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,
+                             int max_transmissions);
 
 /// The view of a transmitter, with what it sees of single surfaces as receivers ask for it.
 struct LitSurfaces {
@@ -33,3 +24,7 @@ struct LitSurfaces {
 };
 
 }  // namespace dcem
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/paths/visible/surface_view_bodies.hpp"
+#endif

@@ -65,6 +65,17 @@ inline constexpr std::size_t paths_kept_as_room = 2;
 /// What is left of links that nobody needs any more: their room, and that of a few paths.
 std::vector<LinkResult> room_of(std::vector<LinkResult>&& links, ThreadPool& pool);
 
+/// By receiver, the transmitters of the links that are asked for, as they come. Throws std::invalid_argument where a
+/// number is none of a device.
+std::vector<std::vector<std::uint32_t>> requested_links(std::span<const LinkRequest> requests, std::size_t transmitters,
+                                                        std::size_t receivers);
+
+/// Numbers ascending, each once.
+void sort_and_drop_repeated(std::vector<std::uint32_t>& list);
+
+/// Each of some paths once, as they are reported.
+std::vector<PathContribution*> in_order(std::vector<PathContribution>& paths);
+
 }  // namespace dcem::detail
 
 #if !defined(DCEM_ENGINE)

@@ -1,8 +1,13 @@
 #pragma once
 /// Bodies of frame_links.hpp.
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <numeric>
+#include <span>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/sim/detail/frame_links.hpp"
@@ -130,6 +135,38 @@ DCEM_INLINE std::vector<LinkResult> room_of(std::vector<LinkResult>&& links, Thr
   };
   pool.for_each_quick(links.size(), look, at_once);
   return std::move(links);
+}
+
+DCEM_INLINE std::vector<std::vector<std::uint32_t>> requested_links(std::span<const LinkRequest> requests,
+                                                                    std::size_t transmitters, std::size_t receivers) {
+  std::vector<std::vector<std::uint32_t>> lists(receivers);
+  for (const auto& [transmitter, receiver] : requests) {
+    if (transmitter >= transmitters || receiver >= receivers) {
+      throw std::invalid_argument("solve: a link between devices that are not there");
+    }
+    lists[receiver].push_back(static_cast<std::uint32_t>(transmitter));
+  }
+  return lists;
+}
+
+DCEM_INLINE void sort_and_drop_repeated(std::vector<std::uint32_t>& list) {
+  std::ranges::sort(list);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+DCEM_INLINE std::vector<PathContribution*> in_order(std::vector<PathContribution>& paths) {
+  std::vector<PathContribution*> order;
+  order.reserve(paths.size());
+  for (PathContribution& path : paths) order.push_back(&path);
+  std::sort(order.begin(), order.end(), [](const PathContribution* one, const PathContribution* other) {
+    return reported_before(one->path, other->path);
+  });
+  // The same sequence gives the same bits, so repeated paths stand side by side.
+  const auto same = [](const PathContribution* one, const PathContribution* other) {
+    return same_sequence(one->path, other->path);
+  };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
+  return order;
 }
 
 }  // namespace dcem::detail

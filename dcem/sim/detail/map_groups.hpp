@@ -1,25 +1,21 @@
 #pragma once
 /// Which points of a map look at the scene together.
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "dcem/scene/device.hpp"
 
 namespace dcem::detail {
 
+/// Whether a straight step between two points is free.
+using IsFree = std::function<bool(std::size_t, std::size_t)>;
+
 /// How many neighbours along one axis share a view. Farther apart than some metres they see too much together.
-inline std::size_t group_side(double spacing_m) {
-  constexpr double widest_m = 8.0;
-  constexpr std::size_t most = 4;
-  const double steps = spacing_m > 0.0 ? widest_m / spacing_m : static_cast<double>(most);
-  return std::min(most, 1 + static_cast<std::size_t>(std::min(steps, static_cast<double>(most))));
-}
+std::size_t group_side(double spacing_m);
 
 /// Open points of a grid in groups: which are in each, ascending, and of each cell in which it is.
 class GridGroups {
@@ -28,71 +24,33 @@ class GridGroups {
   static constexpr std::uint32_t none = 0xffffffffU;
 
   /// `open` holds what is not 0 for an open cell. Cells are counted row by row.
-  GridGroups(const ReceiverGrid& grid, std::span<const char> open)
-      : columns_(grid.columns()),
-        rows_(grid.rows()),
-        spacing_m_(grid.spacing_m),
-        side_{group_side(grid.spacing_m[0]), group_side(grid.spacing_m[1])},
-        open_(open),
-        group_of_(grid.size(), none) {}
+  GridGroups(const ReceiverGrid& grid, std::span<const char> open);
 
   /// What is joined by free straight steps, tile by tile. `free(cell, cell)` says whether a step is free.
-  template <typename Free>
-  void fill_tiles(Free&& free);
+  void fill_tiles(const IsFree& free);
   /// Where tiles are cut up into small groups, these join others beside them, as far as no two points are farther apart
   /// along x or y than two steps more than in a tile, and than 10 m: a view of few points costs as much as one of many.
-  template <typename Free>
-  void join_small(Free&& free);
+  void join_small(const IsFree& free);
 
-  std::vector<std::vector<std::size_t>> take() {
-    std::erase_if(groups_, [](const std::vector<std::size_t>& group) { return group.empty(); });
-    return std::move(groups_);
-  }
+  std::vector<std::vector<std::size_t>> take();
 
  private:
   struct Box {
     std::size_t low_row, high_row, low_column, high_column;
   };
 
-  Box box_of(const std::vector<std::size_t>& group) const {
-    Box box{rows_, 0, columns_, 0};
-    for (const std::size_t cell : group) {
-      const std::size_t row = cell / columns_, column = cell % columns_;
-      box = {std::min(box.low_row, row), std::max(box.high_row, row), std::min(box.low_column, column),
-             std::max(box.high_column, column)};
-    }
-    return box;
-  }
-  bool are_near(const std::vector<std::size_t>& one, const std::vector<std::size_t>& other) const {
-    constexpr std::size_t more_steps = 2;
-    constexpr double widest_m = 10.0;
-    const Box first = box_of(one), second = box_of(other);
-    const std::array<std::size_t, 2> steps{
-        std::max(first.high_column, second.high_column) - std::min(first.low_column, second.low_column),
-        std::max(first.high_row, second.high_row) - std::min(first.low_row, second.low_row)};
-    const auto are_few = [&](std::size_t axis) {
-      return steps[axis] < side_[axis] + more_steps && static_cast<double>(steps[axis]) * spacing_m_[axis] <= widest_m;
-    };
-    return are_few(0) && are_few(1);
-  }
+  Box box_of(const std::vector<std::size_t>& group) const;
+  bool are_near(const std::vector<std::size_t>& one, const std::vector<std::size_t>& other) const;
   /// Calls `visit(cell)` for the cells beside one.
   template <typename Visit>
-  void for_each_beside(std::size_t cell, Visit&& visit) const {
-    const std::size_t row = cell / columns_, column = cell % columns_;
-    if (column > 0) visit(cell - 1);
-    if (column + 1 < columns_) visit(cell + 1);
-    if (row > 0) visit(cell - columns_);
-    if (row + 1 < rows_) visit(cell + columns_);
-  }
+  void for_each_beside(std::size_t cell, Visit&& visit) const;
   /// The tile of a cell.
   std::array<std::size_t, 2> tile_of(std::size_t cell) const {
     return {cell / columns_ / side_[1], cell % columns_ / side_[0]};
   }
-  template <typename Free>
-  void fill_from(std::size_t seed, Free& free);
+  void fill_from(std::size_t seed, const IsFree& free);
   /// The largest group beside one that it may join, or none.
-  template <typename Free>
-  std::uint32_t group_beside(std::uint32_t number, Free& free) const;
+  std::uint32_t group_beside(std::uint32_t number, const IsFree& free) const;
 
   std::size_t columns_, rows_;
   std::array<double, 2> spacing_m_;
@@ -102,76 +60,13 @@ class GridGroups {
   std::vector<std::vector<std::size_t>> groups_;
 };
 
-// ---------------------------------------------------------------------------------------------------------------------
-
-template <typename Free>
-void GridGroups::fill_tiles(Free&& free) {
-  for (std::size_t first_row = 0; first_row < rows_; first_row += side_[1]) {
-    for (std::size_t first_column = 0; first_column < columns_; first_column += side_[0]) {
-      for (std::size_t row = first_row; row < std::min(rows_, first_row + side_[1]); ++row) {
-        for (std::size_t column = first_column; column < std::min(columns_, first_column + side_[0]); ++column) {
-          fill_from(row * columns_ + column, free);
-        }
-      }
-    }
-  }
-}
-
-template <typename Free>
-void GridGroups::fill_from(std::size_t seed, Free& free) {
-  if (open_[seed] == 0 || group_of_[seed] != none) return;
-  const auto number = static_cast<std::uint32_t>(groups_.size());
-  std::vector<std::size_t> group{seed};
-  group_of_[seed] = number;
-  for (std::size_t next = 0; next < group.size(); ++next) {
-    const std::size_t from = group[next];
-    for_each_beside(from, [&](std::size_t to) {
-      if (open_[to] == 0 || group_of_[to] != none || tile_of(to) != tile_of(seed) || !free(from, to)) return;
-      group_of_[to] = number;
-      group.push_back(to);
-    });
-  }
-  std::ranges::sort(group);
-  groups_.push_back(std::move(group));
-}
-
-template <typename Free>
-void GridGroups::join_small(Free&& free) {
-  for (std::uint32_t number = 0; number < groups_.size(); ++number) {
-    if (groups_[number].empty() || 2 * groups_[number].size() > most_points) continue;
-    const std::uint32_t other = group_beside(number, free);
-    if (other == none) continue;
-    for (const std::size_t cell : groups_[number]) group_of_[cell] = other;
-    groups_[other].insert(groups_[other].end(), groups_[number].begin(), groups_[number].end());
-    std::ranges::sort(groups_[other]);
-    groups_[number].clear();
-  }
-}
-
-template <typename Free>
-std::uint32_t GridGroups::group_beside(std::uint32_t number, Free& free) const {
-  const std::vector<std::size_t>& group = groups_[number];
-  std::uint32_t best = none;
-  for (const std::size_t cell : group) {
-    for_each_beside(cell, [&](std::size_t to) {
-      const std::uint32_t other = group_of_[to];
-      if (other == none || other == number || other == best) return;
-      if (group.size() + groups_[other].size() > most_points || !are_near(group, groups_[other])) return;
-      if (best != none && groups_[other].size() <= groups_[best].size()) return;
-      if (free(cell, to)) best = other;
-    });
-  }
-  return best;
-}
-
 /// The open points of a grid in groups of at most 16 that free straight steps join. `open` holds what is not 0 for an
 /// open cell; `free(cell, cell)` says whether a step is free.
-template <typename Free>
-std::vector<std::vector<std::size_t>> map_groups(const ReceiverGrid& grid, std::span<const char> open, Free&& free) {
-  GridGroups groups(grid, open);
-  groups.fill_tiles(free);
-  groups.join_small(free);
-  return groups.take();
-}
+std::vector<std::vector<std::size_t>> map_groups(const ReceiverGrid& grid, std::span<const char> open,
+                                                 const IsFree& free);
 
 }  // namespace dcem::detail
+
+#if !defined(DCEM_ENGINE)
+#include "dcem/sim/detail/map_groups_bodies.hpp"
+#endif

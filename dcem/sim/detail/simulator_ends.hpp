@@ -69,7 +69,8 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
   const bool triples = joins_triples(search);
   const auto serves = [&](const KeptHalf& half) { return !triples || half.lists() != nullptr; };
   const bool are_kept = ends.devices.data() == scene_.transmitters().data();
-  if (halves.empty() && !fine && are_kept && halves_are_current_ && std::ranges::all_of(halves_, serves)) {
+  if (halves.empty() && !fine && are_kept && halves_are_current_ &&
+      std::all_of(halves_.begin(), halves_.end(), serves)) {
     ends.halves = HalfRefs(halves_);
     return;
   }

@@ -10,29 +10,10 @@
 #include "dcem/field/element_paths.hpp"
 #include "dcem/paths/discover/chain_count.hpp"
 #include "dcem/sim/basic_simulator.hpp"
+#include "dcem/sim/detail/frame_links.hpp"
 #include "dcem/sim/detail/link_work.hpp"
 
 namespace dcem {
-
-namespace detail {
-
-/// Each of some paths once, as they are reported.
-inline std::vector<PathContribution*> in_order(std::vector<PathContribution>& paths) {
-  std::vector<PathContribution*> order;
-  order.reserve(paths.size());
-  for (PathContribution& path : paths) order.push_back(&path);
-  std::sort(order.begin(), order.end(), [](const PathContribution* one, const PathContribution* other) {
-    return reported_before(one->path, other->path);
-  });
-  // The same sequence gives the same bits, so repeated paths stand side by side.
-  const auto same = [](const PathContribution* one, const PathContribution* other) {
-    return same_sequence(one->path, other->path);
-  };
-  order.erase(std::unique(order.begin(), order.end(), same), order.end());
-  return order;
-}
-
-}  // namespace detail
 
 template <SurfaceModel Surface, SpatialIndex Index>
 std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const Device> receivers,
@@ -47,20 +28,14 @@ std::vector<LinkResult> BasicSimulator<Surface, Index>::solve(std::span<const De
                                                               std::span<const Device> receivers,
                                                               std::span<const LinkRequest> requests,
                                                               WorkCounters* work) const {
-  std::vector<std::vector<std::uint32_t>> wanted(receivers.size());
-  for (const auto& [transmitter, receiver] : requests) {
-    if (transmitter >= transmitters.size() || receiver >= receivers.size()) {
-      throw std::invalid_argument("solve: a link between devices that are not there");
-    }
-    wanted[receiver].push_back(static_cast<std::uint32_t>(transmitter));
-  }
+  std::vector<std::vector<std::uint32_t>> wanted =
+      detail::requested_links(requests, transmitters.size(), receivers.size());
   const TransmitterEnds ends = transmitter_ends(transmitters, receivers.size());
   pool_->for_each_quick(receivers.size(), [&](std::size_t index) {
     std::vector<std::uint32_t>& of_one = wanted[index];
     const bool is_there = state_of(receivers[index]).present;
     std::erase_if(of_one, [&](std::uint32_t transmitter) { return !is_there || !ends.link[transmitter]; });
-    std::sort(of_one.begin(), of_one.end());
-    of_one.erase(std::unique(of_one.begin(), of_one.end()), of_one.end());
+    detail::sort_and_drop_repeated(of_one);
   });
   detail::FrameLinks links(wanted, {}, *pool_);
   std::vector<Spent> spent(pool_->size());
@@ -121,7 +96,7 @@ typename BasicSimulator<Surface, Index>::Solved BasicSimulator<Surface, Index>::
   const auto is_there = [](const std::optional<LinkEnd>& end) { return end.has_value(); };
   Solved solved;
   if (state_of(receiver).present) {
-    solved.links.resize(static_cast<std::size_t>(std::ranges::count_if(ends, is_there)));
+    solved.links.resize(static_cast<std::size_t>(std::count_if(ends.begin(), ends.end(), is_there)));
   }
   solved.spent = solve_receiver(receiver, index, transmitters, nullptr, proposals, LinkSlots(solved.links));
   return solved;

@@ -187,8 +187,9 @@ typename BasicSimulator<Surface, Index>::Spent BasicSimulator<Surface, Index>::f
     const Following& following, detail::ReceiverMemory& memory, std::span<const LinkToFollow> wanted,
     const LinkSlots& links) const {
   // What the links share is only read from here on.
-  if (following.half == &memory.half.half() &&
-      std::ranges::any_of(wanted, [&](const LinkToFollow& link) { return joins_anew(following, memory, link); })) {
+  if (following.half == &memory.half.half() && std::any_of(wanted.begin(), wanted.end(), [&](const LinkToFollow& link) {
+        return joins_anew(following, memory, link);
+      })) {
     memory.half.lay_out_images(scene_, *outlines_);
   }
   std::vector<Spent> by_link(wanted.size());

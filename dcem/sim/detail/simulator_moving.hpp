@@ -23,7 +23,7 @@ void BasicSimulator<Surface, Index>::look_from_receiver(Following& following, de
   if (search.max_interactions == 0) return;
   if (joins_triples(search)) return look_for_triples(following, memory, room, stands);
   const auto is_listed = [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; };
-  const bool pools = std::ranges::any_of(following.transmitters.halves, is_listed);
+  const bool pools = std::any_of(following.transmitters.halves.begin(), following.transmitters.halves.end(), is_listed);
   if (!pools && following.as_transmitter != nullptr) {
     memory.half.forget_bodies();  // nobody tells it how they move
     following.half = &following.as_transmitter->half();
@@ -69,8 +69,8 @@ void BasicSimulator<Surface, Index>::look_for_triples(Following& following, deta
   const HalfSettings settings = half_settings(search);
   // Where most transmitters have listed what they reach: other links are joined from what the place sees, which is
   // more.
-  const auto listed = std::ranges::count_if(following.transmitters.halves,
-                                            [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; });
+  const auto listed = std::count_if(following.transmitters.halves.begin(), following.transmitters.halves.end(),
+                                    [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; });
   const bool mostly_pools = 2 * static_cast<std::size_t>(listed) > following.transmitters.link.size();
   const auto device = static_cast<std::size_t>(&memory - receivers_.data());
   PlaceUse use{detail::longest_step_of_triples_m, false, true, some_rest(following.transmitters), known_places_.get()};
@@ -222,7 +222,7 @@ template <SurfaceModel Surface, SpatialIndex Index>
 void BasicSimulator<Surface, Index>::note_places() {
   if (plan_.joined == 0) return;
   const auto is_listed = [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; };
-  if (joins_triples(search_settings({})) && std::ranges::any_of(halves_, is_listed)) note_ways();
+  if (joins_triples(search_settings({})) && std::any_of(halves_.begin(), halves_.end(), is_listed)) note_ways();
   for (detail::ReceiverMemory& memory : receivers_) {
     if (!memory.half.place()) continue;
     if (const auto entered = memory.half.take_entered()) known_places_->note(entered);
