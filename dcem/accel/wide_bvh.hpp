@@ -191,8 +191,11 @@ class WideBvh {
   Aabb<float> root_box() const { return arrays_.nodes.empty() ? Aabb<float>{} : arrays_.nodes[0].box(); }
   Aabb<double> in_world(const Aabb<float>& box) const;
 
-  template <typename KeepRounded, typename Keep, typename Visit>
-  void visit_where(KeepRounded&& keep_rounded, Keep&& keep, Visit&& visit, TraversalCounters* counters) const;
+  /// What differences of coordinates in the tree may lose.
+  double lost_m() const;
+
+  template <typename Children, typename Quads, typename Keep, typename Visit>
+  void visit_where(Children&& children, Quads&& quads, Keep&& keep, Visit&& visit, TraversalCounters* counters) const;
 
   static void require_input(const TriangleView& mesh, Boxes boxes);
   static void require_corners(const TriangleView& mesh, std::uint32_t triangle);

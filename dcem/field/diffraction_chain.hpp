@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "dcem/core/constants.hpp"
+#include "dcem/core/error.hpp"
 #include "dcem/em/diffraction/diffraction_cascade.hpp"
 #include "dcem/em/diffraction/wedge_diffraction.hpp"
 #include "dcem/em/surface/material_table.hpp"
@@ -46,7 +48,7 @@ class DiffractionChain {
         carrier_(scene, surface, path, directions),
         wave_number_rad_per_m_(wave_number_rad_per_m) {
     measure_legs();
-    for (const std::size_t place : places_) add_edge(place);
+    for (std::size_t edge = 0; edge < count_; ++edge) place_edge(edge);
   }
 
   /// What arrives along the unit vectors `received` per unit field along `sent` a metre from the transmitter, in 1/m:
@@ -56,6 +58,7 @@ class DiffractionChain {
   }
 
  private:
+  static constexpr std::size_t most_edges = most_cascade_edges;
   struct Edge {
     EdgeBases bases;
     WedgeAngles angles;
@@ -73,21 +76,22 @@ class DiffractionChain {
       length_m += glm::distance(before_m, interaction.point_m);
       before_m = interaction.point_m;
       if (interaction.kind != InteractionKind::diffraction) continue;
-      places_.push_back(index);
-      legs_m_.push_back(std::exchange(length_m, 0.0));
+      DCEM_ASSERT(count_ < most_edges);
+      places_[count_] = index;
+      legs_m_[count_++] = std::exchange(length_m, 0.0);
     }
-    legs_m_.push_back(length_m + glm::distance(before_m, to_m_));
+    legs_m_[count_] = length_m + glm::distance(before_m, to_m_);
   }
 
-  void add_edge(std::size_t place) {
+  void place_edge(std::size_t number) {
+    const std::size_t place = places_[number];
     const WorldWedge& wedge = scene_.wedge(path_.interactions[place].wedge);
-    Edge edge;
+    Edge& edge = edges_[number];
     edge.bases = edge_bases(edge_direction(wedge.edge), directions_[place], directions_[place + 1]);
     edge.angles = angles_.at(place, directions_);
     edge.matrices = matrices_at(place, wedge, edge.angles);
-    edge.arrival = edges_.empty() ? diagonal_matrix(1.0, 1.0) : arrival_at(edge.bases, place);
-    edge.alignment = edges_.empty() ? 1.0 : alignment_at(edge.bases, place);
-    edges_.push_back(edge);
+    edge.arrival = number == 0 ? diagonal_matrix(1.0, 1.0) : arrival_at(number);
+    edge.alignment = number == 0 ? 1.0 : alignment_at(number);
   }
 
   /// What arrives along a face holds the wave and its reflection: the terms with that reflection would count it twice.
@@ -131,27 +135,28 @@ class DiffractionChain {
     return left;
   }
 
-  ComplexMatrix2 arrival_at(const EdgeBases& here, std::size_t place) const {
-    const std::size_t first = places_[edges_.size() - 1] + 1;
-    const EdgeBases& before = edges_.back().bases;
-    const auto carried = carrier_.carry(
-        std::array{ComplexVector3(before.diffracted_beta), ComplexVector3(before.diffracted_phi)}, first, place);
+  /// From the edge before to one of them, that one excluded.
+  ComplexMatrix2 arrival_at(std::size_t number) const {
+    const EdgeBases &here = edges_[number].bases, &before = edges_[number - 1].bases;
+    const auto carried =
+        carrier_.carry(std::array{ComplexVector3(before.diffracted_beta), ComplexVector3(before.diffracted_phi)},
+                       places_[number - 1] + 1, places_[number]);
     const ComplexVector2 beta = incident_components(here, carried[0]), phi = incident_components(here, carried[1]);
     return {{{{beta[0], phi[0]}, {beta[1], phi[1]}}}};
   }
 
-  double alignment_at(const EdgeBases& here, std::size_t place) const {
-    const std::size_t first = places_[edges_.size() - 1] + 1;
-    return glm::dot(here.incident_phi, carrier_.turned(edges_.back().bases.diffracted_phi, first, place));
+  double alignment_at(std::size_t number) const {
+    return glm::dot(edges_[number].bases.incident_phi,
+                    carrier_.turned(edges_[number - 1].bases.diffracted_phi, places_[number - 1] + 1, places_[number]));
   }
 
   ComplexMatrix2 cascade() const {
-    std::vector<CascadeEdge<ComplexMatrix2>> edges;
-    for (std::size_t index = 0; index < edges_.size(); ++index) {
+    std::array<CascadeEdge<ComplexMatrix2>, most_edges> edges;
+    for (std::size_t index = 0; index < count_; ++index) {
       const Edge& edge = edges_[index];
-      edges.push_back({edge.angles, edge.matrices.in_order(), legs_m_[index + 1], edge.arrival, edge.alignment});
+      edges[index] = {edge.angles, edge.matrices.in_order(), legs_m_[index + 1], edge.arrival, edge.alignment};
     }
-    return cascade_transfer<ComplexMatrix2>(wave_number_rad_per_m_, legs_m_[0], edges);
+    return cascade_transfer<ComplexMatrix2>(wave_number_rad_per_m_, legs_m_[0], std::span(edges).first(count_));
   }
 
   /// From the transmitter's unit vectors to the basis in which the first edge is met.
@@ -168,10 +173,10 @@ class DiffractionChain {
 
   /// From the basis that leaves the last edge to the receiver's unit vectors.
   ComplexMatrix2 leaving(const std::array<Vec3, 2>& received) const {
-    const EdgeBases& bases = edges_.back().bases;
+    const EdgeBases& bases = edges_[count_ - 1].bases;
     const auto carried =
         carrier_.carry(std::array{ComplexVector3(bases.diffracted_beta), ComplexVector3(bases.diffracted_phi)},
-                       places_.back() + 1, path_.interactions.size());
+                       places_[count_ - 1] + 1, path_.interactions.size());
     ComplexMatrix2 matrix;
     for (std::size_t column = 0; column < 2; ++column) {
       for (std::size_t out = 0; out < 2; ++out) matrix(out, column) = dot(carried[column], received[out]);
@@ -188,9 +193,10 @@ class DiffractionChain {
   EdgeAngles angles_;
   FieldCarrier<Surface> carrier_;
   double wave_number_rad_per_m_;
-  std::vector<std::size_t> places_;  ///< of the diffractions among the interactions
-  std::vector<double> legs_m_;       ///< unfolded, from the transmitter over the edges to the receiver
-  std::vector<Edge> edges_;
+  std::size_t count_ = 0;                         ///< of edges
+  std::array<std::size_t, most_edges> places_{};  ///< of the diffractions among the interactions
+  std::array<double, most_edges + 1> legs_m_{};   ///< unfolded, from the transmitter over the edges to the receiver
+  std::array<Edge, most_edges> edges_;
 };
 
 }  // namespace dcem

@@ -119,6 +119,12 @@ class Scene {
   std::uint32_t shell_of_triangle(std::uint32_t triangle) const { return world_.shell_of_triangle(triangle); }
   /// Corners of a facet's convex hull, in order around it.
   std::span<const Vec3> hull_m(const WorldFacet& facet) const { return world_.hull_m(facet); }
+  /// The box around these.
+  Aabb<double> hull_box(const WorldFacet& facet) const {
+    Aabb<double> box;
+    for (const Vec3& corner_m : hull_m(facet)) box.extend(corner_m);
+    return box;
+  }
   /// Boxes of all triangles, in the order of `triangles()`; empty for triangles of an absent body.
   std::span<const Aabb<double>> triangle_boxes() const { return world_.triangle_boxes(); }
   /// Facets that can reflect, block or let pass: all but the skins of foliage.

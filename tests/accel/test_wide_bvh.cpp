@@ -95,6 +95,35 @@ void check_regions(const Built& scene, int trials, std::uint64_t seed) {
   }
 }
 
+/// Small regions that end on a face of a triangle's box, to the last bit or one number beside it.
+void check_touching_regions(const Built& scene, int trials, std::uint64_t seed) {
+  BruteForce<double> oracle;
+  oracle.build(scene.boxes);
+  RandomStream random(seed);
+  const auto any_of = [&](std::size_t count) {
+    return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
+  };
+  int asked = 0, touching = 0;
+  while (asked < trials) {
+    const Aabb<double>& box = scene.boxes[any_of(scene.boxes.size())];
+    if (box.empty()) continue;
+    ++asked;
+    const auto axis = static_cast<int>(any_of(3));
+    const Vec3 middle_m = box.center();
+    Aabb<double> region = inflated(Aabb<double>{middle_m, middle_m}, 1e-3);
+    const bool is_above = random.uniform() < 0.5;
+    double face_m = is_above ? box.max[axis] : box.min[axis];
+    const std::size_t beside = any_of(3);  // on it, just inside, just outside
+    if (beside > 0) face_m = std::nextafter(face_m, (beside == 1) == is_above ? -infinity : infinity);
+    (is_above ? region.min : region.max)[axis] = face_m;
+    (is_above ? region.max : region.min)[axis] = is_above ? face_m + 2e-3 : face_m - 2e-3;
+    const auto expected = reported([&](auto leaf) { oracle.overlapping(region, leaf); });
+    REQUIRE(reported([&](auto leaf) { scene.tree.overlapping(region, leaf); }) == expected);
+    touching += expected.empty() ? 0 : 1;
+  }
+  CHECK(touching > trials / 3);
+}
+
 WideMesh moved_by(const WideMesh& mesh, double scale, const Vec3& shift) {
   return mesh.changed([&](const Vec3& vertex) { return scale * vertex + shift; });
 }
@@ -118,6 +147,17 @@ TEST_CASE("soups, boxes, balls: every query gives the oracle's answer") {
   check_rays(Built(dcem_test::boxes_mesh(60, 31)), 3000, 32);
   check_regions(Built(dcem_test::boxes_mesh(60, 31)), 500, 33);
   check_rays(Built(dcem_test::ball(Vec3(0.3, 0.2, 0.1), 5.0, 12)), 3000, 34);
+}
+
+TEST_CASE(
+    "a region that touches the box of a triangle finds it, and one a number beside it does not, however far away") {
+  for (const Vec3& shift : {Vec3(0.0), Vec3(3e5, -5e6, 40.0)}) {
+    for (const double scale : {1e-3, 1.0, 200.0}) {
+      CAPTURE(scale);
+      check_touching_regions(Built(moved_by(dcem_test::soup(700, 5), scale, shift)), 3000, 35);
+      check_touching_regions(Built(without_every(moved_by(dcem_test::boxes_mesh(60, 31), scale, shift), 3)), 1000, 36);
+    }
+  }
 }
 
 TEST_CASE("a dirty mesh: needles, no area, repeated points, triangles drawn twice") {

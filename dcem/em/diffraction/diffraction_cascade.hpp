@@ -15,7 +15,6 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "dcem/core/error.hpp"
 #include "dcem/em/complex.hpp"
@@ -24,6 +23,9 @@
 #include "dcem/em/diffraction/utd.hpp"
 
 namespace dcem {
+
+/// A cascade has no more edges.
+inline constexpr std::size_t most_cascade_edges = 3;
 
 /// One edge of a cascade. `Transfer` is ComplexMatrix2 (what stands beside D1…D4 in M of
 /// em/diffraction/wedge_diffraction.hpp) or, for a scalar soft or hard field, Complex.
@@ -97,18 +99,18 @@ Transfer single_edge(double wave_number_rad_per_m, double first_leg_m, const Cas
 /// The terms of two or three edges, and what each makes of the fields that leave the one before.
 template <typename Transfer>
 struct CascadeSums {
-  std::vector<CascadeTerms> terms;
-  std::vector<EdgeCoupling> couplings;  ///< of each edge from the second on with the one before
-  std::vector<std::array<Transfer, 4>> steps;
+  std::array<CascadeTerms, most_cascade_edges> terms;
+  std::array<EdgeCoupling, most_cascade_edges - 1> couplings;  ///< of each edge from the second on with the one before
+  std::array<std::array<Transfer, 4>, most_cascade_edges> steps;
 
   CascadeSums(double wave_number_rad_per_m, double first_leg_m, std::span<const CascadeEdge<Transfer>> edges) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const double before_m = way_m(first_leg_m, edges.first(i)), after_m = way_m(0.0, edges.subspan(i));
-      terms.push_back(cascade_terms(edges[i].angles, wave_number_rad_per_m, before_m, after_m));
-      steps.push_back(cascade_steps(edges[i], terms[i].coefficients));
+      terms[i] = cascade_terms(edges[i].angles, wave_number_rad_per_m, before_m, after_m);
+      steps[i] = cascade_steps(edges[i], terms[i].coefficients);
       if (i == 0) continue;
       const double leg_m = edges[i - 1].leg_m;
-      couplings.push_back(edge_coupling(way_m(first_leg_m, edges.first(i - 1)), leg_m, after_m, edges[i].alignment));
+      couplings[i - 1] = edge_coupling(way_m(first_leg_m, edges.first(i - 1)), leg_m, after_m, edges[i].alignment);
     }
   }
 
@@ -145,7 +147,7 @@ struct CascadeSums {
 template <typename Transfer>
 Transfer cascade_transfer(double wave_number_rad_per_m, double first_leg_m,
                           std::span<const CascadeEdge<Transfer>> edges) {
-  DCEM_ASSERT(!edges.empty() && edges.size() <= 3);
+  DCEM_ASSERT(!edges.empty() && edges.size() <= most_cascade_edges);
   const Complex spreading(cascade_spreading(first_leg_m, edges));
   if (edges.size() == 1) return spreading * detail::single_edge(wave_number_rad_per_m, first_leg_m, edges.front());
   const detail::CascadeSums<Transfer> sums(wave_number_rad_per_m, first_leg_m, edges);

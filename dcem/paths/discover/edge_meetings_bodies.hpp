@@ -22,9 +22,7 @@ inline constexpr double beside_meeting_m = 2e-3;
 
 /// Whether a point of its plane is in the box around a facet, or a little beside.
 inline bool is_by_facet(const Scene& scene, const WorldFacet& facet, const Vec3& point_m) {
-  Aabb<double> box;
-  for (const Vec3& corner_m : scene.hull_m(facet)) box.extend(corner_m);
-  return inflated(box, 5.0 * beside_meeting_m).contains(point_m);
+  return inflated(scene.hull_box(facet), 5.0 * beside_meeting_m).contains(point_m);
 }
 
 inline bool fits_one_edge(const ChainLimits& limits, std::size_t mirrors) {

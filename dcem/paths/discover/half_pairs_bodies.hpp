@@ -158,10 +158,8 @@ inline EdgeHalf half_in_mirror(const EdgeHalf& half, const Plane& plane) {
 }
 
 inline MirrorWindow window_of(const Scene& scene, FacetId id) {
-  MirrorWindow window{scene.facet(id).plane, {}};
-  for (const Vec3& corner_m : scene.hull_m(scene.facet(id))) window.box.extend(corner_m);
-  window.box = inflated(window.box, 1e-2);
-  return window;
+  const WorldFacet& facet = scene.facet(id);
+  return {facet.plane, inflated(scene.hull_box(facet), 1e-2)};
 }
 
 /// Joins the halves of two ends over two edges.

@@ -27,8 +27,6 @@ bool is_stacked(const SceneTracer<Index>& tracer, FacetId id) {
   const Scene& scene = tracer.scene();
   const WorldFacet& facet = scene.facet(id);
   const double tolerance_m = 1.001 * scene.settings().weld_tolerance_m;
-  Aabb<double> box;
-  for (const Vec3& corner_m : scene.hull_m(facet)) box.extend(corner_m);
   bool found = false;
   const auto ask = [&](std::uint32_t triangle) {
     const FacetId other = scene.facet_of_triangle(triangle);
@@ -41,7 +39,7 @@ bool is_stacked(const SceneTracer<Index>& tracer, FacetId id) {
     }
     found = before < 3 && behind < 3;
   };
-  tracer.index().overlapping(inflated(box, tolerance_m + facet_reach_m(scene)), ask);
+  tracer.index().overlapping(inflated(scene.hull_box(facet), tolerance_m + facet_reach_m(scene)), ask);
   return found;
 }
 

@@ -10,6 +10,7 @@
 
 #include "dcem/field/diffuse/scattering_limits.hpp"
 #include "dcem/field/radio_end.hpp"
+#include "dcem/paths/discover/edge_reach.hpp"
 #include "dcem/paths/halves/link_halves.hpp"
 #include "dcem/paths/query/scene_contacts.hpp"
 #include "dcem/paths/visible/surface_view.hpp"
