@@ -254,16 +254,29 @@ void add_verify_options(CLI::App& command, ScenarioOptions& options) {
   add_cache_option(command, options);
 }
 
+/// Adds an option for a number above 0, up to `most`, which reads `most_text`.
+template <typename Number>
+CLI::Option* add_number_above_zero(CLI::App& command, const std::string& name, const std::string& does, Number& value,
+                                   double most, const std::string& most_text) {
+  const auto take = [&value, name, most, most_text](const std::string& text) {
+    double number = 0.0;
+    const bool is_number = CLI::detail::lexical_cast(text, number) && number > 0.0 && number <= most;
+    if (!is_number) throw UsageError(name + ": found " + text, "a number above 0, at most " + most_text);
+    value = number;
+  };
+  return command.add_option_function<std::string>(name, take, does);
+}
+
 void add_inspect_options(CLI::App& command, InspectOptions& options) {
   command.add_option("scene", options.obj, "The scene (OBJ)")->required()->type_name("SCENE.obj");
   command.add_flag("--json", options.json, "JSON instead of tables");
   add_choice(command, "--up", "The file's axis that points up: y or z (default: z)", up_axes, options.settings.obj.up)
       ->type_name("AXIS");
-  command.add_option("--unit-m", options.settings.obj.unit_m, "Length of one file unit in metres (default: 1)")
-      ->check(CLI::PositiveNumber)
+  add_number_above_zero(command, "--unit-m", "Length of one file unit in metres (default: 1)",
+                        options.settings.obj.unit_m, 1e6, "1e6 m")
       ->type_name("X");
-  command.add_option("--frequency-hz", options.settings.frequency_hz, "Evaluate the materials at this frequency")
-      ->check(CLI::PositiveNumber)
+  add_number_above_zero(command, "--frequency-hz", "Evaluate the materials at this frequency",
+                        options.settings.frequency_hz, 1e15, "1e15 Hz")
       ->type_name("F");
 }
 

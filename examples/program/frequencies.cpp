@@ -4,8 +4,12 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <span>
+#include <stdexcept>
 #include <string>
 
+#include "dcem/em/surface/material_table.hpp"
+#include "dcem/io/input_error.hpp"
 #include "dcem/io/run_journal.hpp"
 #include "job.hpp"
 #include "run_on_ranks.hpp"
@@ -26,6 +30,17 @@ fs::path folder_of(const ScenarioOptions& options) {
   return options.shard ? fs::path(folder) += shard_ending(*options.shard) : folder;
 }
 
+/// Reads the scenario at a frequency, before anything is computed at another. Throws InputError where it cannot be run.
+void require_materials(const ScenarioOptions& run) {
+  const Job job = prepare_job(run);
+  const std::span<const Material> materials = job.scenario.scene.materials();
+  try {
+    MaterialTable({materials.begin(), materials.end()}, job.scenario.settings.frequency_hz, job.scenario.settings.itu);
+  } catch (const std::invalid_argument& error) {
+    throw io::InputError(run.scenario, error.what());
+  }
+}
+
 }  // namespace
 
 std::string frequency_text(double frequency_hz) {
@@ -44,6 +59,7 @@ std::vector<ScenarioOptions> by_frequency(const ScenarioOptions& options) {
   }
   if (std::ranges::any_of(runs, has_begun))
     for (ScenarioOptions& run : runs) run.resume = run.resume && has_begun(run);
+  for (const ScenarioOptions& run : runs) require_materials(run);
   return runs;
 }
 

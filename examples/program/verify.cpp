@@ -1,5 +1,6 @@
 /// `dcem verify`: runs a scenario and checks every frame against solutions of its own.
 #include <iostream>
+#include <stdexcept>
 
 #include "dcem/io/frame_source.hpp"
 #include "dcem/io/text_table.hpp"
@@ -78,7 +79,10 @@ void verify_one(const ScenarioOptions& options) {
     }
   }
   const VerificationReport& report = verifier.report();
-  if (!options.quiet) std::cout << table_of(report, simulator);
+  if (!options.quiet) {
+    std::cout << table_of(report, simulator) << std::flush;
+    if (!std::cout) throw std::runtime_error("the output stream does not take the result");
+  }
   if (report.passed()) {
     if (next == job.frames.last) return;
     throw Interrupted(stop.signal(), "interrupted by " + signal_name(stop.signal()) + ": " +

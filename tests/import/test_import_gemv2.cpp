@@ -1,6 +1,7 @@
 /// Tables of a GEMV² run become a scenario.
 #include <doctest/doctest.h>
 
+#include "dcem/io/geo_anchor.hpp"
 #include "tests/import/import_case.hpp"
 #include "tests/support/shared_data.hpp"
 
@@ -71,6 +72,11 @@ TEST_CASE("damaged tables: one line, nothing written") {
   write(folder / "run/links_5.89GHz.csv", link_header);
   refused("holds no link");
   write_tables(folder);
+  if (io::knows_utm()) {
+    write(folder / "run/town_origin.json", "{\"origin_utm29n\": [1e300, 1]}");
+    refused("town_origin.json: origin_utm29n: no place in UTM");
+    write_tables(folder);
+  }
   write(folder / "run/town_buildings_xy.csv", "building_id,x_m,y_m\n-1,0,1e300\n");
   refused("town_buildings_xy.csv:2");
   write(folder / "run/town_buildings_xy.csv", "building_id,x_m,y_m\n-1,0,1\n-1,3,3\n");

@@ -44,6 +44,20 @@ TEST_CASE("several frequencies are as many runs: each has the files that it has 
   CHECK(file_bytes(folder / "low/links.csv") != file_bytes(folder / "high/links.csv"));
 }
 
+TEST_CASE("of several frequencies one that cannot be computed is told before another one is") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  for (const char* command : {"run", "verify"}) {
+    const bool has_folder = std::string(command) == "run";
+    const Outcome outcome = dcem_program(
+        folder, std::string(command) + ' ' + town + " --frequency 30e9,200e9" + (has_folder ? " -o out" : ""));
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.output.empty());
+    CHECK_MESSAGE(outcome.error.find("200 GHz") != std::string::npos, outcome.error);
+    CHECK_FALSE(std::filesystem::exists(folder / "out"));
+  }
+}
+
 TEST_CASE("a frequency on the command line is that of a scenario that says it") {
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;

@@ -392,9 +392,32 @@ TEST_CASE("bad usage and bad input end with one line, exit code 2 and no output"
   check_refused(folder, "run street.json -o full/result", "full");
   check_refused(folder, "map street.json", "grid");
   check_refused(folder, "inspect absent.obj", "absent.obj");
+  for (const char* number : {"nan", "inf", "0", "-1", "1e300"}) {
+    check_refused(folder, std::string("inspect absent.obj --frequency-hz ") + number, "expected a number above 0");
+    check_refused(folder, std::string("inspect absent.obj --unit-m ") + number, "expected a number above 0");
+  }
   check_refused(folder, "import sumo town.sumocfg -o town", "town.sumocfg");
   check_refused(folder, "import maps town.osm -o town", "maps");
   check_refused(folder, "import osm town.osm -o town --fcd trace.xml", "--fcd");
+}
+
+TEST_CASE("a folder where a file of results belongs is told in one line") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver);
+  std::filesystem::create_directories(folder / "one/summary.json");
+  check_refused(folder, "run street.json -o one", "summary.json: is a folder");
+  std::filesystem::create_directories(folder / "other/run.journal");
+  check_refused(folder, "run street.json -o other --resume", "run.journal: is no file");
+}
+
+TEST_CASE("a verification that nobody can read has failed") {
+  DCEM_NEEDS_PROGRAM();
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver);
+  CHECK(dcem_program(folder, "verify street.json").exit_code == 0);
+  CHECK(shell_line(folder, "(" + quoted(DCEM_PROGRAM) + " verify street.json >/dev/full)").exit_code == 1);
 }
 
 TEST_CASE("version and help are no errors") {

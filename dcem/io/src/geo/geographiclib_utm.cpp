@@ -39,7 +39,12 @@ Vec2 utm_m(const GeoPoint& point, const UtmZone& zone) {
 
 GeoPoint geo_point(const Vec2& utm_m, const UtmZone& zone) {
   GeoPoint point;
-  GeographicLib::UTMUPS::Reverse(zone.number, zone.is_north, utm_m.x, utm_m.y, point.latitude_deg, point.longitude_deg);
+  try {
+    GeographicLib::UTMUPS::Reverse(zone.number, zone.is_north, utm_m.x, utm_m.y, point.latitude_deg,
+                                   point.longitude_deg);
+  } catch (const GeographicLib::GeographicErr& error) {
+    throw std::invalid_argument(std::string("no place in UTM (") + error.what() + "); expected one within the zone");
+  }
   return point;
 }
 

@@ -28,6 +28,7 @@ std::string utm_library();
 UtmZone utm_zone(const GeoPoint& point);
 /// Easting and northing in a zone, also of points somewhat outside of it. Throws std::invalid_argument far outside.
 Vec2 utm_m(const GeoPoint& point, const UtmZone& zone);
+/// Throws std::invalid_argument where that is no place of the zone.
 GeoPoint geo_point(const Vec2& utm_m, const UtmZone& zone);
 /// Throws as `place_on_earth`.
 GeoPlace place_from_utm(const UtmFrame& frame, double easting_m, double northing_m);

@@ -244,7 +244,7 @@ class Gemv2Import {
       zone.number = static_cast<int>(parse_integer(key.substr(10, key.size() - 11)).value_or(0));
       zone.is_north = key.back() != 's';
       if (zone.number < 1 || zone.number > 60 || !value[0].is_number() || !value[1].is_number()) continue;
-      draft_.geo = geo_json(zone, {value[0].get<double>(), value[1].get<double>()});
+      draft_.geo = geo_json(zone, {value[0].get<double>(), value[1].get<double>()}, origin_, key);
     }
   }
 

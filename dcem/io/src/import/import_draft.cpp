@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/input_error.hpp"
@@ -206,8 +207,14 @@ void check_settings(const ImportSettings& settings, const std::filesystem::path&
   check("frequency", settings.frequency_hz.value_or(v2x_frequency_hz), {0.0, 1e15, true});
 }
 
-nlohmann::ordered_json geo_json(const UtmZone& zone, const Vec2& utm_m) {
-  const GeoPoint origin = geo_point(utm_m, zone);
+nlohmann::ordered_json geo_json(const UtmZone& zone, const Vec2& utm_m, const std::filesystem::path& source,
+                                const std::string& place) {
+  GeoPoint origin;
+  try {
+    origin = geo_point(utm_m, zone);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(source.string(), place + ": " + error.what());
+  }
   return {{"origin_lat_deg", origin.latitude_deg},
           {"origin_lon_deg", origin.longitude_deg},
           {"crs", zone.name()},

@@ -46,8 +46,10 @@ void require_outlines(const std::filesystem::path& source);
 /// Throws InputError where settings make no sense for any file.
 void check_settings(const ImportSettings& settings, const std::filesystem::path& source);
 
-/// Where the scene's (0, 0) lies; `utm_m` are its easting and northing.
-nlohmann::ordered_json geo_json(const UtmZone& zone, const Vec2& utm_m);
+/// Where the scene's (0, 0) lies; `utm_m` are its easting and northing, which `place` of the source says. Throws
+/// InputError where the zone has no such place.
+nlohmann::ordered_json geo_json(const UtmZone& zone, const Vec2& utm_m, const std::filesystem::path& source,
+                                const std::string& place);
 
 /// The height of the part that holds a point; 0 in the open.
 double roof_height_m(const std::vector<TownPart>& parts, const Vec2& point_m);

@@ -57,7 +57,7 @@ class OsmImport {
     draft_.report.read["ways"] = data_.ways.size();
     draft_.report.read["relations"] = data_.relations.size();
     find_origin();
-    draft_.geo = geo_json(zone_, origin_m_);
+    draft_.geo = geo_json(zone_, origin_m_, source_, "nodes");
     for (const OsmRelation& relation : data_.relations) add_relation(relation);
     for (const OsmWay& way : data_.ways) add_way(way);
     const std::vector<TownPart> parts = build_town(std::move(town_), low_m_, high_m_, settings_, source_, draft_);

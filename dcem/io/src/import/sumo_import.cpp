@@ -119,7 +119,7 @@ class SumoImport {
       zone_.reset();
       return;
     }
-    draft_.geo = geo_json(*zone_, -location_->net_offset_m);
+    draft_.geo = geo_json(*zone_, -location_->net_offset_m, files_.network, "location: netOffset");
   }
 
   std::string place_of_polygons() const { return files_.polygons.string(); }

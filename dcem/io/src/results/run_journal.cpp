@@ -222,6 +222,9 @@ JournalReader::JournalReader(const fs::path& folder, const RunIdentity& identity
     throw InputError(folder.string(), "nothing to resume; expected the folder of a run that was ended, with its " +
                                           std::string(journal_name));
   }
+  if (std::error_code ignored; !fs::is_regular_file(file_, ignored)) {
+    throw InputError(file_.string(), "is no file; expected the journal of a run");
+  }
   size_ = fs::file_size(file_);
   check_head(identity, scenario, use);
   count_frames(use);

@@ -4,10 +4,12 @@
 #include <fstream>
 #include <numeric>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "dcem/core/statistics.hpp"
 #include "dcem/core/thread_pool.hpp"
+#include "dcem/io/input_error.hpp"
 #include "dcem/io/sampling_text.hpp"
 #include "dcem/io/src/results/fact_json.hpp"
 #include "dcem/io/src/results/shard_json.hpp"
@@ -315,6 +317,10 @@ std::string RunSummary::table(const std::filesystem::path& folder) const {
 }
 
 std::optional<FormerResult> read_former_result(const std::filesystem::path& summary) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(summary, ignored)) {
+    throw InputError(summary.string(), "is a folder; expected a file, or nothing");
+  }
   std::ifstream stream(summary);
   const Json document = Json::parse(stream, nullptr, false);
   if (!document.is_object() || !document.contains("version") || !document.contains("totals")) return std::nullopt;

@@ -45,6 +45,10 @@ ReceiverGrid read_grid(const JsonValue& value) {
   grid.origin_m = object.at("origin_m").vector3();
   const std::vector<JsonValue> spacing = object.at("spacing_m").elements();
   grid.spacing_m = {spacing[0].number(), spacing[1].number()};
+  for (int axis = 0; axis < 2; ++axis) {
+    if (std::abs(grid.origin_m[axis]) * 1e-12 < grid.spacing_m[static_cast<std::size_t>(axis)]) continue;
+    object.at("spacing_m").fail("too small beside the origin; expected at least a millionth of a millionth of it");
+  }
   grid.count = read_counts(object.at("count"));
   if (const auto samples = object.find("samples")) grid.samples = read_counts(*samples);
   check_point_count(object, grid);

@@ -2,6 +2,7 @@
 
 #include "dcem/core/units.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
+#include "dcem/io/src/traffic/waypoint_speed.hpp"
 
 namespace dcem::io {
 
@@ -21,6 +22,9 @@ WaypointMotion read_waypoints(const JsonValue& value) {
       object.at("t_s").fail("not later than the waypoint before; expected increasing times");
     }
     motion.waypoints.push_back({time_s, read_pose(object)});
+    if (is_last_faster_than_light(motion)) {
+      object.at("position_m").fail("faster than light from the waypoint before; expected less than 299792458 m/s");
+    }
   }
   return motion;
 }

@@ -4,6 +4,7 @@
 #include "dcem/io/src/scenario/enum_words.hpp"
 #include "dcem/io/src/scenario/keys/blocks.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
+#include "dcem/io/src/text/text_input.hpp"
 #include "dcem/io/viewer_writer.hpp"
 
 namespace dcem::io {
@@ -220,12 +221,19 @@ void read_fields(const JsonObject& file, PropagationSettings& settings) {
 }  // namespace
 
 TimeSettings read_time(const JsonObject& scenario) {
+  constexpr double shortest_step_s = 1e-12;
   TimeSettings time;
   const auto object = find_object(scenario, "time");
   if (!object) return time;
   time.start_s = object->number("start_s", time.start_s);
   time.step_s = object->number("step_s", time.step_s);
   time.frames = object->count("frames", time.frames);
+  const double last_s = time.time_s(time.frames - 1);
+  if (time.frames > 1 && !(time.step_s >= shortest_step_s && last_s > time.time_s(time.frames - 2))) {
+    (object->has("step_s") ? object->at("step_s") : object->at("start_s"))
+        .fail("frames of one and the same instant; expected steps of a picosecond at least that count beside " +
+              number_text(last_s) + " s");
+  }
   return time;
 }
 

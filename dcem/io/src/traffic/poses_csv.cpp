@@ -11,6 +11,7 @@
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 #include "dcem/io/src/text/csv_reader.hpp"
 #include "dcem/io/src/text/text_input.hpp"
+#include "dcem/io/src/traffic/waypoint_speed.hpp"
 
 namespace dcem::io {
 
@@ -46,6 +47,10 @@ PosesCsv::PosesCsv(const std::filesystem::path& file) : name_(file.string()) {
       row.fail("t_s: not later than the row of " + in_quotes(key) + " before; expected increasing times");
     }
     waypoints.push_back({time_s, read_pose(row)});
+    if (is_last_faster_than_light(track.motion)) {
+      row.fail("x_m: faster than light from the row of " + in_quotes(key) +
+               " before; expected less than 299792458 m/s");
+    }
   }
 }
 
