@@ -155,6 +155,8 @@ TEST_CASE(
     for (const double scale : {1e-3, 1.0, 200.0}) {
       CAPTURE(scale);
       check_touching_regions(Built(moved_by(dcem_test::soup(700, 5), scale, shift)), 3000, 35);
+      // Flat quads that lie askew: each of their corners may reach farthest.
+      check_touching_regions(Built(moved_by(dcem_test::ball(Vec3(0.3, 0.2, 0.1), 5.0, 12), scale, shift)), 1000, 37);
       check_touching_regions(Built(without_every(moved_by(dcem_test::boxes_mesh(60, 31), scale, shift), 3)), 1000, 36);
     }
   }

@@ -37,7 +37,8 @@ inline std::uint32_t children_overlapping(const WideNode& node, const Aabb<float
 
 /// The quads of a leaf that a box may overlap, which counts from the tree's origin: no other one has a triangle that
 /// does. Corners have been rounded by at most 2⁻²⁴ of the leaf's size, ends of the box by as much of their own, and
-/// both by what differences of large coordinates lose in double precision.
+/// both by what differences of large coordinates lose in double precision. (Both go through the same roundings, which
+/// keep order; the room does not rely on that.)
 inline std::uint32_t quads_overlapping(const QuadLeaf& leaf, const Aabb<double>& box, double lost_m) {
   std::uint32_t lanes = leaf.lanes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
