@@ -81,6 +81,7 @@ void run_once(const dcem::io::Scenario& scenario, std::size_t frames, Configurat
   settings.threads = configuration.threads;
   settings.propagation.cache = configuration.cache;
   settings.tree.policy = configuration.policy;
+  settings.expected_frames = frames;  // as dcem run says
   dcem::Simulator simulator(scenario.scene, settings);
   dcem::io::FrameSource source(scenario);
   std::vector<double> frame_ms, update_ms, source_ms;

@@ -41,12 +41,18 @@ struct Options {
   std::size_t frames = 40, warm = 0, settle = 4, column = 1;
   double within_m = 150.0, car_step_m = 1.0, gap_m = 20.0;
   std::optional<double> mast_step_m;
-  bool between_vehicles = false, alone = false, processor_time = false;
+  bool between_vehicles = false, alone = false, processor_time = false, open_end = false;
   std::string series;
   unsigned threads = 1;
 };
 
-dcem::SimulationSettings settings_of(const Options& options, CacheMode cache) {
+/// As many frames as there are; where the mast has listed all that it may before the first that is timed, very many.
+std::optional<std::size_t> expected_frames(const Options& options, const DriveOrder& order) {
+  if (options.open_end) return std::nullopt;
+  return options.warm > 0 ? options.warm + order.frames : std::size_t{1'000'000};
+}
+
+dcem::SimulationSettings settings_of(const Options& options, const DriveOrder& order, CacheMode cache) {
   dcem::SimulationSettings settings;
   settings.frequency_hz = 30e9;
   settings.threads = options.threads;
@@ -56,13 +62,14 @@ dcem::SimulationSettings settings_of(const Options& options, CacheMode cache) {
   settings.propagation.max_interactions = options.interactions;
   settings.propagation.discovery = dcem::Discovery::exact;
   settings.propagation.cache = cache;
+  settings.expected_frames = expected_frames(options, order);
   return settings;
 }
 
 /// One simulator, frame by frame.
 struct Contender {
-  Contender(const dcem::Scene& scene, const Options& options, CacheMode mode)
-      : simulator(scene, settings_of(options, mode)), processor_time(options.processor_time) {}
+  Contender(const dcem::Scene& scene, const Options& options, const DriveOrder& order, CacheMode mode)
+      : simulator(scene, settings_of(options, order, mode)), processor_time(options.processor_time) {}
 
   dcem::FrameResult advance(double time_s, std::size_t index, bool timed) {
     const double before_s = processor_s();
@@ -103,7 +110,7 @@ void write_series(const std::string& file, const DriveOrder& order, const Conten
 
 bool bench(const Options& options, const DriveOrder& order) {
   const dcem::Scene scene = dcem::bench::street_drive(order);
-  Contender off(scene, options, CacheMode::off), exact(scene, options, CacheMode::exact);
+  Contender off(scene, options, order, CacheMode::off), exact(scene, options, order, CacheMode::exact);
   // What a mast lists is worked out over many frames, here in which everything trembles.
   const std::size_t warm = options.warm > 0 ? options.warm : 10 + 4500 / std::max<std::size_t>(1, order.receivers);
   double cold_off_ms = 0.0, cold_exact_ms = 0.0;
@@ -181,6 +188,7 @@ int main(int count, char** arguments) {
   app.add_option("--threads", options.threads, "of each simulator")->check(CLI::Range(1, 1024));
   app.add_flag("--alone", options.alone, "with memory alone, to look into: nothing is compared");
   app.add_flag("--processor-time", options.processor_time, "of all threads instead of that by the clock");
+  app.add_flag("--open-end", options.open_end, "how many frames there will be is not known to the simulators");
   app.add_option("--series", options.series, "a file that each frame is appended to");
   app.add_flag("--v2v", options.between_vehicles, "the transmitter drives, too");
   app.add_option("--mast-step", options.mast_step_m,

@@ -224,6 +224,7 @@ class BasicSimulator {
   void note_transmitters(const TransmitterEnds& ends);
   void choose_remembered(std::size_t walking);
   std::size_t receivers_on_the_move() const;
+  ListPace pace_of_lists(std::size_t walking) const;
   /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
   void trace_elements(std::span<PathContribution> paths, const DeviceEnd& from, const DeviceEnd& to,
                       const Evaluator& evaluator) const;
@@ -246,6 +247,8 @@ class BasicSimulator {
   std::unique_ptr<LaneScene> lanes_;               ///< where the plan has halves; those that are kept point to it
   std::vector<KeptHalf> halves_;                   ///< one per transmitter, where the plan has them …
   bool halves_are_current_ = false;                ///< … and whether they are those of the current frame
+  std::size_t frames_done_ = 0;                    ///< of those that are expected
+  ListPace pace_;                                  ///< of what transmitters that stand list of the scenery
   std::optional<detail::FrameChange> change_;      ///< since the frame before, where the cache is exact; so the next
   std::vector<detail::ReceiverMemory> receivers_;  ///< one per receiver of the scene …
   std::vector<char> is_remembered_;                ///< … and whether it is remembered what it sees, in this frame

@@ -107,6 +107,10 @@ struct SimulationSettings {
   /// ones of those that are there; links of others are worked out from scratch where anything has changed. What is left
   /// of it goes to places that receivers have been in, for those who come after them. Never changes a result.
   double most_remembered_bytes = std::numeric_limits<double>::infinity();
+  /// How many frames there will be, where that is known. To list what a transmitter that stands reaches takes half a
+  /// second in a city and spares work in all frames after. It is begun at once, then, or, where they are too few,
+  /// never. None: it is begun when it would have paid by then. Never changes a result.
+  std::optional<std::size_t> expected_frames{};
 };
 
 /// Rays per receiver in a frame with history.

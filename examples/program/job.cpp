@@ -80,6 +80,7 @@ Job prepare_job(const ScenarioOptions& options) {
   if (options.threads) job.scenario.settings.threads = *options.threads;
   job.scenario.settings.links.receivers = options.shard;
   job.scenario.settings.most_remembered_bytes = most_remembered_bytes(options, job.frames.count());
+  job.scenario.settings.expected_frames = job.frames.count();
   if (job.folder.empty()) job.folder = std::filesystem::path("out") / job.scenario.name;
   if (options.folder.empty() && options.shard) job.folder += shard_ending(*options.shard);
   return job;

@@ -32,6 +32,7 @@ inline SimulationSettings memory_settings(const MemoryOrders& orders) {
   propagation.max_diffractions = orders.diffractions;
   propagation.max_interactions = orders.interactions;
   propagation.diffraction.free_edges = orders.free_edges;
+  settings.expected_frames = 1'000'000;  // lists of masts are made in the first of them
   return settings;
 }
 

@@ -26,12 +26,13 @@ class BeamLists {
   /// Of an end that stands, what does not change while bodies move …
   void find_scenery(const BeamSource& source);
   /// … or a part of it after the other: what is seen directly, and then, until it says that all is there, what is seen
-  /// over some mirrors more: as many as take about so long, in µs, as measured in Munich, and at least one …
+  /// over some mirrors more, as long as any of the work is left that it may spend, µs as measured in Munich, and takes
+  /// off …
   void begin_scenery(const BeamSource& source);
-  bool go_on(const BeamSource& source, double work_us);
+  bool go_on(const BeamSource& source, double& work_us);
   /// … then, as well, which facets of the scenery are lit over some more of the parts of edges that are seen. Where
   /// there would be more than `most_lit_over` of them, it says that all is there, and nothing is known.
-  bool go_on_over_edges(const BeamSource& source, double work_us);
+  bool go_on_over_edges(const BeamSource& source, double& work_us);
   static constexpr std::size_t most_lit_over = 16'000'000;  ///< they take four bytes each, and three times that before
   /// … and the rest. The scenery's must be known. `moved` as in `PathHalf::find_bodies`; `follows`: what was listed of
   /// bodies is that of the frame before, and stays true of those that have not moved.

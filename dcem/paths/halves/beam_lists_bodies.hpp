@@ -44,8 +44,9 @@ DCEM_INLINE void BeamLists::find_from(const BeamSource& source, const Place& pla
 }
 
 DCEM_INLINE void BeamLists::find_scenery(const BeamSource& source) {
+  double all_of_it_us = std::numeric_limits<double>::infinity();
   begin_scenery(source);
-  go_on(source, std::numeric_limits<double>::infinity());
+  go_on(source, all_of_it_us);
 }
 
 DCEM_INLINE void BeamLists::begin_scenery(const BeamSource& source) {
@@ -58,7 +59,7 @@ DCEM_INLINE void BeamLists::begin_scenery(const BeamSource& source) {
   BeamFinder(source, mirrors_).find_parts(half_->layers()[0], BeamFinder::many_pieces, found_[0]);
 }
 
-DCEM_INLINE bool BeamLists::go_on(const BeamSource& source, double work_us) {
+DCEM_INLINE bool BeamLists::go_on(const BeamSource& source, double& work_us) {
   constexpr double usual_us = 70.0;  // for a mirror
   const std::size_t all = source.over_mirrors ? mirrors_.size() : 0;
   while (looked_through_ < all && work_us > 0.0) {
@@ -80,7 +81,7 @@ DCEM_INLINE double BeamLists::look_through_more(const BeamSource& source, std::s
   return mirror_us * static_cast<double>(mirrors) + facet_us * static_cast<double>(found_[0].pairs.size() - before);
 }
 
-DCEM_INLINE bool BeamLists::go_on_over_edges(const BeamSource& source, double work_us) {
+DCEM_INLINE bool BeamLists::go_on_over_edges(const BeamSource& source, double& work_us) {
   constexpr double usual_us = 400.0;     // for a part
   constexpr std::size_t some = 256;      // parts, of which it is told how many will be lit
   constexpr std::size_t at_once = 1024;  // before that is asked again

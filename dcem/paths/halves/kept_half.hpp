@@ -25,6 +25,7 @@ struct HalfLists {
   ThreadPool* pool = nullptr;        ///< for views, lists and bodies: as in `Sight` and `BeamSource`
   int most_pieces = BeamFinder::many_pieces;  ///< the same
   bool for_triples = false;                   ///< for links over three interactions
+  ListPace pace{};                            ///< of lists that are not made at once
 };
 
 /// How a device makes use of places.
@@ -80,6 +81,8 @@ class KeptHalf {
   const BeamLists* lists() const { return has_lists_ ? &lists_ : nullptr; }
   /// Whether the device takes what it sees from places, or will soon.
   bool is_in_places() const { return places_ && end_ && (step_m_ <= places_->longest_step_m || is_on_shared_way_); }
+  /// By how much it has moved from the frame before.
+  double step_m() const { return step_m_; }
   /// Where the device is on its way; none where it looks itself.
   const std::shared_ptr<const Place>& place() const { return place_; }
   /// Where it will be soon, and in how many frames; none where that is not known.
@@ -101,24 +104,32 @@ class KeptHalf {
   void forget_views() {
     has_scenery_ = has_bodies_ = has_lists_ = has_listed_bodies_ = has_edges_ = false;
     joins_ = frames_standing_ = 0;
+    list_credit_us_ = 0.0;
   }
 
   /// Whether lists would have paid by now: they cost 13 ms, most of that for the ground, and 60 µs for each mirror, and
   /// save 0.3 ms and 0.28 µs for each mirror per join, by measurement in Munich. At worst both are paid.
-  bool pay(std::size_t joins) const {
+  bool pay(double joins) const {
     const auto mirrors = static_cast<double>(half_.layers()[0].mirrors.size());
-    return static_cast<double>(joins) * (0.3 + 0.28e-3 * mirrors) >= 13.0 + 0.06 * mirrors;
+    return joins * (0.3 + 0.28e-3 * mirrors) >= 13.0 + 0.06 * mirrors;
+  }
+  bool have_paid() const { return pay(static_cast<double>(joins_)); }
+  /// Joins since the device stands, and those to come.
+  double joins_of_run(const HalfLists& wanted) const {
+    return static_cast<double>(joins_ + wanted.receivers * wanted.pace.frames_left.value_or(0));
   }
 
   /// Of a device that has stood for a while, looks through some mirrors more in each frame: as many as take the time
-  /// that the links from scratch do. Fewer of them let all frames wait for what the lists spare. One that rides on a
-  /// body may drive off at any moment: it begins where they would have paid by then.
-  void go_on_with_lists(const BeamSource& source, std::size_t receivers);
+  /// that its links do, for fewer let all frames wait for what lists spare. It begins where they would have paid by
+  /// then; where it is known how many frames there will be, at once, if two thirds of these would pay, or never. One
+  /// that rides on a body may drive off at any moment, and waits in any case.
+  void go_on_with_lists(const BeamSource& source, const HalfLists& wanted);
 
   /// Where lists are known, looks over some of the edges that are seen, for the facets before them: a part of an edge
   /// costs a third of a millisecond, once, and all of them spare a join 0.2 to 1.5, or 3 to 5 over three interactions,
-  /// by measurement in Munich. So it begins when there were half as many joins as there are parts, or a sixteenth, and
-  /// takes about as long in a frame as the links from scratch do; for very many of these, all of it at once.
+  /// by measurement in Munich. So it begins when there were half as many joins as there are parts, or a sixteenth, or
+  /// where there will be half as many again; of links over two interactions by the pace, unless it is known to pay.
+  /// For very many joins in a frame, all of it at once.
   void go_on_over_edges(const BeamSource& source, const HalfLists& wanted);
 
   /// Of a device that has moved a little: whether it is in a place, from which it takes what it sees.
@@ -182,6 +193,7 @@ class KeptHalf {
   std::optional<PlaceUse> places_;   ///< none: it looks itself
   std::size_t joins_ = 0;            ///< since the device stands
   std::size_t frames_standing_ = 0;  ///< in which lists have been worked on
+  double list_credit_us_ = 0.0;      ///< what frames were allowed for lists and have not spent
   std::optional<LinkEnd> end_;       ///< whose half it is; none yet: nobody's
   std::shared_ptr<const Place> place_, next_;
   std::shared_ptr<Place> made_;  ///< the next one, as long as it is being made

@@ -17,13 +17,14 @@ inline constexpr double least_behind_m = 0.25;
 /// Frames over which the work on the next place is spread: of a device in a place, of one that looks itself, and of one
 /// that no candidates are found for, to which a place brings less.
 inline constexpr int most_frames = 8, frames_of_looking = 12, most_frames_of_looking = 24;
-/// What an end that stands spends on its lists in a frame, for each of its links: about what one takes from scratch in
-/// Munich.
-inline constexpr double list_work_us = 2000.0;
-/// The same of links over three interactions, for lists over edges, and for how many parts of edges these have paid
-/// after a join: of a map it spares 2.6 ms, of links 4 to 5.
-inline constexpr double list_work_of_triples_us = 10'000.0;
-inline constexpr std::size_t parts_a_join_of_triples = 16;
+/// What a link takes from scratch in Munich, and so what an end that stands spends on its lists in a frame, for each of
+/// them, where that is known to pay; and on those over edges where links are over three interactions, which take 80 ms.
+inline constexpr double link_us = 2000.0, list_work_of_triples_us = 10'000.0;
+/// Lists are made for links to come where so much of these would pay for them, by measurement in Munich and the town.
+inline constexpr double surely_paid = 2.0 / 3.0;
+/// For how many parts of edges lists over these have paid after a join: of a map over three interactions it spares 2.6
+/// ms, of links 4 to 5.
+inline constexpr double parts_a_join = 2.0, parts_a_join_of_triples = 16.0;
 
 }  // namespace detail
 
@@ -46,7 +47,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   if (!has_scenery_ && !(goes_on && follow(scene, outlines, end, step_m, settings))) {
     find_scenery(scene, outlines, end, settings, closer, goes_on ? nullptr : wanted.pool);
   }
-  const bool makes_lists = wanted.lanes != nullptr && !has_lists_ && (wanted.at_once || (!places_ && pay(joins_)));
+  const bool makes_lists = wanted.lanes != nullptr && !has_lists_ && (wanted.at_once || (!places_ && have_paid()));
   if (makes_lists) leave_places();
   if (makes_lists && !is_closer_) find_scenery(scene, outlines, end, settings, true, wanted.pool);
   if (!is_known) half_.find_bodies(scene, outlines, settings, moved, wanted.pool);
@@ -61,7 +62,7 @@ DCEM_INLINE void KeptHalf::update(const Scene& scene, const FacetOutlines& outli
   }
   has_lists_ = has_lists_ || makes_lists;
   has_edges_ = has_edges_ && !makes_lists;
-  if (places_ && !has_lists_) go_on_with_lists(source, wanted.receivers);
+  if (places_ && !has_lists_) go_on_with_lists(source, wanted);
   if (has_lists_ && !has_edges_ && wanted.over_mirrors) go_on_over_edges(source, wanted);
   if (!wanted.at_once || outlines.bodies().empty() || (!makes_lists && is_known && has_listed_bodies_)) return;
   half_.settle();
@@ -109,25 +110,31 @@ DCEM_INLINE void KeptHalf::forget() {
   *this = std::move(nothing);
 }
 
-DCEM_INLINE void KeptHalf::go_on_with_lists(const BeamSource& source, std::size_t receivers) {
-  const double work_us = detail::list_work_us * static_cast<double>(receivers);
-  if (end_->ignored_body && !pay(joins_)) return;
+DCEM_INLINE void KeptHalf::go_on_with_lists(const BeamSource& source, const HalfLists& wanted) {
+  const bool waits = !wanted.pace.frames_left || end_->ignored_body;
+  if ((waits && !have_paid()) || (wanted.pace.frames_left && !pay(detail::surely_paid * joins_of_run(wanted)))) return;
   ++frames_standing_;
   if (frames_standing_ == 2) {
     half_.settle();
     lists_.begin_scenery(source);
   }
-  if (frames_standing_ > 2) has_lists_ = lists_.go_on(source, work_us);
+  if (frames_standing_ <= 2) return;
+  list_credit_us_ += detail::link_us * static_cast<double>(wanted.receivers);
+  has_lists_ = lists_.go_on(source, list_credit_us_);
 }
 
 DCEM_INLINE void KeptHalf::go_on_over_edges(const BeamSource& source, const HalfLists& wanted) {
-  const std::size_t parts = lists_.tables()[BeamLists::of_scenery].parts().size();
-  const std::size_t parts_a_join = wanted.for_triples ? detail::parts_a_join_of_triples : 2;
-  if (parts_a_join * joins_ < parts) return;
-  const bool at_once = parts_a_join * wanted.receivers >= parts;
-  const double work_us = (wanted.for_triples ? detail::list_work_of_triples_us : detail::list_work_us) *
-                         static_cast<double>(wanted.receivers);
-  has_edges_ = lists_.go_on_over_edges(source, at_once ? std::numeric_limits<double>::infinity() : work_us);
+  const auto parts = static_cast<double>(lists_.tables()[BeamLists::of_scenery].parts().size());
+  const auto receivers = static_cast<double>(wanted.receivers);
+  const double parts_a_join = wanted.for_triples ? detail::parts_a_join_of_triples : detail::parts_a_join;
+  const bool is_known = wanted.pace.frames_left.has_value();
+  if (parts_a_join * (is_known ? detail::surely_paid * joins_of_run(wanted) : static_cast<double>(joins_)) < parts)
+    return;
+  const double of_pair_us = is_known ? detail::link_us : wanted.pace.careful_us(detail::link_us);
+  const double of_link_us = wanted.for_triples ? detail::list_work_of_triples_us : of_pair_us;
+  const bool at_once = parts_a_join * receivers >= parts;
+  list_credit_us_ = at_once ? std::numeric_limits<double>::infinity() : list_credit_us_ + of_link_us * receivers;
+  has_edges_ = lists_.go_on_over_edges(source, list_credit_us_);
 }
 
 DCEM_INLINE bool KeptHalf::follow(const Scene& scene, const FacetOutlines& outlines, const LinkEnd& end,

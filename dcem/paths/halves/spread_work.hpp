@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <span>
 
 namespace dcem {
@@ -51,6 +52,19 @@ class WorkAllowance {
 
  private:
   double allowed_ = 0.0;
+};
+
+/// How much of its lists a device that stands may make in a frame. They take long and pay late: where it is known how
+/// many frames there will be they are made in the first ones, or not at all.
+struct ListPace {
+  static constexpr double least = 0.1;
+
+  std::optional<std::size_t> frames_left{};  ///< none: nobody knows
+  double spared = 0.0;  ///< of what its links take from scratch, by what is known of places: from 0 to 1
+
+  /// For each link that takes so long from scratch, where later frames may never ask for it: no frame is to take much
+  /// longer than from scratch.
+  double careful_us(double from_scratch_us) const { return (least + spared) * from_scratch_us; }
 };
 
 /// Which share of a step a device takes early. Where all take as much, all that have set out together take their steps

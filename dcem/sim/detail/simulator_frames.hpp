@@ -40,6 +40,7 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   const detail::Stopwatch solve_watch;
   choose_links();
   const std::size_t walking = change_ && plan_.joined > 0 ? receivers_on_the_move() : scene_.receivers().size();
+  pace_ = pace_of_lists(walking);
   const TransmitterEnds transmitters = transmitter_ends(scene_.transmitters(), walking, reach_, halves_);
   halves_are_current_ = !transmitters.halves.empty() && choice_.takes_all();
   if (change_) {
@@ -53,6 +54,7 @@ FrameResult BasicSimulator<Surface, Index>::advance(const Frame& frame) {
   result.work = solved.spent.work;
   result.cache += solved.spent.cache;
   note_rays(result.work);
+  ++frames_done_;
   result.solve_time_s = solve_watch.seconds();
   return result;
 }
@@ -94,6 +96,23 @@ std::size_t BasicSimulator<Surface, Index>::receivers_on_the_move() const {
     count += state.present && (!before || before->position_m != state.position_m) ? 1 : 0;
   }
   return count;
+}
+
+/// How much transmitters may list in this frame, of which so many receivers are not where they were: by what those in
+/// places were spared in the frame before.
+template <SurfaceModel Surface, SpatialIndex Index>
+ListPace BasicSimulator<Surface, Index>::pace_of_lists(std::size_t walking) const {
+  ListPace pace;
+  if (settings_.expected_frames && frames_done_ < *settings_.expected_frames) {
+    pace.frames_left = *settings_.expected_frames - frames_done_;
+  }
+  const auto is_listed = [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; };
+  if (!change_ || walking == 0 || std::ranges::none_of(halves_, is_listed)) return pace;
+  for (const detail::ReceiverMemory& receiver : receivers_) {
+    if (receiver.half.place()) pace.spared += detail::spared_in_place(receiver.half.step_m());
+  }
+  pace.spared = std::min(1.0, pace.spared / static_cast<double>(walking));
+  return pace;
 }
 
 /// Chooses the receivers of which it is remembered what they see: the first ones of those that are there; `walking` of
@@ -197,6 +216,7 @@ TreeUpdateReport BasicSimulator<Surface, Index>::pass(const Frame& frame, const 
     halves_[index].pass(link_end(state, not_reported), scene_.receivers().size());
   }
   note_rays(spent);
+  ++frames_done_;
   return report;
 }
 

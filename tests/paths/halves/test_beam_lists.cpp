@@ -31,7 +31,7 @@ struct Mast {
     BeamLists lists;
     lists.begin_scenery(source(pool));
     std::size_t times = 1;
-    while (!lists.go_on(source(pool), work_us)) ++times;
+    for (double left_us = work_us; !lists.go_on(source(pool), left_us); left_us = work_us) ++times;
     return {std::move(lists), times};
   }
 

@@ -39,7 +39,7 @@ class Mast {
   /// Lists what is lit over edges, so much of it at a time; returns how often it had to go on.
   std::size_t look_over_edges(double work_us = all_of_it, ThreadPool* pool = nullptr) {
     std::size_t times = 1;
-    while (!lists_.go_on_over_edges(source(pool), work_us)) ++times;
+    for (double left_us = work_us; !lists_.go_on_over_edges(source(pool), left_us); left_us = work_us) ++times;
     return times;
   }
   bool go_on_over_edges(double work_us) { return lists_.go_on_over_edges(source(nullptr), work_us); }
