@@ -49,7 +49,7 @@ class RayLauncher {
   /// Calls `visit(sequence, images_m)` once for the direct path and for each sequence that a ray followed.
   template <typename Visit>
   void for_each_sequence(const LinkEnd& receiver, const Mat3& rotation, Visit&& visit) {
-    ways_ = SequenceTree(receiver.position_m);
+    ways_.begin(receiver.position_m);
     ignored_ = {receiver.ignored_body, std::nullopt};
     show(0, visit);
     if (settings_.max_reflections == 0 && reach_ == nullptr) return;

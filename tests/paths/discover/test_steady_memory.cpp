@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dcem/paths/discover/path_cache.hpp"
+#include "dcem/paths/discover/ray_launcher.hpp"
 #include "dcem/paths/path_finder.hpp"
 #include "tests/paths/halves/small_town.hpp"
 #include "tests/paths/sequences.hpp"
@@ -69,6 +70,19 @@ TEST_CASE("the sequences of links are written anew in the room of the list befor
     }
   });
   CHECK(cache.sequences(2)->size() >= 55);
+  CHECK(spent == 0);
+}
+
+TEST_CASE("rays that leave again ask for nothing") {
+  Draw draw(52'003);
+  TracedScene<> traced(small_town(draw));
+  const LinkEnd receiver = traced.end(Vec3(18, 4, 1.5));
+  RayLauncher<WideIndex> launcher(traced.tracer, {2000, 2, 2});
+  std::size_t sequences = 0;
+  const std::size_t spent = allocated(1, 4, [&](std::size_t) {
+    launcher.for_each_sequence(receiver, Mat3(1.0), [&](const Sequence&, const std::vector<Vec3>&) { ++sequences; });
+  });
+  CHECK(sequences > 40);
   CHECK(spent == 0);
 }
 

@@ -12,8 +12,11 @@
 namespace dcem::io {
 namespace {
 
-// Bytes that are not UTF-8 (old OBJ files) become the replacement character: JSON has no way to hold them.
+// Bytes that are not UTF-8 (old OBJ files) become the replacement character: JSON has no way to hold them. Most names
+// need nothing of this, and each path has some.
 std::string json_string(const std::string& text) {
+  const auto is_plain = [](char letter) { return letter >= ' ' && letter <= '~' && letter != '"' && letter != '\\'; };
+  if (std::all_of(text.begin(), text.end(), is_plain)) return '"' + text + '"';
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
