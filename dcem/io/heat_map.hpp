@@ -124,9 +124,10 @@ HeatMapLayout heat_map_layout(const HeatMap& map);
 Image draw_cells(const HeatMap& map);
 
 /// Draws the map into a file that appears only when complete; its ending says the format. Where values lie outside the
-/// colour range the bar ends in a tip; the legend below says what there is to see. Labels of transmitters that find no
-/// free place are left out, the symbols stay. Without Cairo a PNG has the cells alone, and other formats are refused.
-/// Throws as `heat_map_layout` and `picture_format_of`, and `OutputError`.
+/// colour range the bar ends in a tip; the legend below says what there is to see. Labels of transmitters stand beside
+/// them or, where others are in the way, above and below with a line to the symbol; those that come first choose first.
+/// The legend counts those without room for one. Without Cairo a PNG has the cells alone, and other formats are
+/// refused. Throws as `heat_map_layout` and `picture_format_of`, and `OutputError`.
 void write_heat_map(const HeatMap& map, const std::filesystem::path& path);
 /// The same into a file of an `OutputFolder`; the caller commits.
 void write_heat_map(const HeatMap& map, AtomicFile& file, PictureFormat format);

@@ -1,7 +1,9 @@
 #pragma once
 /// Devices, grids and vehicles in places where they can hardly be meant to be: kilometres outside the scenery, under
-/// the ground, inside what lets nothing through. A watch looks at each frame and says at the end what it saw, once for
-/// all frames. It knows the scenery and guesses at what is meant: a warning is no error.
+/// the ground, inside what lets nothing through, both ends of a link at one point. What is far away but as high as
+/// aeroplanes and satellites are is meant, as long as another device is near the scenery. A watch looks at each frame
+/// and says at the end what it saw, once for all frames. It knows the scenery and guesses at what is meant: a warning
+/// is no error.
 #include <array>
 #include <cstddef>
 #include <map>
@@ -44,7 +46,7 @@ class PlacementWatch {
   };
   enum class Kind { transmitter, receiver, grid, object };
   static constexpr std::size_t kinds = 4;
-  enum class Problem { far_outside, under_ground, shut_in, shut_in_alone, drives_through, goes_through };
+  enum class Problem { far_outside, under_ground, shut_in, shut_in_alone, drives_through, goes_through, at_one_point };
   struct Sighting;
   class Record;
 
@@ -56,9 +58,12 @@ class PlacementWatch {
   void look_at_place(const Vec3& position_m, const std::string& subject, Record& record) const;
   void look_at_receiver(const Device& device, Record& record) const;
   void look_at_transmitter(std::size_t number, Record& record) const;
+  void look_for_twin(const Device& device, const Vec3& position_m, const std::string& subject, Record& record) const;
   void look_at_grid(const ReceiverGrid& grid, Record& record) const;
   void look_at_object(BodyId body, Record& record);
   void look_at_way(BodyId body, const Vec3& middle_m, const std::string& subject, Record& record);
+  bool anyone_is_near() const;
+  bool is_linked(const Device& transmitter, const Device& receiver) const;
   bool is_far(const Vec3& position_m, const std::string& subject, Record& record) const;
   bool is_under_ground(const Vec3& position_m) const;
   bool ground_is_hit(const Vec3& from_m, const Vec3& direction) const;
@@ -78,11 +83,13 @@ class PlacementWatch {
   const Simulator& simulator_;
   std::span<const Device> receivers_;
   std::span<const ReceiverGrid> grids_;
-  Aabb<double> box_;                            ///< of the scenery
-  std::vector<std::optional<Vec3>> middles_m_;  ///< of all bodies, in their own coordinates
-  const Frame* frame_ = nullptr;                ///< while it is looked at
-  std::vector<std::vector<Shell>> rooms_;       ///< by transmitter: shells that hold it or carry it …
-  std::set<Shell> all_rooms_;                   ///< … and those of all
+  Aabb<double> box_;                                          ///< of the scenery
+  std::vector<std::optional<Vec3>> middles_m_;                ///< of all bodies, in their own coordinates
+  const Frame* frame_ = nullptr;                              ///< while it is looked at
+  std::vector<std::pair<Vec3, const Device*>> transmitters_;  ///< that are there, some of very many
+  bool may_fly_ = true;                                       ///< someone is near the scenery, for others to fly
+  std::vector<std::vector<Shell>> rooms_;                     ///< by transmitter: shells that hold it or carry it …
+  std::set<Shell> all_rooms_;                                 ///< … and those of all
   /// By body: the houses that waves pass around it in the frame before; absent where it was not there.
   std::vector<std::optional<std::vector<Shell>>> houses_before_;
   mutable std::mutex mutex_;                                       ///< of `shell_facts_`

@@ -1,6 +1,7 @@
 #pragma once
 /// Which discovery and which cache a scene gets.
 #include <cstddef>
+#include <string_view>
 
 #include "dcem/paths/path.hpp"
 #include "dcem/scene/scene.hpp"
@@ -33,6 +34,9 @@ bool is_found_exactly(const Path& path, int exact_interactions, Discovery done);
 /// Off or seed: what a simulation that discovers in this way really remembers. Throws std::invalid_argument where
 /// `seed` is asked for by name and discovery is exact: there is nothing that few rays could add to.
 CacheMode resolve_cache(const PropagationSettings& propagation, Discovery discovery);
+
+/// Why no link gets a `valid_until_m` that was asked for, and what would give it one; empty where they do.
+std::string_view why_no_lifetimes(const PropagationSettings& propagation, Discovery discovery);
 
 }  // namespace dcem
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "dcem/core/build_mode.hpp"
 #include "dcem/paths/halves/covered.hpp"
@@ -97,6 +98,23 @@ DCEM_INLINE CacheMode resolve_cache(const PropagationSettings& propagation, Disc
   }
   if (propagation.cache != CacheMode::automatic) return propagation.cache;
   return sampled ? CacheMode::seed : CacheMode::exact;
+}
+
+/// What changes paths with every step, as weak or long ones that are dropped do, leaves nothing to be proved.
+DCEM_INLINE std::string_view why_no_lifetimes(const PropagationSettings& propagation, Discovery discovery) {
+  const int interactions = interaction_order(propagation);
+  if (interactions > 2) return "paths may have more than two interactions; expected max_interactions 2";
+  if (interactions == 2 && diffraction_order(propagation) == 2) {
+    return "paths may have two diffractions; expected max_diffractions 1";
+  }
+  if (propagation.min_path_gain_db) return "weak paths are dropped; expected no min_path_gain_db";
+  if (propagation.max_path_length_m) return "long paths are dropped; expected no max_path_length_m";
+  if (!propagation.line_of_sight && propagation.max_transmissions > 0) {
+    return "free lines of sight are dropped; expected line_of_sight true, or max_transmissions 0";
+  }
+  if (discovery == Discovery::sampled) return "discovery is sampled; expected discovery exact";
+  const bool remembers = propagation.cache == CacheMode::automatic || propagation.cache == CacheMode::exact;
+  return remembers ? "" : "the cache is off; expected cache exact";
 }
 
 }  // namespace dcem

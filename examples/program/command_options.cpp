@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "dcem/core/instruction_set.hpp"
@@ -50,6 +52,40 @@ std::string comma_list(const std::vector<std::string>& words) {
   std::string list;
   for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
   return list;
+}
+
+/// An option or an argument that is the name of a file or folder: an empty one is a slip, as of a variable of the shell
+/// that is not set, and must not stand for a default.
+template <typename Names>
+CLI::Option* add_name(CLI::App& command, const std::string& name, Names& names, const std::string& does) {
+  const auto check = [name](const std::string& text) {
+    if (text.empty()) throw UsageError(name + ": an empty name", "the name of a file or folder");
+    return std::string();
+  };
+  return command.add_option(name, names, does)->check(check);
+}
+
+/// Reads the whole text as a number; otherwise says why that does not go.
+template <typename Number>
+std::errc parse_all(std::string_view text, Number& number) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc{} && end != text.data() + text.size()) return std::errc::invalid_argument;
+  return error;
+}
+
+/// An option with a whole number. In which range it must be, the reader of scenarios says.
+template <typename Number>
+CLI::Option* add_whole_number(CLI::App& command, const std::string& name, std::optional<Number>& number,
+                              const std::string& does) {
+  const auto take = [name, &number](const std::string& text) {
+    const std::errc error = parse_all(text, number.emplace());
+    if (error == std::errc{}) return;
+    const bool is_long = error == std::errc::result_out_of_range;
+    throw UsageError(name + ": found '" + text + "'",
+                     is_long ? "a whole number of at most 18 digits" : "a whole number");
+  };
+  return command.add_option_function<std::string>(name, take, does);
 }
 
 /// A number of bytes, or with K, M or G behind it of so many times 1024, 1024² or 1024³ of them.
@@ -104,8 +140,16 @@ void choose_frequencies(const std::string& text, ScenarioOptions& options) {
 }
 
 void add_resources(CLI::App& command, std::optional<unsigned>& threads, std::optional<double>& memory_limit_bytes) {
-  command.add_option("--threads", threads, "Number of threads (default: all cores); never changes a result")
-      ->check(CLI::Range(1U, 4096U))
+  const auto take = [&threads](const std::string& text) {
+    unsigned count = 0;
+    if (parse_all(text, count) != std::errc{} || count < 1 || count > 4096) {
+      throw UsageError("--threads: found '" + text + "'", "a whole number from 1 to 4096");
+    }
+    threads = count;
+  };
+  command
+      .add_option_function<std::string>(
+          "--threads", take, "Number of threads, from 1 to 4096 (default: all cores); never changes a result")
       ->type_name("N");
   command
       .add_option_function<std::string>(
@@ -128,7 +172,7 @@ void add_progress(CLI::App& command, io::ProgressMode& mode, bool& quiet) {
 }
 
 void add_common_options(CLI::App& command, ScenarioOptions& options) {
-  command.add_option("scenario", options.scenario, "The scenario file (JSON)")->required()->type_name("SCENARIO.json");
+  add_name(command, "scenario", options.scenario, "The scenario file (JSON)")->required()->type_name("SCENARIO.json");
   add_resources(command, options.threads, options.memory_limit_bytes);
   command.add_option("--frames", options.frames, "Only the frames A to B - 1")->type_name("A:B");
   command
@@ -139,11 +183,10 @@ void add_common_options(CLI::App& command, ScenarioOptions& options) {
   command.add_option("--discovery", options.overrides.discovery, "How paths are found: exact or sampled")
       ->check(CLI::IsMember({"exact", "sampled"}))
       ->type_name("MODE");
-  command.add_option("--rays", options.overrides.rays, "Rays per receiver; for sampled discovery alone")
+  add_whole_number(command, "--rays", options.overrides.rays, "Rays per receiver; for sampled discovery alone")
       ->type_name("N");
-  command
-      .add_option("--seed", options.overrides.seed,
-                  "Turns the sphere of rays, and draws seeded phases; for sampled discovery and diffuse power alone")
+  add_whole_number(command, "--seed", options.overrides.seed,
+                   "Turns the sphere of rays, and draws seeded phases; for sampled discovery and diffuse power alone")
       ->type_name("S");
   command
       .add_option_function<std::string>("--instructions", choose_instructions,
@@ -163,7 +206,7 @@ void add_cache_option(CLI::App& command, ScenarioOptions& options) {
 }
 
 void add_folder_option(CLI::App& command, std::string& folder, const std::string& absent) {
-  command.add_option("-o", folder, "Folder for the results (default: " + absent + ")")->type_name("DIR");
+  add_name(command, "-o", folder, "Folder for the results (default: " + absent + ")")->type_name("DIR");
 }
 
 /// One of the words of an option that takes some, divided by commas; they stand in the help and in completions.
@@ -224,13 +267,12 @@ void add_run_options(CLI::App& command, ScenarioOptions& options) {
 }
 
 void add_merge_options(CLI::App& command, MergeOptions& options) {
-  command.add_option("shards", options.shards, "The folders of 'dcem run --shard i/N', one for each i, in any order")
+  add_name(command, "shards", options.shards, "The folders of 'dcem run --shard i/N', one for each i, in any order")
       ->required()
       ->type_name("SHARD...");
   add_folder_option(command, options.folder, "out/<scenario name>");
-  command
-      .add_option("--scenario", options.scenario,
-                  "Where the scenario of the parts is now (default: where it was when they were run)")
+  add_name(command, "--scenario", options.scenario,
+           "Where the scenario of the parts is now (default: where it was when they were run)")
       ->type_name("SCENARIO.json");
   add_resources(command, options.threads, options.memory_limit_bytes);
   add_progress(command, options.progress, options.quiet);
@@ -268,7 +310,7 @@ CLI::Option* add_number_above_zero(CLI::App& command, const std::string& name, c
 }
 
 void add_inspect_options(CLI::App& command, InspectOptions& options) {
-  command.add_option("scene", options.obj, "The scene (OBJ)")->required()->type_name("SCENE.obj");
+  add_name(command, "scene", options.obj, "The scene (OBJ)")->required()->type_name("SCENE.obj");
   command.add_flag("--json", options.json, "JSON instead of tables");
   add_choice(command, "--up", "The file's axis that points up: y or z (default: z)", up_axes, options.settings.obj.up)
       ->type_name("AXIS");
@@ -281,8 +323,8 @@ void add_inspect_options(CLI::App& command, InspectOptions& options) {
 }
 
 void add_compare_options(CLI::App& command, CompareOptions& options) {
-  command.add_option("first", options.first, "A map (CSV)")->required()->type_name("A.csv");
-  command.add_option("second", options.second, "The map it is compared with (CSV)")->required()->type_name("B.csv");
+  add_name(command, "first", options.first, "A map (CSV)")->required()->type_name("A.csv");
+  add_name(command, "second", options.second, "The map it is compared with (CSV)")->required()->type_name("B.csv");
   add_folder_option(command, options.folder, "out/compare");
   command
       .add_option_function<std::string>(
@@ -301,9 +343,22 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
 
 namespace {
 
+/// In which range it must be, the importer says.
+template <typename Number>
+CLI::Option* add_number(CLI::App& command, const std::string& name, const std::string& does, Number& number) {
+  const auto take = [name, &number](const std::string& text) {
+    double value = 0.0;
+    if (parse_all(text, value) != std::errc{} || !std::isfinite(value)) {
+      throw UsageError(name + ": found '" + text + "'", "a number");
+    }
+    number = value;
+  };
+  return command.add_option_function<std::string>(name, take, does);
+}
+
 void add_length_option(CLI::App& command, const std::string& name, const std::string& does, double& value,
                        const std::string& unit = "M") {
-  command.add_option(name, value, does)->type_name(unit);
+  add_number(command, name, does, value)->type_name(unit);
 }
 
 void add_import_sizes(CLI::App& command, io::ImportSettings& settings) {
@@ -317,9 +372,9 @@ void add_import_sizes(CLI::App& command, io::ImportSettings& settings) {
                     settings.snap_tolerance_m);
   add_length_option(command, "--smallest-house-sqm", "Smaller footprints are left out (default: 1)",
                     settings.smallest_house_m2, "M2");
-  command
-      .add_option("--frequency-hz", settings.frequency_hz,
-                  "Carrier frequency of the scenario (default: 5.9e9; gemv2: that of its links; sionna: 3.5e9)")
+  add_number(command, "--frequency-hz",
+             "Carrier frequency of the scenario (default: 5.9e9; gemv2: that of its links; sionna: 3.5e9)",
+             settings.frequency_hz)
       ->type_name("F");
 }
 
@@ -334,14 +389,13 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
       ->required()
       ->check(CLI::IsMember({"sumo", "gemv2", "sionna", "osm"}))
       ->type_name("KIND");
-  command.add_option("source", options.source, "The file or folder to import")->required()->type_name("FILE");
-  command.add_option("-o", options.folder, "Folder for the scene and the scenario")->required()->type_name("DIR");
-  command.add_option("--poly", options.polygons, "sumo: polygons of buildings (.poly.xml)")->type_name("FILE");
-  command.add_option("--fcd", options.trace, "sumo: the trace of vehicles; the scenario refers to it")
+  add_name(command, "source", options.source, "The file or folder to import")->required()->type_name("FILE");
+  add_name(command, "-o", options.folder, "Folder for the scene and the scenario")->required()->type_name("DIR");
+  add_name(command, "--poly", options.polygons, "sumo: polygons of buildings (.poly.xml)")->type_name("FILE");
+  add_name(command, "--fcd", options.trace, "sumo: the trace of vehicles; the scenario refers to it")
       ->type_name("FILE");
-  command
-      .add_option("--additional", options.additional,
-                  "sumo: further files, with types of vehicles or polygons; may stand several times")
+  add_name(command, "--additional", options.additional,
+           "sumo: further files, with types of vehicles or polygons; may stand several times")
       ->type_name("FILE");
   command
       .add_option(
@@ -352,7 +406,11 @@ void add_import_options(CLI::App& command, ImportOptions& options) {
   add_import_sizes(command, options.settings);
   command
       .add_option_function<std::string>(
-          "--terrain", [&](const std::string& file) { options.settings.terrain = file; },
+          "--terrain",
+          [&](const std::string& file) {
+            if (file.empty()) throw UsageError("--terrain: an empty name", "the name of a file");
+            options.settings.terrain = file;
+          },
           "Heights of the ground, an ASCII grid of ESRI in UTM (default: flat); not for sionna")
       ->type_name("FILE");
   command.add_flag("--quiet", options.quiet, "No report on the screen; report.json has it");

@@ -87,6 +87,67 @@ TEST_CASE("damaged tables: one line, nothing written") {
   refused("holds no *buildings_xy.csv");
 }
 
+TEST_CASE("tables that do not belong together: one line, nothing written") {
+  DCEM_NEEDS_GEOS();
+  const TemporaryFolder folder;
+  io::ImportSettings settings;
+  const auto refused = [&](const std::string& said) {
+    const std::string message = refusal(folder, [&] { io::import_gemv2(folder / "run", folder / "made", settings); });
+    CAPTURE(message);
+    CAPTURE(said);
+    CHECK(message.find(said) != std::string::npos);
+    std::filesystem::remove_all(folder / "run");
+    write_tables(folder);
+  };
+  write_tables(folder);
+  for (const std::string kind : {"buildings_xy.csv", "vehicles_xy.csv", "origin.json", "5.89GHz.csv"}) {
+    write(folder / ("run/a_" + kind), "");
+    refused("run: holds 'a_" + kind + "' and '");
+  }
+  const std::string second = ",33.83,3.366,3.1,31,-70\n";
+  write(folder / "run/links_5.89GHz.csv", link_header + "107,109,1,2,1,1.6" + second);
+  refused("links_5.89GHz.csv: names no vehicle of 'town_vehicles_xy.csv'; expected tables of one GEMV2 run");
+  write(folder / "run/links_5.89GHz.csv", link_header + "7,9,1,2,1,1.6" + second + "7,8,1,2,1.5,1.6" + second);
+  refused("links_5.89GHz.csv:3: vehicle '7' is elsewhere than in a row before; expected the links of one instant");
+  for (const std::string& name : {std::string("7/1"), std::string("7\\1"), std::string(193, '7'), std::string()}) {
+    write(folder / "run/links_5.89GHz.csv", link_header + name + ",9,1,2,1,1.6" + second);
+    refused("links_5.89GHz.csv:2: found '");
+    write(folder / "run/town_vehicles_xy.csv", "vehicle_index_1based,x_m,y_m\n" + name + ",0,0\n");
+    refused("town_vehicles_xy.csv:2: found '");
+  }
+  write(folder / "run/town_vehicles_xy.csv", "vehicle_index_1based,x_m,y_m\n7,0,0\n7,9e6,0\n7,9e6,2\n7,0,2\n");
+  refused("town_vehicles_xy.csv: vehicle '7' is 9e+06 m long; expected at most 1000");
+  write(folder / "run/town_vehicles_xy.csv", "vehicle_index_1based,x_m,y_m\n7,100,0\n7,104,0\n7,104,2\n7,100,2\n");
+  refused("town_vehicles_xy.csv: vehicle '7' is 100 m from where 'links_5.89GHz.csv' has it");
+  settings.frequency_hz = 5e8;
+  refused("town_buildings_xy.csv: frequency: material 'ground': material 'concrete' at 0.5 GHz is outside");
+  settings.frequency_hz.reset();
+  std::filesystem::remove(folder / "run/links_5.89GHz.csv");
+  std::filesystem::rename(folder / "run/links_30GHz.csv", folder / "run/links_300GHz.csv");
+  refused("links_300GHz.csv: frequency: material 'ground': material 'concrete' at 300 GHz is outside");
+  if (!io::knows_utm()) return;
+  for (const char* const zone : {"utm99n", "utm0n", "utm29x", "utm", "utmn"}) {
+    write(folder / "run/town_origin.json", "{\"origin_" + std::string(zone) + "\": [529203, 4555870]}");
+    refused("town_origin.json: origin_" + std::string(zone) + ": no zone of UTM; expected one from origin_utm1n");
+  }
+  write(folder / "run/town_origin.json", R"({"origin_utm29n": [1, 2], "origin_utm30n": [1, 2]})");
+  refused("town_origin.json: origin_utm30n: a second origin; expected one");
+  write(folder / "run/town_origin.json", R"({"origin_utm29n": [1]})");
+  refused("town_origin.json: origin_utm29n: found something else; expected [easting, northing] in metres");
+  write(folder / "run/town_origin.json", R"({"orgin_utm29n": [1, 2]})");
+  refused("town_origin.json: holds no origin; expected one as in \"origin_utm29n\"");
+}
+
+TEST_CASE("a vehicle of links that the table of vehicles lacks is a device without a body, and counted") {
+  DCEM_NEEDS_GEOS();
+  const TemporaryFolder folder;
+  write_tables(folder);
+  write(folder / "run/links_5.89GHz.csv", link_header + "7,8,1,2,1,1.6,33.83,3.366,3.1,31,-70\n");
+  const io::ImportReport report = io::import_gemv2(folder / "run", folder / "made");
+  CHECK(report.repaired.at("vehicles of links that the table lacks, left without a body") == 1);
+  CHECK(dcem::test::read_json(folder / "made/scenario.json")["receivers"][0].contains("position_m"));
+}
+
 TEST_CASE("Porto: 4411 outlines, 2410 vehicles, 889 links") {
   DCEM_NEEDS_SHARED();
   DCEM_NEEDS_GEOS();

@@ -206,4 +206,98 @@ TEST_CASE("damaged scenes: one line, nothing written") {
           "without axis");
 }
 
+TEST_CASE("what no scenario may hold is refused where the scene says it") {
+  const TemporaryFolder folder;
+  write(folder / "square.ply", square);
+  io::ImportSettings settings;
+  const auto refused = [&](const std::string& materials_and_shapes, const std::string& said) {
+    CAPTURE(said);
+    write(folder / "scene.xml", "<scene>\n" + materials_and_shapes + "</scene>\n");
+    const std::string message =
+        refusal(folder, [&] { io::import_sionna(folder / "scene.xml", folder / "made", settings); });
+    CAPTURE(message);
+    CHECK(holds(message, "scene.xml"));
+    CHECK(holds(message, said));
+  };
+  const auto material = [&](const std::string& type, const std::string& says) {
+    return "<bsdf type=\"" + type + "\" id=\"mat-x\">\n" + says + "</bsdf>\n" + shape("square.ply", "mat-x");
+  };
+  const auto number = [](const std::string& name, const std::string& value) {
+    return "<float name=\"" + name + "\" value=\"" + value + "\"/>\n";
+  };
+  const auto itu = [](const std::string& name) { return "<string name=\"type\" value=\"" + name + "\"/>\n"; };
+  refused(
+      material("itu-radio-material", itu("concret")),
+      "scene.xml:3: bsdf 'mat-x': type: unknown ITU-R P.2040 material 'concret'; the nearest known one is 'concrete'");
+  refused(
+      "<bsdf type=\"diffuse\" id=\"mat-itu_glas\"/>\n" + shape("square.ply", "mat-itu_glas"),
+      "scene.xml:2: bsdf 'mat-itu_glas': itu: unknown ITU-R P.2040 material 'glas'; the nearest known one is 'glass'");
+  for (const char* const thickness_m : {"0", "-0.1", "5000"}) {
+    refused(material("itu-radio-material", itu("glass") + number("thickness", thickness_m)),
+            "scene.xml:4: bsdf 'mat-x': thickness: found '" + std::string(thickness_m) +
+                "'; expected a number above 0, at most 1000 m");
+  }
+  const std::string good = number("relative_permittivity", "4");
+  refused(material("radio-material", number("relative_permittivity", "0.5")),
+          "scene.xml:3: bsdf 'mat-x': relative_permittivity: found '0.5'; expected a number from 1 to 1e+06");
+  refused(material("radio-material", number("eta_r", "1e308")), "scene.xml:3: bsdf 'mat-x': eta_r: found '1e+308'");
+  refused(material("radio-material", good + number("conductivity", "-1")),
+          "scene.xml:4: bsdf 'mat-x': conductivity: found '-1'; expected a number from 0");
+  refused(material("radio-material", good + number("scattering_coefficient", "2")),
+          "scene.xml:4: bsdf 'mat-x': scattering_coefficient: found '2'; expected a number from 0 to 1");
+  refused(material("radio-material", ""),
+          "scene.xml:2: bsdf 'mat-x': material 'x': model 'dielectric' lacks the key 'relative_permittivity'");
+
+  const std::string bare = "<bsdf type=\"radio-material\" id=\"mat-x\">\n" + good + "</bsdf>\n\n";
+  const auto moved = [&](const std::string& transform) {
+    return bare + shape("square.ply", "mat-x", "<transform name=\"to_world\">" + transform + "</transform>");
+  };
+  for (const char* const scale : {"0", "1e-9"}) {
+    refused(moved("<scale value=\"" + std::string(scale) + "\"/>"), "scene.xml:6: shape 'mesh-square.ply': is ");
+  }
+  for (const char* const transform :
+       {"<scale value=\"1e9\"/>", "<translate x=\"1e12\"/>", "<scale value=\"1e300\"/><scale value=\"1e300\"/>"}) {
+    refused(moved(transform),
+            "scene.xml:6: shape 'mesh-square.ply': a corner too far away; expected points within 1e9 m");
+  }
+  refused(moved("<rotate x=\"1e200\" angle=\"90\"/>"), "scene.xml:6: rotate: without axis");
+  settings.frequency_hz = 2e11;
+  refused(
+      material("itu-radio-material", itu("concrete")),
+      "frequency: material 'x': material 'concrete' at 200 GHz is outside the range of ITU-R P.2040 revision 3: 1 to "
+      "100 GHz; expected a material and a frequency of the table");
+  settings.frequency_hz.reset();
+  refused(material("itu-radio-material", itu("floorboard")), "material 'floorboard' at 3.5 GHz is outside");
+}
+
+TEST_CASE("what importers overlook is refused by the reader of scenarios before anything is written") {
+  const TemporaryFolder folder;
+  // All faces lie on lines: each in itself has a size, and none an area.
+  write(folder / "scene.xml", scene(shape("", "own",
+                                          "<transform name=\"to_world\"><scale x=\"9\" y=\"0\" "
+                                          "z=\"0\"/></transform>",
+                                          "cube")));
+  const std::string message = refusal(folder, [&] { io::import_sionna(folder / "scene.xml", folder / "made"); });
+  CHECK(holds(message, "scene.xml: would become a scenario that does not run ("));
+  CHECK(holds(message, "scenario.json:"));
+  CHECK(holds(message, "no face has an area"));
+}
+
+TEST_CASE("materials whose names would be the same in an OBJ file keep apart; names that mean more there are changed") {
+  const TemporaryFolder folder;
+  write(folder / "square.ply", square);
+  const auto metal = [](const std::string& id, const std::string& permittivity) {
+    return "<bsdf type=\"radio-material\" id=\"" + id + "\"><float name=\"relative_permittivity\" value=\"" +
+           permittivity + "\"/></bsdf>\n";
+  };
+  write(folder / "scene.xml",
+        scene(metal("mat-a", "2") + metal("a", "3") + metal("b\\", "4") + shape("square.ply", "mat-a") +
+              shape("square.ply", "a") + shape("square.ply", "b\\")));
+  io::import_sionna(folder / "scene.xml", folder / "made");
+  const std::string mtl = dcem::test::file_bytes(folder / "made/scene.mtl");
+  CHECK(holds(mtl, "newmtl a\nem_model dielectric\nem_relative_permittivity 2\n"));
+  CHECK(holds(mtl, "newmtl a_\nem_model dielectric\nem_relative_permittivity 3\n"));
+  CHECK(holds(mtl, "newmtl b_\nem_model dielectric\nem_relative_permittivity 4\n"));
+}
+
 }  // namespace test_import_sionna

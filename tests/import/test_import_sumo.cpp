@@ -135,6 +135,71 @@ TEST_CASE("damaged files: one line, nothing written") {
               "default height: found 0"));
 }
 
+TEST_CASE("files of another kind: one line, nothing written") {
+  DCEM_NEEDS_GEOS();
+  const TemporaryFolder folder;
+  write_town(folder);
+  const io::SumoFiles good{folder / "town.net.xml", folder / "town.poly.xml", {}, {}};
+  std::string network = dcem::test::small_network;
+  network.replace(network.find("<net>"), 5, "<nix>").replace(network.find("</net>"), 6, "</nix>");
+  write(folder / "other.net.xml", network);
+  CHECK(holds(refused(folder, {folder / "other.net.xml", folder / "town.poly.xml", {}, {}}),
+              "other.net.xml: the root element is 'nix'; expected net, a SUMO network"));
+  write(folder / "nix.xml", "<nix/>");
+  CHECK(holds(refused(folder, {folder / "town.net.xml", folder / "nix.xml", {}, {}}), "nix.xml: holds no polygons"));
+  CHECK(holds(refused(folder, {folder / "town.net.xml", folder / "town.poly.xml", folder / "nix.xml", {}}),
+              "nix.xml:1: the root element is 'nix'; expected fcd-export"));
+  CHECK(holds(refused(folder, {folder / "town.net.xml", folder / "town.poly.xml", {}, {folder / "nix.xml"}}),
+              "nix.xml: the root element is 'nix'; expected additional or routes, with polygons or vehicle types"));
+  CHECK(holds(refused(folder, {folder / "town.net.xml", folder / "town.net.xml", {}, {}}),
+              "town.net.xml: holds no polygons"));
+  io::ImportSettings settings;
+  settings.frequency_hz = 1.5e11;
+  CHECK(holds(refusal(folder, [&] { io::import_sumo(good, folder / "made", settings); }),
+              "town.net.xml: frequency: material 'ground': material 'concrete' at 150 GHz is outside"));
+  // What has nothing to say is counted.
+  write(folder / "empty.add.xml", "<additional/>");
+  const io::SumoFiles with_empty{folder / "town.net.xml", folder / "town.poly.xml", {}, {folder / "empty.add.xml"}};
+  CHECK(
+      io::import_sumo(with_empty, folder / "made").skipped.at("additional files without polygons and vehicle types") ==
+      1);
+}
+
+TEST_CASE("a vehicle may have any name; a town beyond what a scene may hold is refused") {
+  DCEM_NEEDS_GEOS();
+  const TemporaryFolder folder;
+  write_town(folder);
+  const std::string place = "x=\"20\" y=\"0\" angle=\"90\" speed=\"10\"";
+  write(folder / "town.fcd.xml",
+        dcem::test::trace(
+            dcem::test::step("0", dcem::test::vehicle("mast", place) + dcem::test::vehicle("vegetation", place))));
+  write(folder / "town.poly.xml",
+        "<additional>\n" + house + poly("f", "60,10 90,10 90,30 60,30", "", "forest") + "</additional>\n");
+  io::import_sumo(
+      {folder / "town.net.xml", folder / "town.poly.xml", folder / "town.fcd.xml", {folder / "types.add.xml"}},
+      folder / "made");
+  const auto json = dcem::test::read_json(folder / "made/scenario.json");
+  CHECK(json["transmitters"][0]["id"] == "mast_");
+  CHECK(json["objects"][0]["id"] == "vegetation_");
+  std::filesystem::remove_all(folder / "made");
+  write(folder / "town.poly.xml",
+        "<additional>\n" + poly("a", "9e8,9e8 900000040,9e8 900000040,900000020") + "</additional>\n");
+  CHECK(holds(refused(folder, {folder / "town.net.xml", folder / "town.poly.xml", {}, {}}),
+              "town.poly.xml: reaches farther than 1e9 m from its origin; expected a town"));
+}
+
+TEST_CASE("a scenario in a folder behind a link finds its trace") {
+  DCEM_NEEDS_GEOS();
+  const TemporaryFolder folder;
+  write_town(folder);
+  std::filesystem::create_directories(folder / "elsewhere/deep");
+  std::filesystem::create_directory_symlink(folder / "elsewhere/deep", folder / "link");
+  io::import_sumo(
+      {folder / "town.net.xml", folder / "town.poly.xml", folder / "town.fcd.xml", {folder / "types.add.xml"}},
+      folder / "link");
+  CHECK(io::load_scenario(folder / "elsewhere/deep/scenario.json").time.frames == 3);
+}
+
 TEST_CASE("Bad Hersfeld from its own files: every block closed, every roof there") {
   DCEM_NEEDS_SHARED();
   DCEM_NEEDS_GEOS();

@@ -181,13 +181,17 @@ TEST_CASE("heights: length with its unit, storeys, default; materials by the wor
       poly("a", box(0, 10, 10, 20), height("40 ft")) +
           poly("b", box(20, 10, 30, 20), param("building:levels", "4") + param("roof:levels", "1")) +
           poly("c", box(40, 10, 50, 20), param("building:material", "brick") + param("roof:material", "metal")) +
-          poly("d", box(60, 10, 70, 20), height("tall")));
+          poly("d", box(60, 10, 70, 20), height("tall")) + poly("e", box(80, 10, 90, 20), height("1e9")) +
+          poly("f", box(100, 10, 110, 20), param("building:levels", "1e9")) +
+          poly("g", box(120, 10, 130, 20), param("building:levels", "2") + param("roof:levels", "-1")) +
+          poly("h", box(140, 10, 150, 20), height("1e9"), "forest"));
   check_clean_town(folder / "made", report);
-  CHECK(report.sizes.at("volume_m3") == doctest::Approx(100.0 * (12.192 + 15.0 + 9.0 + 9.0)));
+  CHECK(report.sizes.at("volume_m3") == doctest::Approx(100.0 * (12.192 + 15.0 + 9.0 + 9.0 + 9.0 + 9.0 + 6.0)));
   CHECK(report.read.at("heights from 'height'") == 1);
-  CHECK(report.read.at("heights from 'building:levels'") == 1);
-  CHECK(report.read.at("heights by default") == 2);
-  CHECK(report.repaired.at("heights that are no length") == 1);
+  CHECK(report.read.at("heights from 'building:levels'") == 2);
+  CHECK(report.read.at("heights by default") == 4);
+  CHECK(report.repaired.at("heights that are no length") == 3);  // a house, one of 1e9 m, a forest of 1e9 m
+  CHECK(report.repaired.at("numbers of storeys that are none") == 2);
   const std::string mtl = dcem::test::file_bytes(folder / "made/scene.mtl");
   CHECK(mtl.find("newmtl wall_brick\n") != std::string::npos);
   CHECK(mtl.find("em_itu brick\n") != std::string::npos);

@@ -69,6 +69,7 @@ TEST_CASE("bad input is refused in one line that names file, place and expectati
     const bool says_what_to_do =
         message.find("; expected ") != std::string::npos || message.find("nearest known one") != std::string::npos;
     CHECK(says_what_to_do);
+    CHECK(message.find("from 0 to 0") == std::string::npos);  // the range of what is no number
     CHECK(std::none_of(message.begin(), message.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }));
     // Long enough for any path, short enough to read.
     CHECK(message.size() < 2 * folder.string().size() + 400);

@@ -149,6 +149,41 @@ TEST_CASE("an option that would change nothing is refused, not ignored") {
   CHECK(sampled.exit_code == 0);
 }
 
+TEST_CASE("numbers that are none and names that are empty are refused by the option's name") {
+  DCEM_NEEDS_PROGRAM();
+  const TemporaryFolder folder;
+  write_scenario(folder, moving_receiver + "," + grid_receiver);
+  const std::string huge = "99999999999999999999999";
+  for (const std::string command : {"run", "map", "verify"}) {
+    for (const std::string option : {"--seed", "--rays"}) {
+      const std::string call = command + " street.json " + option + ' ';
+      check_refused(folder, call + huge,
+                    "command line: " + option + ": found '" + huge + "'; expected a whole number of");
+      check_refused(folder, call + "-" + huge,
+                    option + ": found '-" + huge + "'; expected a whole number of at most 18");
+      check_refused(folder, call + "abc", option + ": found 'abc'; expected a whole number");
+      check_refused(folder, call + "1.5", option + ": found '1.5'; expected a whole number");
+    }
+    for (const std::string& threads :
+         {huge, std::string("-1"), std::string("0"), std::string("4097"), std::string("x")}) {
+      check_refused(folder, command + " street.json --threads " + threads,
+                    "--threads: found '" + threads + "'; expected a whole number from 1 to 4096");
+    }
+    check_refused(folder, command + " ''", "scenario: an empty name; expected the name of a file or folder");
+  }
+  for (const char* const call :
+       {"run street.json", "map street.json", "merge street.json", "compare a.csv b.csv", "import osm street.json"}) {
+    check_refused(folder, std::string(call) + " -o ''", "command line: -o: an empty name; expected the name of a");
+  }
+  check_refused(folder, "import sumo '' -o made", "source: an empty name");
+  check_refused(folder, "import sumo street.json -o made --poly ''", "--poly: an empty name");
+  check_refused(folder, "import sumo street.json -o made --terrain ''", "--terrain: an empty name");
+  check_refused(folder, "import osm street.json -o made --tree-height-m x",
+                "--tree-height-m: found 'x'; expected a number");
+  check_refused(folder, "import osm street.json -o made --frequency-hz 1e999",
+                "--frequency-hz: found '1e999'; expected");
+}
+
 TEST_CASE("what is foreseen to take more than --memory-limit is refused, with both figures") {
   DCEM_NEEDS_PROGRAM();
   const TemporaryFolder folder;

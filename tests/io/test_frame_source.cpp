@@ -188,6 +188,27 @@ TEST_CASE("an instant within a microsecond of a step is that step, to the last b
   }
 }
 
+TEST_CASE(
+    "of steps closer together than a microsecond the nearest counts; what is a rounding error outside is inside") {
+  TrafficCase files;
+  files.trace_lines = step("-3", car_at("a", 1)) + step("-2.9999989999999999", car_at("a", 2)) +
+                      step("-2.9999980000000002", car_at("b", 3)) + step("-2.9999976", car_at("c", 4));
+  const auto names = [&](const std::string& time) {
+    files.more = R"(, "time": )" + time;
+    std::string result;
+    for (const Frame& frame : all_frames(files)) {
+      for (const auto& [name, body] : places_of(frame)) {
+        result += name + std::to_string(std::lround(frame.bodies[body].placement.pose.position_m.x + 2.0)) + ' ';
+      }
+    }
+    return result;
+  };
+  CHECK(names(R"({"start_s": -3, "step_s": 1e-6, "frames": 3})") == "a1 a2 b3 ");
+  CHECK(names(R"({"start_s": -3, "step_s": 4e-7, "frames": 7})") == "a1 a1 a2 a2 b3 b3 c4 ");
+  CHECK(names(R"({"start_s": -3.0000009999999999, "frames": 1})") == "a1 ");
+  CHECK(names(R"({"start_s": -2.9999966000000001, "frames": 1})") == "c4 ");
+}
+
 TEST_CASE("between steps positions and speeds are linear, angles take the shortest arc") {
   TrafficCase files;
   files.types = R"(<vType id="car" length="4"/>)";

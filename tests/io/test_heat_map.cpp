@@ -12,6 +12,7 @@
 
 #include "dcem/io/src/pictures/colour_map.hpp"
 #include "dcem/io/src/pictures/contours.hpp"
+#include "dcem/io/src/pictures/heat_map_plan.hpp"
 #include "tests/io/drawing_needed.hpp"
 #include "tests/io/picture_checks.hpp"
 #include "tests/io/png_reader.hpp"
@@ -681,6 +682,111 @@ TEST_CASE("axes that have nothing in common each fill the picture, and are named
   const Png named = drawn(map), plain = drawn(metres);
   CHECK(named.height == plain.height);
   CHECK(named.pixels != plain.pixels);
+}
+
+TEST_CASE("a title that is too long goes on in a second line, and only what is still too long loses its middle") {
+  DCEM_NEEDS_DRAWING();
+  HeatMap map = room();
+  map.title = "floor, transmitter tx: incoherent power, 30 GHz, z = 1.50 m";
+  const detail::HeatMapPlan plain = detail::plan_heat_map(map);
+  CHECK(plain.title.text == map.title);
+  CHECK(plain.title.second_line.empty());
+  const std::string end = ": incoherent power, 30 GHz, z = 1.50 m";
+  const auto check_lines = [&](const detail::HeatMapPlan& plan) {
+    for (const std::string* line : {&plan.title.text, &plan.title.second_line}) {
+      CHECK(plan.left_px + text_width_px(*line, plan.title.style) <= plan.layout.width_px - detail::margin_px);
+    }
+    CHECK(plan.title.second_line.ends_with(" 30 GHz, z = 1.50 m"));
+    CHECK(plan.layout.plot.y == plain.layout.plot.y + plan.title.more_px());
+    CHECK(plan.title.more_px() > 26);
+    CHECK(plan.layout.width_px == plain.layout.width_px);
+  };
+  map.title =
+      "a grid of the whole third floor of the northern wing, transmitter base-station-of-the-entrance-hall" + end;
+  const detail::HeatMapPlan wrapped = detail::plan_heat_map(map);
+  check_lines(wrapped);
+  CHECK(wrapped.title.text + " " + wrapped.title.second_line == map.title);
+  map.title = "floor, transmitter " + std::string(190, 'b') + end;
+  const detail::HeatMapPlan cut = detail::plan_heat_map(map);
+  check_lines(cut);
+  CHECK(cut.title.text == "floor, transmitter");
+  CHECK(cut.title.second_line.find("b...b") != std::string::npos);
+}
+
+TEST_CASE("a text that is cut keeps both ends, whole characters and the width that it may have") {
+  DCEM_NEEDS_DRAWING();
+  const TextStyle style{26.0};
+  CHECK(detail::fit_text("short", style, 500) == "short");
+  std::string umlauts;
+  for (int i = 0; i < 60; ++i) umlauts += "\xc3\xa4\xe2\x82\xac";
+  for (const std::string& text : {"first" + std::string(100, '-') + "last", umlauts}) {
+    const std::string fitted = detail::fit_text(text, style, 300);
+    CHECK(text_width_px(fitted, style) <= 300.0);
+    CHECK(text_width_px(fitted, style) > 250.0);
+    CHECK(drawable_text(fitted) == fitted);
+    CHECK(fitted.substr(0, 5) == text.substr(0, 5));
+    CHECK(fitted.substr(fitted.size() - 3) == text.substr(text.size() - 3));
+  }
+}
+
+TEST_CASE("twenty-five transmitters in a row all have their names, none upon another or upon a symbol") {
+  DCEM_NEEDS_DRAWING();
+  HeatMap map = room();
+  for (int i = 0; i < 25; ++i) map.transmitters.push_back({1.0 + 0.75 * i, 6.1, "transmitter-" + std::to_string(i)});
+  map.transmitters.back().label = std::string(190, 'x');
+  const detail::HeatMapPlan plan = detail::plan_heat_map(map);
+  REQUIRE(plan.markers.size() == 25);
+  std::vector<PixelRect> areas;
+  for (const detail::SeenMarker& marker : plan.markers) {
+    CAPTURE(marker.label);
+    REQUIRE(marker.plate.has_value());
+    CHECK(intersection(*marker.plate, plan.layout.plot) == *marker.plate);
+    for (const detail::SeenMarker& other : plan.markers) {
+      CHECK(intersection(*marker.plate, detail::marker_area(other.centre)).width *
+                intersection(*marker.plate, detail::marker_area(other.centre)).height ==
+            0);
+    }
+    for (const PixelRect& area : areas) {
+      const PixelRect shared = intersection(*marker.plate, area);
+      CHECK(shared.width * shared.height == 0);
+    }
+    areas.push_back(*marker.plate);
+  }
+}
+
+TEST_CASE("the legend counts transmitters without room for a name") {
+  DCEM_NEEDS_DRAWING();
+  HeatMap map = room();
+  for (int i = 0; i < 90; ++i) map.transmitters.push_back({10.0 + 0.01 * i, 6.1, "transmitter-" + std::to_string(i)});
+  const detail::HeatMapPlan plan = detail::plan_heat_map(map);
+  const auto named = std::count_if(plan.markers.begin(), plan.markers.end(),
+                                   [](const detail::SeenMarker& marker) { return marker.plate.has_value(); });
+  CHECK(named >= 8);
+  CHECK(named < 90);
+  const std::string said = "transmitters without room for a name: " + std::to_string(90 - named);
+  CHECK(std::any_of(plan.legend.begin(), plan.legend.end(), [&](const auto& item) { return item.text == said; }));
+  CHECK(plan.markers.front().plate.has_value());  // who comes first chooses first
+}
+
+TEST_CASE("the legend names walls and windows where some are drawn") {
+  DCEM_NEEDS_DRAWING();
+  HeatMap map = room();
+  const auto has = [&](detail::Symbol symbol) {
+    const auto legend = detail::plan_heat_map(map).legend;
+    return std::any_of(legend.begin(), legend.end(), [&](const auto& item) { return item.symbol == symbol; });
+  };
+  map.walls_m = {{-1.0, 13.0, 21.0, 13.0}, {-3.0, 0.0, -3.0, 12.0}};  // the room is 20 m by 12 m
+  map.windows_m = {{-1.0, -1.0, 21.0, -1.0}};
+  CHECK_FALSE(has(detail::Symbol::wall));
+  CHECK_FALSE(has(detail::Symbol::window));
+  map.walls_m.push_back({0.0, 0.0, 20.0, 0.0});  // along the rim
+  map.windows_m.push_back({3.0, 11.0, 3.0, 30.0});
+  CHECK(has(detail::Symbol::wall));
+  CHECK(has(detail::Symbol::window));
+  map.walls_m = {{5.0, 2.0, 5.0, 10.0}};
+  CHECK(has(detail::Symbol::wall));
+  map.hatched.assign(map.values.size(), 1);  // within a house it is thin and grey
+  CHECK_FALSE(has(detail::Symbol::wall));
 }
 
 }  // namespace test_heat_map

@@ -267,4 +267,27 @@ TEST_CASE("line chart: what cannot be drawn is refused") {
   CHECK(folder.names().empty());
 }
 
+TEST_CASE("line chart: endless names and titles leave a picture its size") {
+  DCEM_NEEDS_DRAWING();
+  const std::string endless = "base" + std::string(190, '-') + "station";
+  LineChart chart = chart_of({{endless, {0.0, 1.0}, {0.0, 1.0}}, {"b", {0.0, 1.0}, {1.0, 0.0}}});
+  chart.title = "power of " + endless + ", t = 1.000 s";
+  std::vector<LineChart> charts{chart, chart};
+  const ChartSheet sheet = detail::plan_line_charts(charts);
+  CHECK(sheet.width_px < 2100);
+  check_texts(sheet);
+  const ChartPlan& plan = sheet.charts.at(1);
+  CHECK(plan.legend.at(0).text.starts_with("base--"));
+  CHECK(plan.legend.at(0).text.ends_with("--station"));
+  CHECK(plan.title.text == "power of");
+  CHECK(plan.title.second_line.ends_with("--station, t = 1.000 s"));
+  for (LineChart& panel : charts) {
+    panel.title = "power";
+    panel.series[1].name = "phase";
+  }
+  const ChartSheet panels = detail::plan_panels(chart.title, charts);
+  CHECK(panels.title.second_line.ends_with("--station, t = 1.000 s"));
+  check_texts(panels);
+}
+
 }  // namespace test_line_chart

@@ -195,6 +195,15 @@ TEST_CASE("the picture of the best server gives each transmitter a colour of its
   CHECK_THROWS_AS(io::draw_cells(picture), std::invalid_argument);
 }
 
+TEST_CASE("the transmitter of a map chooses first where its name stands") {
+  const RadioMap map = small_map("b", -60.0);
+  const Scene scene = scene_with({"a", "b", "c"});
+  std::vector<std::string> names;
+  for (const auto& marker : io::map_picture(map, scene, scene.frame_at(0.0), 30e9).transmitters)
+    names.push_back(marker.label);
+  CHECK(names == std::vector<std::string>{"b", "a", "c"});
+}
+
 TEST_CASE("areas of servers are told apart in grey: by their own textures") {
   const Scene scene = scene_with({"a", "b", "c", "d", "e", "f", "g"});
   std::vector<RadioMap> maps;

@@ -134,9 +134,9 @@ TEST_CASE("the picture of a map hatches obstructed points and leaves the others 
   CHECK(picture.title.find("incoherent") != std::string::npos);
   CHECK(picture.title.find("30 GHz") != std::string::npos);
   REQUIRE(picture.transmitters.size() == 2);
-  CHECK(picture.transmitters[0].label == "other");
-  CHECK(picture.transmitters[1].label == "bs");
-  CHECK(picture.transmitters[1].y_m == 2.0);
+  CHECK(picture.transmitters[0].label == "bs");  // whose map it is
+  CHECK(picture.transmitters[0].y_m == 2.0);
+  CHECK(picture.transmitters[1].label == "other");
 }
 
 TEST_CASE("facets on top of each other are counted, neighbours and steps are not") {

@@ -83,6 +83,7 @@ struct Wanted {
   std::string material = R"({"model": "constant", "reflection": 0.7})";
   std::string transmitter_m = "[0, 0, 8]", receiver_m = "[10, 5, 1.5]";
   std::string grid = {}, objects = {};
+  std::string more = {};  ///< blocks, each with a comma behind it
   int frames = 1;
 };
 
@@ -90,7 +91,8 @@ std::string scenario_text(const Wanted& wanted) {
   const std::string grid = wanted.grid.empty() ? ""
                                                : R"(, {"id": "area", "grid": {"origin_m": )" + wanted.grid +
                                                      R"(, "spacing_m": [2, 2], "count": [5, 5]}})";
-  return R"({"format": "dcem-scenario/1", "scene": {"obj": "village.obj"}, "materials": {"wall": )" + wanted.material +
+  return R"({"format": "dcem-scenario/1", )" + wanted.more +
+         R"("scene": {"obj": "village.obj"}, "materials": {"wall": )" + wanted.material +
          R"(}, "frequency_hz": 5.9e9, "time": {"step_s": 1, "frames": )" + std::to_string(wanted.frames) +
          R"(}, "objects": [)" + wanted.objects + R"(], "transmitters": [{"id": "bs", "position_m": )" +
          wanted.transmitter_m + R"(, "power_dbm": 20}], "receivers": [{"id": "ue", "position_m": )" +
@@ -140,6 +142,44 @@ TEST_CASE("devices kilometres outside are named, but not what flies above") {
   wanted.receiver_m = "[5100, 0, 500000]";
   CHECK(warnings_of(wanted).empty());
   wanted.receiver_m = "[1200, 0, 1.5]";  // 900 m
+  CHECK(warnings_of(wanted).empty());
+}
+
+TEST_CASE("what is far away and far up is named where nobody is near, or where nothing flies") {
+  Wanted wanted;
+  wanted.receiver_m = "[20000, 10000, 25000]";  // an aeroplane, by its height
+  CHECK(warnings_of(wanted).empty());
+  wanted.transmitter_m = "[1000, 8000, 20000]";  // but both of them?
+  const std::vector<std::string> both = warnings_of(wanted);
+  REQUIRE(both.size() == 2);
+  CHECK(contains(both[0], "transmitter 'bs' is up to 21.5 km outside the box of the scenery"));
+  CHECK(contains(both[1], "receiver 'ue' is up to 33.3 km outside the box of the scenery"));
+  wanted.grid = "[0, 0, 1.5]";
+  CHECK(warnings_of(wanted).empty());
+  wanted.grid.clear();
+  wanted.transmitter_m = "[0, 0, 8]";
+  wanted.receiver_m = "[5000, 0, 80000]";  // above balloons, below satellites
+  CHECK(contains(warning_of(wanted), "receiver 'ue' is up to 80.1 km outside the box of the scenery"));
+  wanted.receiver_m = "[900, 0, 900000000]";
+  CHECK(contains(warning_of(wanted), "receiver 'ue' is up to 900000 km outside the box of the scenery"));
+}
+
+TEST_CASE(
+    "a receiver at the very point of a transmitter is named, unless no direct path is wanted or they have no link") {
+  Wanted wanted;
+  wanted.receiver_m = wanted.transmitter_m;
+  wanted.frames = 2;
+  CHECK(warning_of(wanted) ==
+        "village.json: receiver 'ue' is at the very point of transmitter 'bs', and their link has no direct path "
+        "(frames 0 to 1)");
+  wanted.more = R"("propagation": {"line_of_sight": false}, )";
+  CHECK(warnings_of(wanted).empty());
+  wanted.more = R"("links": {"pairs": [["lamp", "ue"]]}, )";
+  wanted.transmitter_m += R"(, "power_dbm": 20}, {"id": "lamp", "position_m": [5, 5, 8])";
+  CHECK(warnings_of(wanted).empty());
+  wanted.more = R"("links": {"pairs": [["bs", "ue"]], "range_m": 5}, )";
+  CHECK(warnings_of(wanted).size() == 1);
+  wanted.receiver_m = "[0, 0, 8.000001]";
   CHECK(warnings_of(wanted).empty());
 }
 

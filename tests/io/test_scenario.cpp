@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "dcem/io/geo_anchor.hpp"
 #include "dcem/io/input_error.hpp"
 #include "tests/io/drawing_needed.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -391,6 +392,24 @@ TEST_CASE("the command line overrides the file and is checked like it") {
       files.error(only(&io::ScenarioOverrides::output, "links,")).starts_with("command line: --output.: unknown key"));
 }
 
+TEST_CASE("a band that reaches below 0 is named by its own key, whatever says the frequency") {
+  ScenarioCase files;
+  files.more = R"(, "output": {"cfr": {"bandwidth_hz": 1e9, "points": 16}})";
+  CHECK(files.error() == "no error");
+  const std::string said = "output.cfr.bandwidth_hz: 1e+09 Hz around 1e+08 Hz reach below 0; expected at most twice";
+  CHECK(contains(files.error(only(&io::ScenarioOverrides::frequency_hz, 1e8)), "case.json:1: " + said));
+  io::ScenarioOverrides overrides = only(&io::ScenarioOverrides::frequency_hz, 1e8);
+  overrides.output = "cfr";
+  CHECK(contains(files.error(overrides), "command line: --" + said));
+}
+
+TEST_CASE("a place outside of its zone names the block once") {
+  if (!io::knows_utm()) return;
+  ScenarioCase files;
+  files.more = R"(, "geo": {"crs": "utm32n", "offset_m": [1e8, 1e8]})";
+  CHECK(contains(files.error(), "case.json:1: geo: no place in UTM"));
+}
+
 TEST_CASE("numbers that no whole number holds are refused") {
   ScenarioCase files;
   for (const std::string seed :
@@ -399,6 +418,44 @@ TEST_CASE("numbers that no whole number holds are refused") {
     files.more = R"(, "propagation": {"seed": )" + seed + "}";
     CHECK(contains(files.error(), "propagation.seed: found"));
   }
+}
+
+TEST_CASE("keys without an effect are named with the reason, once each, where the file says them") {
+  ScenarioCase files;
+  const auto warnings_with = [&](const std::string& propagation, const io::ScenarioOverrides& overrides = {}) {
+    files.more = ", \n\n\"propagation\": {" + propagation + "}";
+    return files.load(overrides).warnings;
+  };
+  const std::string rays = R"("rays": 100, "rays_steady": 10, "seed": 3)";
+  const auto exact = warnings_with(R"("discovery": "exact", )" + rays);
+  REQUIRE(exact.size() == 3);
+  CHECK(contains(exact[0],
+                 ": propagation.rays has no effect: discovery is exact, and no ray is shot; expected "
+                 "discovery sampled"));
+  CHECK(contains(exact[0], "case.json:"));
+  CHECK(contains(exact[1], ": propagation.rays_steady has no effect: discovery is exact"));
+  CHECK(contains(exact[2], ": propagation.seed has no effect: discovery is exact"));
+  CHECK(warnings_with(rays).size() == 3);  // a small scene: exact by itself
+  CHECK(warnings_with(R"("discovery": "sampled", )" + rays).empty());
+  const auto uncached = warnings_with(R"("discovery": "sampled", "cache": "off", )" + rays);
+  REQUIRE(uncached.size() == 1);
+  CHECK(contains(uncached[0], "propagation.rays_steady has no effect: the cache is off; expected cache seed"));
+  CHECK(warnings_with(R"("diffuse": {"phases": "seeded"}, "seed": 3)").empty());
+  // Said for another discovery than that of the command line.
+  CHECK(warnings_with(R"("discovery": "sampled", )" + rays, only(&io::ScenarioOverrides::discovery, "exact")).empty());
+  CHECK(warnings_with(R"("max_interactions": 2, "valid_until_limit_m": 1)").empty());
+  CHECK(warnings_with(R"("valid_until_limit_m": null)").empty());
+  const auto lifetimes = warnings_with(R"("max_interactions": 3, "valid_until_limit_m": 1)");
+  REQUIRE(lifetimes.size() == 1);
+  CHECK(contains(lifetimes[0],
+                 "propagation.valid_until_limit_m has no effect: paths may have more than two "
+                 "interactions; expected max_interactions 2"));
+  const auto sampled = warnings_with(R"("max_interactions": 2, "discovery": "sampled", "valid_until_limit_m": 1)");
+  REQUIRE(sampled.size() == 1);
+  CHECK(contains(sampled[0], "discovery is sampled; expected discovery exact"));
+  CHECK(warnings_with(R"("max_interactions": 2, "cache": "off", "valid_until_limit_m": 1)").size() == 1);
+  CHECK(warnings_with(R"("max_interactions": 2, "valid_until_limit_m": 1)", only(&io::ScenarioOverrides::cache, "off"))
+            .empty());
 }
 
 }  // namespace test_scenario

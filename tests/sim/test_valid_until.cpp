@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "dcem/sim/discovery.hpp"
 #include "dcem/sim/simulator.hpp"
 #include "tests/paths/small_scenes.hpp"
 
@@ -48,12 +49,15 @@ std::vector<std::optional<double>> values_at(Simulator& simulator, double time_s
   return values;
 }
 
-/// Whether all links of a frame have a value.
+/// Whether all links of a frame have a value; where not, there is a reason to be told.
 bool all_known(const SimulationSettings& settings) {
   Simulator simulator(yard(), settings);
   const auto values = values_at(simulator, 0.0);
   CHECK(values.size() == 4);
-  return std::ranges::all_of(values, [](const auto& value) { return value.has_value(); });
+  const bool known = std::ranges::all_of(values, [](const auto& value) { return value.has_value(); });
+  const bool is_asked = settings.propagation.valid_until_limit_m.has_value();
+  if (is_asked) CHECK(why_no_lifetimes(settings.propagation, simulator.discovery()).empty() == known);
+  return known;
 }
 
 }  // namespace
@@ -94,6 +98,13 @@ TEST_CASE("valid_until_m is there where it is asked for and proved, and nowhere 
   CHECK_FALSE(all_known(settings));
   settings = settings_with(0.5);
   settings.propagation.max_path_length_m = 500.0;
+  CHECK_FALSE(all_known(settings));
+  settings = settings_with(0.5);
+  settings.propagation.line_of_sight = false;
+  CHECK_FALSE(all_known(settings));
+  settings.propagation.max_transmissions = 0;
+  CHECK(all_known(settings));
+  settings.propagation.discovery = Discovery::sampled;
   CHECK_FALSE(all_known(settings));
 }
 

@@ -10,16 +10,12 @@
 
 namespace dcem {
 
-/// Whether it is asked for, and can be proved: not where weak or long paths are dropped, because powers and lengths
-/// change with every step, and not of paths that are more than two elements, or two edges, long.
+/// Whether it is asked for, and can be proved.
 template <SurfaceModel Surface, SpatialIndex Index>
 bool BasicSimulator<Surface, Index>::finds_lifetimes() const {
   const PropagationSettings& propagation = settings_.propagation;
   if (!propagation.valid_until_limit_m || !change_ || plan_.joined == 0) return false;
-  if (propagation.min_path_gain_db || propagation.max_path_length_m) return false;
-  if (!propagation.line_of_sight && propagation.max_transmissions > 0) return false;
-  const int interactions = interaction_order(propagation);
-  return interactions <= 2 && (diffraction_order(propagation) <= 1 || interactions <= 1);
+  return why_no_lifetimes(propagation, plan_.discovery).empty();
 }
 
 /// Those of links that are as they were are known.

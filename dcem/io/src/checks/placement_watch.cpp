@@ -18,15 +18,19 @@
 namespace dcem::io {
 namespace {
 
-constexpr double far_m = 1000.0;            ///< outside the scenery
-constexpr double flying_height_m = 3000.0;  ///< above it: aeroplanes, platforms, satellites
-constexpr double flying_slope = 0.087;      ///< tan 5°: lower ones hardly reach it
-constexpr double below_m = 0.01;            ///< more than dirt
-constexpr double broad_m = 30.0;            ///< a ground goes on so far on all sides, a deck or a canopy does not
-constexpr double room_m = 200.0;            ///< so far away the walls of a room may be
+constexpr double far_m = 1000.0;                                ///< outside the scenery
+constexpr double flying_height_m = 3000.0;                      ///< above it: aeroplanes, platforms, satellites
+constexpr double flying_slope = 0.087;                          ///< tan 5°: lower ones hardly reach it
+constexpr double balloon_height_m = 6e4, orbit_height_m = 1e5;  ///< between them nothing stays …
+constexpr double moon_height_m = 4e8;                           ///< … and nothing that is sent to is higher
+constexpr double one_point_m = 1e-9;                            ///< ends so near have no direct path
+constexpr double below_m = 0.01;                                ///< more than dirt
+constexpr double broad_m = 30.0;  ///< a ground goes on so far on all sides, a deck or a canopy does not
+constexpr double room_m = 200.0;  ///< so far away the walls of a room may be
 constexpr double moving_mps = 0.1;
 constexpr std::size_t most_named = 5;       ///< of each kind of misplacement
 constexpr std::size_t most_watched = 1000;  ///< receivers that are looked at in each frame; of more, the first ones
+constexpr std::size_t most_compared = 64;   ///< transmitters that receivers are compared with: the first ones
 constexpr std::size_t at_once = 8;          ///< devices or objects that a thread looks at
 constexpr std::size_t most_asked = 200;     ///< receivers, and points of each grid, that are asked where they are
 
@@ -34,12 +38,29 @@ double outside_m(const Aabb<double>& box, const Vec3& point_m, int axis) {
   return std::max({0.0, box.min[axis] - point_m[axis], point_m[axis] - box.max[axis]});
 }
 
-/// How far away horizontally, 0 within a kilometre. What flies may be that far away.
-double far_away_m(const Aabb<double>& box, const Vec3& point_m) {
-  const double across_m = std::hypot(outside_m(box, point_m, 0), outside_m(box, point_m, 1));
-  const double height_m = point_m.z - box.max.z;
-  const bool flies = height_m > across_m || (height_m > flying_height_m && height_m > flying_slope * across_m);
-  return across_m > far_m && !flies ? across_m : 0.0;
+double across_m(const Aabb<double>& box, const Vec3& point_m) {
+  return std::hypot(outside_m(box, point_m, 0), outside_m(box, point_m, 1));
+}
+
+bool flies(double across_m, double height_m) {
+  if ((height_m > balloon_height_m && height_m < orbit_height_m) || height_m > moon_height_m) return false;
+  return height_m > across_m || (height_m > flying_height_m && height_m > flying_slope * across_m);
+}
+
+/// How far away, 0 within a kilometre. What flies may be that far away.
+double far_away_m(const Aabb<double>& box, const Vec3& point_m, bool may_fly) {
+  const double aside_m = across_m(box, point_m), height_m = std::max(0.0, point_m.z - box.max.z);
+  const bool is_meant = std::max(aside_m, height_m) <= far_m || (may_fly && flies(aside_m, height_m));
+  return is_meant ? 0.0 : std::hypot(aside_m, height_m);
+}
+
+bool is_near(const Aabb<double>& box, const Vec3& point_m) {
+  return across_m(box, point_m) <= far_m && point_m.z - box.max.z <= flying_height_m;
+}
+
+Vec3 nearest_point_m(const ReceiverGrid& grid, const Vec3& to_m) {
+  const Vec3 first_m = grid_point_m(grid, 0, 0), last_m = grid_point_m(grid, grid.rows() - 1, grid.columns() - 1);
+  return glm::clamp(to_m, glm::min(first_m, last_m), glm::max(first_m, last_m));
 }
 
 /// Nothing where there is no surface.
@@ -125,6 +146,7 @@ void PlacementWatch::look(const Frame& frame) {
   if (box_.empty()) return;
   frame_ = &frame;
   note_rooms();
+  may_fly_ = anyone_is_near();
   const std::array<std::size_t, kinds> counts{rooms_.size(), std::min(receivers_.size(), most_watched), grids_.size(),
                                               simulator_.scene().bodies().size() - 1};
   for (std::size_t kind = 0; kind < kinds; ++kind) {
@@ -162,6 +184,11 @@ void PlacementWatch::for_each(std::size_t count, Look&& look) const {
 void PlacementWatch::note_rooms() {
   const std::span<const Device> transmitters = simulator_.scene().transmitters();
   rooms_.assign(transmitters.size(), {});
+  transmitters_.clear();
+  for (const Device& device : transmitters.first(std::min(transmitters.size(), most_compared))) {
+    const DeviceState state = simulator_.scene().device_state(device, *frame_);
+    if (state.present) transmitters_.emplace_back(state.position_m, &device);
+  }
   for_each(transmitters.size(), [&](std::size_t number) {
     const DeviceState state = simulator_.scene().device_state(transmitters[number], *frame_);
     if (!state.present) return;
@@ -172,8 +199,22 @@ void PlacementWatch::note_rooms() {
   for (const std::vector<Shell>& own : rooms_) all_rooms_.insert(own.begin(), own.end());
 }
 
+/// Of some link one end is near the scenery, or else the scenery has no part in any. Also where there is no link.
+bool PlacementWatch::anyone_is_near() const {
+  const Vec3 middle_m = 0.5 * (box_.min + box_.max);
+  bool is_anyone_listening = !grids_.empty();
+  for (const Device& receiver : receivers_) {
+    const DeviceState state = simulator_.scene().device_state(receiver, *frame_);
+    if (state.present && is_near(box_, state.position_m)) return true;
+    is_anyone_listening = is_anyone_listening || state.present;
+  }
+  return !is_anyone_listening || transmitters_.empty() ||
+         std::ranges::any_of(transmitters_, [&](const auto& placed) { return is_near(box_, placed.first); }) ||
+         std::ranges::any_of(grids_, [&](const auto& grid) { return is_near(box_, nearest_point_m(grid, middle_m)); });
+}
+
 bool PlacementWatch::is_far(const Vec3& position_m, const std::string& subject, Record& record) const {
-  const double away_m = far_away_m(box_, position_m);
+  const double away_m = far_away_m(box_, position_m, may_fly_);
   if (away_m == 0.0) return false;
   record.note(Problem::far_outside, subject, away_m, [&] {
     return "is up to " + metres(away_m) +
@@ -213,6 +254,7 @@ void PlacementWatch::look_at_receiver(const Device& device, Record& record) cons
   if (!state.present) return;
   const std::string subject = "receiver " + in_quotes(device.id);
   look_at_place(state.position_m, subject, record);
+  look_for_twin(device, state.position_m, subject, record);
   for (const Shell& shell : closed_shells(state)) {
     if (all_rooms_.contains(shell)) continue;
     record.note(Problem::shut_in, subject, 0.0,
@@ -220,11 +262,33 @@ void PlacementWatch::look_at_receiver(const Device& device, Record& record) cons
   }
 }
 
+/// Whether two different devices have a link, however near they are.
+bool PlacementWatch::is_linked(const Device& transmitter, const Device& receiver) const {
+  if (transmitter.is_transceiver && receiver.is_transceiver && transmitter.id >= receiver.id) return false;
+  const auto& pairs = simulator_.settings().links.pairs;
+  return transmitter.id != receiver.id && (!pairs || std::ranges::any_of(*pairs, [&](const auto& pair) {
+           return pair == std::pair(transmitter.id, receiver.id) ||
+                  (transmitter.is_transceiver && pair == std::pair(receiver.id, transmitter.id));
+         }));
+}
+
+/// A transmitter at the very point of a receiver: who wants no direct path may mean it.
+void PlacementWatch::look_for_twin(const Device& device, const Vec3& position_m, const std::string& subject,
+                                   Record& record) const {
+  if (!simulator_.settings().propagation.line_of_sight) return;
+  const auto is_twin = [&](const auto& placed) {
+    return glm::distance(placed.first, position_m) <= one_point_m && is_linked(*placed.second, device);
+  };
+  const auto twin = std::ranges::find_if(transmitters_, is_twin);
+  if (twin == transmitters_.end()) return;
+  record.note(Problem::at_one_point, subject, 0.0, [&] {
+    return "is at the very point of transmitter " + in_quotes(twin->second->id) + ", and their link has no direct path";
+  });
+}
+
 /// Points of a grid may lie in houses; a grid that lies nowhere near anything is a mistake.
 void PlacementWatch::look_at_grid(const ReceiverGrid& grid, Record& record) const {
-  const Vec3 first_m = grid_point_m(grid, 0, 0), last_m = grid_point_m(grid, grid.rows() - 1, grid.columns() - 1);
-  const Vec3 nearest_m = glm::clamp(0.5 * (box_.min + box_.max), glm::min(first_m, last_m), glm::max(first_m, last_m));
-  look_at_place(nearest_m, "grid " + in_quotes(grid.id), record);
+  look_at_place(nearest_point_m(grid, 0.5 * (box_.min + box_.max)), "grid " + in_quotes(grid.id), record);
 }
 
 void PlacementWatch::look_at_object(BodyId body, Record& record) {
@@ -432,9 +496,10 @@ std::vector<std::string> PlacementWatch::warnings() const {
     lines.push_back(file_ + ": " + sighting.subject + " " + sighting.detail + " (" + sighting.frames.words() + ")");
   }
   const std::map<Problem, const char*> words{
-      {Problem::far_outside, "far outside the scenery"},   {Problem::under_ground, "under the ground"},
-      {Problem::shut_in, "shut in without a transmitter"}, {Problem::shut_in_alone, "shut in without a receiver"},
-      {Problem::drives_through, "inside of something"},    {Problem::goes_through, "led through walls"}};
+      {Problem::far_outside, "far outside the scenery"},       {Problem::under_ground, "under the ground"},
+      {Problem::shut_in, "shut in without a transmitter"},     {Problem::shut_in_alone, "shut in without a receiver"},
+      {Problem::drives_through, "inside of something"},        {Problem::goes_through, "led through walls"},
+      {Problem::at_one_point, "at the point of a transmitter"}};
   for (const auto& [problem, alike] : subjects) {
     if (alike.size() <= most_named) continue;
     lines.push_back(file_ + ": " + std::to_string(alike.size() - most_named) + " more are " + words.at(problem));

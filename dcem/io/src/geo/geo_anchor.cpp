@@ -1,5 +1,6 @@
 #include "dcem/io/geo_anchor.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -45,13 +46,25 @@ std::array<double, 2> point_on_plane(const GeoOrigin& origin, double lat_deg, do
       across_m(lat) * normal[0] - across_m(lat0) * std::cos(lat0), across_m(lat) * normal[1],
       (1.0 - first_eccentricity2) * (across_m(lat) * normal[2] - across_m(lat0) * std::sin(lat0))};
   const double upwards = std::cos(lat0) * normal[0] + std::sin(lat0) * normal[2];
-  if (!(upwards > 0.0)) throw std::invalid_argument("geo: a place beyond the horizon of the scene");
+  if (!(upwards > 0.0)) {
+    throw std::invalid_argument("beyond the horizon of the scene; expected a place on its side of the Earth");
+  }
   const double below_m = std::cos(lat0) * from_origin_m[0] + std::sin(lat0) * from_origin_m[2];
   const auto on_plane_m = [&](std::size_t axis) { return from_origin_m[axis] - below_m / upwards * normal[axis]; };
   return {on_plane_m(1), std::cos(lat0) * on_plane_m(2) - std::sin(lat0) * on_plane_m(0)};
 }
 
 }  // namespace
+
+std::optional<UtmZone> utm_zone_named(std::string_view name) {
+  const bool has_ends = name.starts_with("utm") && (name.ends_with('n') || name.ends_with('s'));
+  if (!has_ends || name.size() < 5) return std::nullopt;
+  const char* const end = name.data() + name.size() - 1;
+  UtmZone zone{0, name.ends_with('n')};
+  const auto [rest, error] = std::from_chars(name.data() + 3, end, zone.number);
+  if (error != std::errc{} || rest != end || zone.number < 1 || zone.number > 60) return std::nullopt;
+  return zone;
+}
 
 std::array<double, 2> point_in_scene_m(const GeoAnchor& anchor, double lat_deg, double lon_deg) {
   if (const auto* origin = std::get_if<GeoOrigin>(&anchor)) return point_on_plane(*origin, lat_deg, lon_deg);

@@ -56,7 +56,7 @@ GeoPlace place_from_utm(const UtmFrame& frame, double easting_m, double northing
                                    place.north_deg, scale);
     return place;
   } catch (const GeographicLib::GeographicErr& error) {
-    throw std::invalid_argument(std::string("geo: no place in UTM (") + error.what() +
+    throw std::invalid_argument(std::string("no place in UTM (") + error.what() +
                                 "); expected a scene within the zone");
   }
 }

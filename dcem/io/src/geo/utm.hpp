@@ -1,8 +1,10 @@
 #pragma once
 /// Longitudes and latitudes on the plane (UTM, WGS 84), by GeographicLib. Private to dcem::io.
 ///
-/// Without GeographicLib all of them throw std::logic_error: `knows_utm` is asked first.
+/// Without GeographicLib all that know places throw std::logic_error: `knows_utm` is asked first.
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "dcem/geometry/vector.hpp"
 #include "dcem/io/geo_anchor.hpp"
@@ -20,6 +22,9 @@ struct UtmZone {
   /// As scenarios name it: "utm32n".
   std::string name() const { return "utm" + std::to_string(number) + (is_north ? 'n' : 's'); }
 };
+
+/// The zone of such a name; nothing where there is none.
+std::optional<UtmZone> utm_zone_named(std::string_view name);
 
 /// "GeographicLib 2.1.2", or "no GeographicLib".
 std::string utm_library();

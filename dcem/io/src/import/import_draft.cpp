@@ -7,10 +7,13 @@
 
 #include "dcem/io/atomic_file.hpp"
 #include "dcem/io/input_error.hpp"
+#include "dcem/io/scenario.hpp"
 #include "dcem/io/src/import/import_report.hpp"
 #include "dcem/io/src/import/town_mesh.hpp"
 #include "dcem/io/src/scenario/keys/blocks.hpp"
+#include "dcem/io/src/scenario/limits.hpp"
 #include "dcem/io/src/text/text_input.hpp"
+#include "dcem/io/src/text/unwritten_files.hpp"
 
 namespace dcem::io {
 
@@ -26,26 +29,40 @@ struct Look {
 constexpr std::array<Look, 4> looks{
     {{"roof", "0.55 0.33 0.28"}, {"ground", "0.35 0.38 0.33"}, {"metal", "0.6 0.65 0.7"}, {"wall", "0.75 0.72 0.66"}}};
 
-/// The lines of a material by its name: what stands behind `_` is the ITU's ("wall_brick"), without it concrete, whose
-/// table reaches from 1 to 100 GHz.
-std::string usual_material(const std::string& name) {
-  std::string text;
+/// A material by its name: what stands behind `_` is the ITU's ("wall_brick"), without it concrete, whose table reaches
+/// from 1 to 100 GHz.
+MaterialDraft usual_material(const std::string& name, const std::string& place) {
+  std::string colour;
   for (const Look& look : looks) {
-    if (name.starts_with(look.beginning)) text = "Kd " + std::string(look.colour) + '\n';
+    if (name.starts_with(look.beginning)) colour = "Kd " + std::string(look.colour) + '\n';
   }
-  if (name == "metal") return text + "em_model pec\n";
-  const std::size_t place = name.find('_');
-  const std::string itu = place == std::string::npos ? "concrete" : name.substr(place + 1);
-  return text + "em_model itu\nem_itu " + itu + '\n';
+  MaterialDraft material(name, place, colour);
+  material.add("model", name == "metal" ? "pec" : "itu");
+  const std::size_t mark = name.find('_');
+  if (name != "metal") material.add("itu", mark == std::string::npos ? "concrete" : name.substr(mark + 1));
+  return material;
 }
 
-std::string mtl_text(const ImportDraft& draft) {
+/// Where messages say that the frequency comes from.
+std::string frequency_place(const ImportDraft& draft, const ImportSettings& settings) {
+  const bool is_own = !settings.frequency_hz && !draft.frequency_source.empty();
+  return (is_own ? draft.frequency_source : draft.sources.front()).string();
+}
+
+double frequency_hz(const ImportDraft& draft, const ImportSettings& settings) {
+  return settings.frequency_hz.value_or(draft.frequency_hz.value_or(v2x_frequency_hz));
+}
+
+std::string mtl_text(const ImportDraft& draft, const ImportSettings& settings) {
   std::string text = "# Made by dcem import " + draft.importer + '\n';
   std::set<std::string> names = draft.scene.materials();
   if (draft.scenario.contains("mobility") || draft.scenario.contains("objects")) names.insert("metal");
   for (const std::string& name : names) {
-    const auto own = draft.mtl.find(name);
-    text += "newmtl " + name + '\n' + (own == draft.mtl.end() ? usual_material(name) : own->second);
+    const auto own = draft.materials.find(name);
+    const MaterialDraft material =
+        own == draft.materials.end() ? usual_material(name, draft.sources.front().string()) : own->second;
+    material.check(frequency_hz(draft, settings), frequency_place(draft, settings));
+    text += "newmtl " + name + '\n' + material.lines();
   }
   return text;
 }
@@ -87,10 +104,11 @@ std::vector<TownPart> plan_forests(std::vector<FoundHouse>&& forests, const std:
 nlohmann::ordered_json scenario_json(ImportDraft& draft, const ImportSettings& settings) {
   nlohmann::ordered_json scenario{{"format", "dcem-scenario/1"},
                                   {"scene", {{"obj", "scene.obj"}}},
-                                  {"frequency_hz", settings.frequency_hz.value_or(v2x_frequency_hz)}};
+                                  {"frequency_hz", frequency_hz(draft, settings)}};
   if (!draft.geo.is_null()) scenario["geo"] = draft.geo;
   if (!draft.vegetation.empty()) {
-    draft.scenario["objects"].push_back({{"id", "vegetation"}, {"obj", "vegetation.obj"}, {"foliage", true}});
+    draft.scenario["objects"].push_back(
+        {{"id", free_id(draft, "vegetation")}, {"obj", "vegetation.obj"}, {"foliage", true}});
   }
   for (auto& [key, block] : draft.scenario.items()) scenario[key] = std::move(block);
   return scenario;
@@ -139,6 +157,9 @@ std::vector<TownPart> build_outlines(FoundTown&& town, Vec2 low_m, Vec2 high_m, 
   widen(forests, low_m, high_m);
   low_m -= Vec2(settings.ground_margin_m);
   high_m += Vec2(settings.ground_margin_m);
+  if (glm::length(glm::max(glm::abs(low_m), glm::abs(high_m))) > farthest_coordinate_m) {
+    throw InputError(source.string(), "reaches farther than 1e9 m from its origin; expected a town");
+  }
   if (settings.terrain.empty()) {
     add_flat_ground(low_m, high_m, draft.scene);
   } else {
@@ -152,6 +173,33 @@ std::vector<TownPart> build_outlines(FoundTown&& town, Vec2 low_m, Vec2 high_m, 
   add_town(forests, Foot::closed, draft.vegetation, of_forests);
   if (!forests.empty()) report.made["forests"] = forests.size();
   return parts;
+}
+
+using NamedTexts = std::vector<std::pair<std::string, std::string>>;
+
+/// All files in the order in which they appear.
+NamedTexts all_texts(ImportDraft& draft, const ImportSettings& settings) {
+  const std::string comment = "Made by dcem import " + draft.importer;
+  NamedTexts texts{{"scene.obj", draft.scene.text(comment, "scene.mtl")}, {"scene.mtl", mtl_text(draft, settings)}};
+  if (!draft.vegetation.empty()) texts.emplace_back("vegetation.obj", draft.vegetation.text(comment, "scene.mtl"));
+  draft.report.made["triangles or polygons"] = draft.scene.faces() + draft.vegetation.faces();
+  texts.emplace_back("scenario.json", scenario_json(draft, settings).dump(1) + '\n');
+  texts.emplace_back("report.json", whole_report(draft, settings).dump(1) + '\n');
+  return texts;
+}
+
+/// Importers look at what they read where it stands. What they overlook must not become a scenario that does not run.
+void check_loads(const ImportDraft& draft, const NamedTexts& texts, const std::filesystem::path& folder) {
+  UnwrittenFiles::Texts files;
+  for (const auto& [name, text] : texts) files.emplace(folder / name, text);
+  const UnwrittenFiles unwritten(std::move(files));
+  try {
+    load_scenario(folder / "scenario.json");
+  } catch (const InputError& error) {
+    throw InputError(draft.sources.front().string(), "would become a scenario that does not run (" +
+                                                         std::string(error.what()) +
+                                                         "); expected a source of one that does");
+  }
 }
 
 }  // namespace
@@ -170,19 +218,10 @@ std::vector<TownPart> build_town(FoundTown&& town, Vec2 low_m, Vec2 high_m, cons
 
 ImportReport write_import(ImportDraft&& draft, const std::filesystem::path& folder, const ImportSettings& settings) {
   OutputFolder files(folder);
-  const std::string comment = "Made by dcem import " + draft.importer;
-  files.open("scene.obj").write(draft.scene.text(comment, "scene.mtl"));
-  files.open("scene.mtl").write(mtl_text(draft));
-  std::vector<std::string> former;
-  if (draft.vegetation.empty()) {
-    former.push_back("vegetation.obj");
-  } else {
-    files.open("vegetation.obj").write(draft.vegetation.text(comment, "scene.mtl"));
-  }
-  draft.report.made["triangles or polygons"] = draft.scene.faces() + draft.vegetation.faces();
-  files.open("scenario.json").write(scenario_json(draft, settings).dump(1) + '\n');
-  files.open("report.json").write(whole_report(draft, settings).dump(1) + '\n');
-  files.commit(former);
+  const NamedTexts texts = all_texts(draft, settings);
+  check_loads(draft, texts, files.path());
+  for (const auto& [name, text] : texts) files.open(name).write(text);
+  files.commit(draft.vegetation.empty() ? std::vector<std::string>{"vegetation.obj"} : std::vector<std::string>{});
   return std::move(draft.report);
 }
 
@@ -204,7 +243,9 @@ void check_settings(const ImportSettings& settings, const std::filesystem::path&
   check("margin of the ground", settings.ground_margin_m, {0.0, 1e5});
   check("snap tolerance", settings.snap_tolerance_m, {0.001, 10.0});
   check("smallest house", settings.smallest_house_m2, {0.01, 1e6});
-  check("frequency", settings.frequency_hz.value_or(v2x_frequency_hz), {0.0, 1e15, true});
+  const keys::KeyRule* frequency = keys::find_key(keys::scenario_block(), "frequency_hz");
+  check("frequency", settings.frequency_hz.value_or(v2x_frequency_hz),
+        keys::find_form(frequency->forms, keys::ValueKind::number)->range);
 }
 
 nlohmann::ordered_json geo_json(const UtmZone& zone, const Vec2& utm_m, const std::filesystem::path& source,
@@ -236,17 +277,28 @@ double ground_m(const ImportDraft& draft, const Vec2& point_m) {
 
 nlohmann::ordered_json mast_json(const ImportDraft& draft, const std::vector<TownPart>& parts, const Vec2& point_m) {
   const double height_m = std::max(ground_m(draft, point_m) + 25.0, roof_height_m(parts, point_m) + 5.0);
-  return {{"id", "mast"}, {"position_m", {point_m.x, point_m.y, height_m}}, {"power_dbm", 30}};
+  return {{"id", free_id(draft, "mast")}, {"position_m", {point_m.x, point_m.y, height_m}}, {"power_dbm", 30}};
 }
 
 nlohmann::ordered_json town_propagation_json() {
   return {{"max_reflections", 2}, {"max_transmissions", 0}, {"max_diffractions", 1}, {"max_interactions", 2}};
 }
 
+std::string free_id(const ImportDraft& draft, std::string id) {
+  while (draft.vehicles.contains(id)) id += '_';
+  return id;
+}
+
 std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
-  return std::filesystem::absolute(file)
-      .lexically_normal()
-      .lexically_relative(std::filesystem::absolute(folder).lexically_normal())
+  std::error_code ignored;  // where links cannot be followed, the names alone count
+  const auto real = [&](const std::filesystem::path& path) {
+    const std::filesystem::path plain = std::filesystem::absolute(path).lexically_normal();
+    const std::filesystem::path followed = std::filesystem::weakly_canonical(plain, ignored);
+    return ignored ? plain : followed;
+  };
+  const std::filesystem::path from = real(folder.empty() ? "." : folder);
+  return (real(std::filesystem::absolute(file).parent_path()) / file.filename())
+      .lexically_relative(from)
       .generic_string();
 }
 

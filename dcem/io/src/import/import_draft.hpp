@@ -4,12 +4,14 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "dcem/io/import.hpp"
 #include "dcem/io/src/geo/utm.hpp"
 #include "dcem/io/src/import/city_plan.hpp"
+#include "dcem/io/src/import/material_draft.hpp"
 #include "dcem/io/src/import/obj_draft.hpp"
 #include "dcem/io/src/import/terrain.hpp"
 
@@ -19,9 +21,12 @@ struct ImportDraft {
   std::string importer;                        ///< "sumo"
   std::vector<std::filesystem::path> sources;  ///< files that were read
   ObjDraft scene, vegetation;
-  std::map<std::string, std::string> mtl;  ///< lines of a material by its name; others are made by their names
-  nlohmann::ordered_json scenario;         ///< blocks of the importer's own
-  nlohmann::ordered_json geo;              ///< where the scene lies; null where that is not known
+  std::set<std::string> vehicles;                  ///< of a trace: ids that nothing else may have
+  std::map<std::string, MaterialDraft> materials;  ///< by their names; others are made by their names
+  std::optional<double> frequency_hz;              ///< as the source says, or the program that it is for
+  std::filesystem::path frequency_source;          ///< the file that says it; empty: the first source
+  nlohmann::ordered_json scenario;                 ///< blocks of the importer's own
+  nlohmann::ordered_json geo;                      ///< where the scene lies; null where that is not known
   ImportReport report;
   std::optional<Terrain> terrain;  ///< in the scene's coordinates; absent: flat
 };
@@ -38,7 +43,8 @@ std::vector<TownPart> build_town(FoundTown&& town, Vec2 low_m, Vec2 high_m, cons
                                  const std::filesystem::path& source, ImportDraft& draft);
 
 /// `scene`, `frequency_hz`, `objects` for vegetation and so on around the importer's blocks; all files appear at once.
-/// Throws OutputError.
+/// The scenario is read before, as for a run: what `dcem run` would refuse is not written. Throws OutputError, and
+/// InputError with the name of a source.
 ImportReport write_import(ImportDraft&& draft, const std::filesystem::path& folder, const ImportSettings& settings);
 
 /// Throws InputError where this build has no GEOS.
@@ -61,6 +67,9 @@ double ground_m(const ImportDraft& draft, const Vec2& point_m);
 nlohmann::ordered_json mast_json(const ImportDraft& draft, const std::vector<TownPart>& parts, const Vec2& point_m);
 /// Orders of paths that a town can be run with at once.
 nlohmann::ordered_json town_propagation_json();
+
+/// This id, or one like it that no vehicle has.
+std::string free_id(const ImportDraft& draft, std::string id);
 
 /// A file's name as a scenario in `folder` refers to it.
 std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file);

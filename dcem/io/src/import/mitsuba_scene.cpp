@@ -1,6 +1,7 @@
 #include "dcem/io/src/import/mitsuba_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "dcem/geometry/vector.hpp"
@@ -56,6 +57,7 @@ class MitsubaReader : private XmlHandler {
     if (is_wrapped) return;
     if (scene_.materials.contains(id)) reader_.fail("bsdf " + in_quotes(id) + " is there already; expected a new id");
     scene_.materials[id].type = text(attributes, "type");
+    scene_.materials[id].line = reader_.line();
     if (is_in("shape")) scene_.shapes.back().material = id;
   }
 
@@ -72,7 +74,7 @@ class MitsubaReader : private XmlHandler {
   void add_word(const XmlAttributes& attributes) {
     const std::string name = text(attributes, "name"), value = text(attributes, "value");
     if (is_directly_in("shape") && name == "filename") scene_.shapes.back().file = value;
-    if (is_directly_in("bsdf")) scene_.materials[material_ids_.back()].words[name] = value;
+    if (is_directly_in("bsdf")) scene_.materials[material_ids_.back()].words[name] = {value, reader_.line()};
   }
 
   void add_number(const XmlAttributes& attributes) {
@@ -81,7 +83,7 @@ class MitsubaReader : private XmlHandler {
     const std::string_view value = attributes.find("value").value_or("");
     const std::optional<double> number = parse_number(trimmed(value));
     if (!number) reader_.fail("float '" + name + "': found " + in_quotes(value) + "; expected a number");
-    scene_.materials[material_ids_.back()].numbers[name] = *number;
+    scene_.materials[material_ids_.back()].numbers[name] = {*number, reader_.line()};
   }
 
   /// Numbers with blanks or commas between.
@@ -124,7 +126,8 @@ class MitsubaReader : private XmlHandler {
     } else if (name == "rotate") {
       const Vec3 axis = vector(attributes, 0.0);
       const std::vector<double> angle_deg = numbers(attributes, "angle");
-      if (angle_deg.size() != 1 || glm::length(axis) == 0.0)
+      const double length = glm::length(axis);
+      if (angle_deg.size() != 1 || !(length > 0.0) || !std::isfinite(length))
         reader_.fail("rotate: without axis or angle; expected an axis and an angle in degrees");
       to_world = glm::rotate(glm::dmat4(1.0), glm::radians(angle_deg[0]), axis) * to_world;
     } else if (name == "matrix") {

@@ -9,11 +9,19 @@
 
 namespace dcem::io {
 
+/// What a `string` or a `float` says.
+template <typename Value>
+struct MitsubaEntry {
+  Value value{};
+  std::size_t line = 0;
+};
+
 /// A `bsdf`: what it says of radio, and nothing of light.
 struct MitsubaMaterial {
-  std::string type;                          ///< "itu-radio-material", "radio-material", "twosided", …
-  std::map<std::string, std::string> words;  ///< `string` elements
-  std::map<std::string, double> numbers;     ///< `float` elements
+  std::string type;  ///< "itu-radio-material", "radio-material", "twosided", …
+  std::size_t line = 0;
+  std::map<std::string, MitsubaEntry<std::string>> words;
+  std::map<std::string, MitsubaEntry<double>> numbers;
 };
 
 struct MitsubaShape {

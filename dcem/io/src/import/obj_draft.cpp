@@ -6,7 +6,11 @@ namespace dcem::io {
 
 std::string obj_word(const std::string& name) {
   std::string word;
-  for (const char letter : name) word += static_cast<unsigned char>(letter) <= ' ' || letter == '#' ? '_' : letter;
+  for (const char letter : name) {
+    const auto code = static_cast<unsigned char>(letter);
+    const bool means_more = code <= ' ' || code == 0x7F || letter == '#' || letter == '\\';
+    word += means_more ? '_' : letter;
+  }
   return word.empty() ? "_" : word;
 }
 

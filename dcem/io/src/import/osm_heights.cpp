@@ -12,7 +12,9 @@ namespace {
 
 using Tags = std::map<std::string, std::string>;
 
-/// "12", "12 m", "12.5m", "40 ft", "40'": a length in metres above 0, at most 1000.
+constexpr double highest_m = 1000.0, most_levels = 200.0;
+
+/// "12", "12 m", "12.5m", "40 ft", "40'": a length in metres above 0, at most `highest_m`.
 std::optional<double> length_of(std::string_view text) {
   text = trimmed(text);
   double unit_m = 1.0;
@@ -23,16 +25,27 @@ std::optional<double> length_of(std::string_view text) {
     break;
   }
   const std::optional<double> number = parse_number(text);
-  if (!number || *number <= 0.0 || *number * unit_m > 1000.0) return std::nullopt;
+  if (!number || *number <= 0.0 || *number * unit_m > highest_m) return std::nullopt;
   return *number * unit_m;
 }
 
-std::optional<double> number_of(const Tags& tags, const char* key, double most) {
+/// A number of storeys; what is there and is none is counted.
+std::optional<double> levels_of(const Tags& tags, const char* key, ImportReport& report) {
   const auto found = tags.find(key);
   if (found == tags.end()) return std::nullopt;
   const std::optional<double> number = parse_number(trimmed(found->second));
-  if (!number || *number < 0.0 || *number > most) return std::nullopt;
-  return number;
+  if (number && *number >= 0.0 && *number <= most_levels) return number;
+  ++report.repaired["numbers of storeys that are none"];
+  return std::nullopt;
+}
+
+/// `height`; what is there and is none is counted.
+std::optional<double> height_of(const Tags& tags, ImportReport& report) {
+  const auto found = tags.find("height");
+  if (found == tags.end()) return std::nullopt;
+  const std::optional<double> height_m = length_of(found->second);
+  if (!height_m) ++report.repaired["heights that are no length"];
+  return height_m;
 }
 
 /// Words of `building:material` and `roof:material` that the ITU has a table for.
@@ -65,29 +78,25 @@ double rounded_m(double height_m) {
 }  // namespace
 
 void apply_tags(const Tags& tags, const ImportSettings& settings, FoundHouse& house, ImportReport& report) {
-  constexpr double most_levels = 200.0;
-  const auto height = tags.find("height");
-  const std::optional<double> height_m = height == tags.end() ? std::nullopt : length_of(height->second);
-  const std::optional<double> levels = number_of(tags, "building:levels", most_levels);
+  const std::optional<double> height_m = height_of(tags, report);
+  const std::optional<double> levels = levels_of(tags, "building:levels", report);
+  const double roof_levels = levels_of(tags, "roof:levels", report).value_or(0.0);
   if (height_m) {
     house.height_m = rounded_m(*height_m);
     ++report.read["heights from 'height'"];
   } else if (levels && *levels > 0.0) {
-    const double roof_levels = number_of(tags, "roof:levels", most_levels).value_or(0.0);
     house.height_m = rounded_m((*levels + roof_levels) * settings.level_height_m);
     ++report.read["heights from 'building:levels'"];
   } else {
     house.height_m = settings.default_height_m;
     ++report.read["heights by default"];
   }
-  if (height != tags.end() && !height_m) ++report.repaired["heights that are no length"];
   apply_material(tags, "building:material", house.wall);
   apply_material(tags, "roof:material", house.roof);
 }
 
-double tree_height_m(const Tags& tags, const ImportSettings& settings) {
-  const auto height = tags.find("height");
-  const std::optional<double> height_m = height == tags.end() ? std::nullopt : length_of(height->second);
+double tree_height_m(const Tags& tags, const ImportSettings& settings, ImportReport& report) {
+  const std::optional<double> height_m = height_of(tags, report);
   return height_m ? rounded_m(*height_m) : settings.tree_height_m;
 }
 

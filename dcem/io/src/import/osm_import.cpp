@@ -191,7 +191,7 @@ class OsmImport {
   void keep(const OsmTags& tags, FoundHouse&& found) {
     const bool is_house = tags.contains("building") || tags.contains("building:part");
     if (!is_house) {
-      found.height_m = tree_height_m(tags, settings_);
+      found.height_m = tree_height_m(tags, settings_, draft_.report);
       found.wall = found.roof = "foliage";
       town_.forests.push_back(std::move(found));
       return;

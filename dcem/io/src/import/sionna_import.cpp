@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "dcem/io/import.hpp"
@@ -8,7 +9,7 @@
 #include "dcem/io/src/import/mitsuba_scene.hpp"
 #include "dcem/io/src/import/outlines.hpp"
 #include "dcem/io/src/import/ply_reader.hpp"
-#include "dcem/io/src/text/number_text.hpp"
+#include "dcem/io/src/scenario/limits.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
 namespace dcem::io {
@@ -41,9 +42,9 @@ class SionnaImport {
     draft_.report.read["materials"] = scene.materials.size();
     for (const MitsubaShape& shape : scene.shapes) add_shape(shape, scene);
     if (draft_.scene.empty()) throw InputError(source_.string(), "holds no surface; expected shapes of type ply");
-    for (const std::string& name : draft_.scene.materials()) describe(name, scene);
+    for (const auto& [id, name] : material_names_) describe(id, name, scene.materials.at(id));
     add_devices();
-    draft_.scenario["frequency_hz"] = settings_.frequency_hz.value_or(sionna_frequency_hz);
+    draft_.frequency_hz = sionna_frequency_hz;
     return write_import(std::move(draft_), folder_, settings_);
   }
 
@@ -54,42 +55,54 @@ class SionnaImport {
       return;
     }
     if (!scene.materials.contains(shape.material)) {
-      throw InputError(source_.string(), shape.line,
-                       "shape " + in_quotes(shape.id) + ": material " + in_quotes(shape.material) +
-                           " is nowhere defined; expected the id of a bsdf");
+      fail(shape, "material " + in_quotes(shape.material) + " is nowhere defined; expected the id of a bsdf");
     }
     const PlyMesh mesh = shape.type == "ply" ? read_mesh(shape) : own_mesh(shape.type);
     if (mesh.faces_without_area > 0) {
       draft_.report.skipped["faces with fewer than three corners"] += mesh.faces_without_area;
     }
     const std::string material = material_name(shape.material);
-    material_ids_.emplace(material, shape.material);
     draft_.scene.start_group(shape.id);
+    check_size(mesh, shape);
     for (const std::vector<std::size_t>& face : mesh.faces) {
       std::vector<Vec3> corners_m;
       for (const std::size_t corner : face) corners_m.push_back(placed(mesh.vertices_m[corner], shape));
+      for (const Vec3& corner_m : corners_m) widen(corner_m);
       draft_.scene.face(material, corners_m);
       faces_m_.push_back(std::move(corners_m));
     }
     ++draft_.report.made["objects"];
   }
 
-  Vec3 placed(const Vec3& corner_m, const MitsubaShape& shape) {
+  [[noreturn]] void fail(const MitsubaShape& shape, const std::string& what) const {
+    throw InputError(source_.string(), shape.line, "shape " + in_quotes(shape.id) + ": " + what);
+  }
+
+  /// A shape that its transform makes smaller than what is welded together is a slip of the transform.
+  void check_size(const PlyMesh& mesh, const MitsubaShape& shape) const {
+    constexpr double smallest_m = 1e-4;
+    Vec3 low_m(std::numeric_limits<double>::infinity()), high_m(-low_m);
+    for (const Vec3& corner_m : mesh.vertices_m) {
+      low_m = glm::min(low_m, placed(corner_m, shape));
+      high_m = glm::max(high_m, placed(corner_m, shape));
+    }
+    if (mesh.vertices_m.empty() || glm::distance(low_m, high_m) >= smallest_m) return;
+    fail(shape, "is " + number_text(glm::distance(low_m, high_m)) +
+                    " m large; expected at least 0.0001 m, by its mesh "
+                    "and its to_world");
+  }
+
+  Vec3 placed(const Vec3& corner_m, const MitsubaShape& shape) const {
     const Vec3 there_m =
         shape.to_world == glm::dmat4(1.0) ? corner_m : Vec3(shape.to_world * glm::dvec4(corner_m, 1.0));
-    low_m_ = glm::min(low_m_, there_m);
-    high_m_ = glm::max(high_m_, there_m);
-    return there_m;
+    if (glm::length(there_m) <= farthest_coordinate_m) return there_m;
+    fail(shape, "a corner too far away; expected points within 1e9 m of the origin, by its mesh and its to_world");
   }
 
   PlyMesh read_mesh(const MitsubaShape& shape) const {
     const std::filesystem::path file = source_.parent_path() / shape.file;
-    std::error_code ignored;
-    if (shape.file.empty() || !std::filesystem::is_regular_file(file, ignored)) {
-      throw InputError(
-          source_.string(), shape.line,
-          "shape " + in_quotes(shape.id) + ": file " + in_quotes(shape.file) + " is not there; expected a PLY mesh");
-    }
+    const std::optional<std::string> trouble = shape.file.empty() ? "is not there" : trouble_of_named(file);
+    if (trouble) fail(shape, "file " + in_quotes(shape.file) + " " + *trouble + "; expected a PLY mesh");
     return read_ply(file);
   }
 
@@ -107,42 +120,57 @@ class SionnaImport {
     return mesh;
   }
 
-  static std::string material_name(const std::string& id) {
-    return obj_word(id.starts_with("mat-") && id.size() > 4 ? id.substr(4) : id);
+  /// The name of a material in the OBJ file. Ids that would have the same name there keep apart.
+  std::string material_name(const std::string& id) {
+    const auto known = material_names_.find(id);
+    if (known != material_names_.end()) return known->second;
+    std::string name = obj_word(id.starts_with("mat-") && id.size() > 4 ? id.substr(4) : id);
+    const auto is_taken = [&](const auto& other) { return other.second == name; };
+    while (std::any_of(material_names_.begin(), material_names_.end(), is_taken)) name += '_';
+    return material_names_.emplace(id, name).first->second;
   }
 
-  /// The lines of a material in the MTL file.
-  void describe(const std::string& name, const MitsubaScene& scene) {
-    const std::string& id = material_ids_.at(name);
-    const MitsubaMaterial& material = scene.materials.at(id);
-    std::string text;
-    if (material.type == "radio-material") {
-      text = "em_model dielectric\n";
-      put(material, "relative_permittivity", "eta_r", "em_relative_permittivity", text);
-      put(material, "conductivity", "sigma", "em_conductivity_s_per_m", text);
+  std::string place(std::size_t line, const std::string& id) const {
+    return source_.string() + ":" + std::to_string(line) + ": bsdf " + in_quotes(id);
+  }
+
+  void describe(const std::string& id, const std::string& name, const MitsubaMaterial& source) {
+    MaterialDraft material(name, place(source.line, id));
+    if (source.type == "radio-material") {
+      material.add("model", "dielectric");
+      put(source, "relative_permittivity", "eta_r", "relative_permittivity", id, material);
+      put(source, "conductivity", "sigma", "conductivity_s_per_m", id, material);
     } else {
-      const auto word = material.words.find("type");
-      std::optional<std::string> itu = itu_name(id);
-      if (material.type == "itu-radio-material" && word != material.words.end()) itu = word->second;
-      if (!itu) {
-        itu = "concrete";
-        ++draft_.report.repaired["materials that say nothing of radio, taken for concrete"];
-      }
-      text = "em_model itu\nem_itu " + *itu + '\n';
+      material.add("model", "itu");
+      put_itu(source, id, material);
     }
-    put(material, "thickness", "", "em_thickness_m", text);
-    put(material, "scattering_coefficient", "", "em_scattering", text);
-    has_slabs_ = has_slabs_ || text.find("em_thickness_m") != std::string::npos;
-    draft_.mtl[name] = text;
+    put(source, "thickness", "", "thickness_m", id, material);
+    put(source, "scattering_coefficient", "", "scattering", id, material);
+    has_slabs_ = has_slabs_ || material.has("thickness_m");
+    draft_.materials.emplace(name, std::move(material));
   }
 
-  static void put(const MitsubaMaterial& material, const char* name, const char* other_name, const char* key,
-                  std::string& text) {
-    auto found = material.numbers.find(name);
-    if (found == material.numbers.end()) found = material.numbers.find(other_name);
-    if (found == material.numbers.end()) return;
-    append_number(text += std::string(key) + ' ', found->second);
-    text += '\n';
+  void put_itu(const MitsubaMaterial& source, const std::string& id, MaterialDraft& material) {
+    const auto word = source.words.find("type");
+    if (source.type == "itu-radio-material" && word != source.words.end()) {
+      return material.add("itu", word->second.value, place(word->second.line, id), "type");
+    }
+    std::optional<std::string> itu = itu_name(id);
+    if (!itu) ++draft_.report.repaired["materials that say nothing of radio, taken for concrete"];
+    material.add("itu", itu.value_or("concrete"));
+  }
+
+  void put(const MitsubaMaterial& source, const char* name, const char* other_name, const char* key,
+           const std::string& id, MaterialDraft& material) const {
+    auto found = source.numbers.find(name);
+    if (found == source.numbers.end()) found = source.numbers.find(other_name);
+    if (found == source.numbers.end()) return;
+    material.add(key, number_text(found->second.value), place(found->second.line, id), found->first);
+  }
+
+  void widen(const Vec3& corner_m) {
+    low_m_ = glm::min(low_m_, corner_m);
+    high_m_ = glm::max(high_m_, corner_m);
   }
 
   /// Whether a face is above a point.
@@ -188,7 +216,7 @@ class SionnaImport {
   std::filesystem::path source_, folder_;
   const ImportSettings& settings_;
   ImportDraft draft_;
-  std::map<std::string, std::string> material_ids_;  ///< by name in the OBJ file
+  std::map<std::string, std::string> material_names_;  ///< in the OBJ file, by id
   std::vector<std::vector<Vec3>> faces_m_;
   Vec3 low_m_{1e9}, high_m_{-1e9};
   bool has_slabs_ = false;

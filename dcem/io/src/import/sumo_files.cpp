@@ -33,6 +33,7 @@ class SumoFileReader : private XmlHandler {
 
  private:
   void start_element(std::string_view name, const XmlAttributes& attributes) override {
+    if (contents_.root.empty()) contents_.root = name;
     if (name == "location") read_location(attributes);
     if (name == "poly" || name == "polygon") read_polygon(attributes);
     if (name == "param" && in_polygon_) read_parameter(attributes);

@@ -31,11 +31,15 @@ struct SumoPolygon {
 
 /// What stands in a network, a file of polygons or an additional file.
 struct SumoContents {
+  std::string root;  ///< the outermost element
   std::optional<SumoLocation> location;
   std::vector<SumoPolygon> polygons;
   std::vector<Ring> lanes;              ///< shapes of lanes outside of junctions
   std::set<std::string> vehicle_types;  ///< ids
   std::size_t points_of_interest = 0;
+
+  /// Whether anything in it goes into a scene, or is left out by name.
+  bool says_something() const { return !polygons.empty() || !vehicle_types.empty() || points_of_interest > 0; }
 };
 
 /// Reads the file, plain or .gz. Throws InputError with the line.

@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "dcem/io/import.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/import/import_draft.hpp"
 #include "dcem/io/src/import/osm_heights.hpp"
 #include "dcem/io/src/import/sumo_files.hpp"
+#include "dcem/io/src/text/text_input.hpp"
 #include "dcem/io/src/traffic/trace_survey.hpp"
 
 namespace dcem::io {
@@ -12,6 +15,9 @@ namespace dcem::io {
 namespace {
 
 constexpr std::size_t most_points = 10;
+
+/// Outermost elements of files that SUMO and its tools write. SUMO itself takes any.
+constexpr std::array<std::string_view, 4> usual_roots{"additional", "add", "routes", "shapes"};
 
 bool is_forest(const std::string& type) {
   return type == "forest" || type == "wood" || type == "natural.wood" || type == "landuse.forest";
@@ -45,6 +51,7 @@ class SumoImport {
  private:
   /// What the user names counts; the configuration says the rest.
   void read_configuration() {
+    named_ = files_.additional;
     std::string name = files_.network.filename().string();
     if (name.find(".sumocfg") == std::string::npos) return;
     const SumoConfiguration configuration = read_sumo_configuration(files_.network);
@@ -70,18 +77,36 @@ class SumoImport {
     if (!network.location) {
       throw InputError(files_.network.string(), "holds no location; expected a SUMO network with netOffset");
     }
+    if (network.root != "net") {
+      throw InputError(files_.network.string(), "the root element is " + in_quotes(network.root) +
+                                                    "; expected net, a SUMO network, or a .sumocfg by its name");
+    }
     draft_.report.read["lanes"] = network.lanes.size();
     return network;
   }
 
   void read_polygons() {
-    if (!files_.polygons.empty()) add_contents(files_.polygons);
+    if (!files_.polygons.empty() && add_contents(files_.polygons) == 0) {
+      throw InputError(files_.polygons.string(), "holds no polygons; expected SUMO's (poly elements)");
+    }
     for (const std::filesystem::path& file : files_.additional) add_contents(file);
     if (files_.polygons.empty()) files_.polygons = files_.network;  // what messages speak of
   }
 
-  void add_contents(const std::filesystem::path& file) {
+  /// What a configuration names may be of no interest here; what the user names is meant.
+  void check_of_use(const std::filesystem::path& file, const SumoContents& contents) {
+    if (contents.says_something() || std::ranges::count(named_, file) == 0) return;
+    if (std::ranges::count(usual_roots, contents.root) == 0) {
+      throw InputError(file.string(), "the root element is " + in_quotes(contents.root) +
+                                          "; expected additional or routes, with polygons or vehicle types");
+    }
+    ++draft_.report.skipped["additional files without polygons and vehicle types"];
+  }
+
+  /// Returns how many polygons the file holds.
+  std::size_t add_contents(const std::filesystem::path& file) {
     SumoContents contents = read_sumo_file(file, "expected a SUMO additional file");
+    check_of_use(file, contents);
     draft_.sources.push_back(file);
     const Vec2 shift_m = shift_of(contents);
     for (SumoPolygon& polygon : contents.polygons) {
@@ -92,6 +117,7 @@ class SumoImport {
     }
     if (contents.points_of_interest > 0) draft_.report.skipped["points of interest"] += contents.points_of_interest;
     add_types(file, contents.vehicle_types);
+    return contents.polygons.size();
   }
 
   /// Polygons may have been made with another offset than the network.
@@ -138,7 +164,7 @@ class SumoImport {
         apply_tags(polygon.parameters, settings_, found, draft_.report);
         town.houses.push_back(std::move(found));
       } else {
-        found.height_m = tree_height_m(polygon.parameters, settings_);
+        found.height_m = tree_height_m(polygon.parameters, settings_, draft_.report);
         found.wall = found.roof = "foliage";
         town.forests.push_back(std::move(found));
       }
@@ -179,6 +205,7 @@ class SumoImport {
       throw InputError(files_.trace.string(), first.line,
                        "no vehicle in the first step; expected some to carry devices");
     }
+    for (const auto& [id, type] : survey.traffic.types_of_vehicles) draft_.vehicles.insert(id);
     draft_.report.read["steps of the trace"] = survey.step_times_s.size();
     draft_.report.read["types of vehicles in the trace"] = survey.traffic.types.size();
     mobility["devices"] = {{"vehicles", equipped(survey.traffic.types_of_vehicles.size())},
@@ -246,6 +273,7 @@ class SumoImport {
   std::vector<SumoPolygon> polygons_;
   std::set<std::string> known_types_;
   std::vector<std::filesystem::path> type_files_;
+  std::vector<std::filesystem::path> named_;  ///< additional files that the user names
 };
 
 }  // namespace

@@ -20,8 +20,6 @@ constexpr ValueRange sinr_colours_db{-10.0, 30.0};
 
 using Value = std::optional<double> CombinedMapPoint::*;
 
-constexpr std::size_t longest_category = 40;
-
 void write_csv(AtomicFile& file, const CombinedMap& map, std::string_view header, Value first, Value second) {
   std::vector<std::string> names;
   for (const std::string& id : map.transmitters) names.push_back(csv_field(id));
@@ -67,16 +65,6 @@ HeatMap picture_without_values(const CombinedMap& map, const MapOccasion& occasi
   return picture;
 }
 
-// Cut between characters, so that one endless id does not stretch the picture.
-std::string category_name(std::string id) {
-  if (character_count(id) <= longest_category) return id;
-  while (character_count(id) > longest_category - 3) {
-    while ((static_cast<unsigned char>(id.back()) & 0xC0U) == 0x80U) id.pop_back();
-    id.pop_back();
-  }
-  return id + "...";
-}
-
 }  // namespace
 
 void write_best_server_csv(AtomicFile& file, const CombinedMap& map) {
@@ -108,7 +96,7 @@ HeatMap best_server_picture(const CombinedMap& map, const Scene& scene, const Fr
                             std::optional<double> time_s) {
   HeatMap picture = picture_without_values(map, {scene, frame, frequency_hz, time_s}, "best server");
   picture.values = values_of(map, server_number);
-  for (const std::string& id : map.transmitters) picture.categories.push_back(category_name(id));
+  picture.categories = map.transmitters;
   return picture;
 }
 

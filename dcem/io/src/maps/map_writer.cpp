@@ -139,6 +139,9 @@ HeatMap map_picture(const RadioMap& map, const Scene& scene, const Frame& frame,
   HeatMap picture = empty_map_picture(map.grid(), occasion,
                                       map.places.id() + ", transmitter " + map.transmitter + ": incoherent power");
   picture.label = "incoherent received power";
+  // Of those that are drawn it chooses first where its name stands.
+  std::stable_partition(picture.transmitters.begin(), picture.transmitters.end(),
+                        [&](const auto& other) { return other.label == map.transmitter; });
   for (const RadioMapPoint& point : map.points) {
     picture.values.push_back(point.statistics.power_incoherent_dbm.value_or(no_value_db));
     hatch_point(picture, point);

@@ -13,6 +13,7 @@
 
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/mesh/polygon_cutter.hpp"
+#include "dcem/io/src/scenario/limits.hpp"
 #include "dcem/io/src/scenario/material_keys.hpp"
 #include "dcem/io/src/text/text_input.hpp"
 
@@ -24,7 +25,6 @@ namespace dcem::io {
 namespace {
 
 constexpr const char* obj_expectation = "expected a Wavefront OBJ file";
-constexpr double farthest_vertex_m = 1e9;
 constexpr std::size_t most_polygon_corners = 10'000;
 /// Of a text, for each vertex: room that turns out too large takes no memory, and too little of it only time.
 constexpr std::size_t usual_vertex_bytes = 32;
@@ -117,7 +117,7 @@ class ObjCheck {
       if (count < 3) point[count] = *number * settings_.unit_m;
     }
     if (count < 3) fail("v: " + std::to_string(count) + " numbers; expected at least 3 coordinates");
-    if (!(glm::length(point) <= farthest_vertex_m))
+    if (!(glm::length(point) <= farthest_coordinate_m))
       fail("v: too far away; expected a point within 1e9 m of the origin");
     result_.vertices_m.push_back(settings_.up == UpAxis::z ? point : Vec3(point.x, -point.z, point.y));
   }
@@ -301,8 +301,7 @@ class MtlReader {
 
 /// The files that an `mtllib` line names: one whose name holds blanks, or several.
 std::vector<std::filesystem::path> library_files(const std::filesystem::path& folder, const std::string& names) {
-  std::error_code ignored;
-  if (std::filesystem::exists(folder / names, ignored)) return {folder / names};
+  if (!trouble_of(folder / names)) return {folder / names};
   std::vector<std::filesystem::path> files;
   std::string_view rest = names;
   for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) files.push_back(folder / word);
@@ -312,11 +311,10 @@ std::vector<std::filesystem::path> library_files(const std::filesystem::path& fo
 void read_libraries(const std::filesystem::path& obj_file, const CheckedObj& checked, ObjFile& result) {
   for (const CheckedObj::Library& library : checked.libraries) {
     for (const std::filesystem::path& file : library_files(obj_file.parent_path(), library.names)) {
-      std::error_code ignored;
-      if (!std::filesystem::is_regular_file(file, ignored)) {
-        throw InputError(
-            obj_file.string(), library.line,
-            "mtllib: " + in_quotes(file.filename().string()) + " is not there; expected an MTL file beside the OBJ");
+      if (const auto trouble = trouble_of_named(file)) {
+        throw InputError(obj_file.string(), library.line,
+                         "mtllib: " + in_quotes(file.filename().string()) + " " + *trouble +
+                             "; expected an MTL file beside the OBJ");
       }
       MtlReader(file.string(), result.materials).read(read_text_file(file, "expected an MTL file"));
     }

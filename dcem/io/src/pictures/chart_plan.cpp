@@ -49,6 +49,10 @@ std::vector<ChartPiece> pieces_of(const LineChart& chart, const PictureFrame& fr
   return pieces;
 }
 
+std::string legend_name(const LineChart::Series& series) {
+  return fit_text(series.name, label_style, longest_name_px);
+}
+
 int legend_width_px(const std::string& name) {
   return legend_line_px + gap_px + label_length_px(name);
 }
@@ -58,7 +62,7 @@ std::vector<ChartLegendItem> upright_legend(const LineChart& chart, const PixelR
   std::vector<ChartLegendItem> items;
   PixelPoint place{double(plot.right() + chart_legend_gap_px), plot.y + 18.0};
   for (std::size_t series = 0; series < chart.series.size(); ++series, place.y += chart_legend_row_px) {
-    items.push_back({place, chart.series[series].name, series});
+    items.push_back({place, legend_name(chart.series[series]), series});
   }
   return items;
 }
@@ -69,8 +73,9 @@ std::vector<ChartLegendItem> level_legend(const LineChart& chart, const PixelRec
   if (chart.series.size() < 2) return items;
   double x = plot.right();
   for (std::size_t series = chart.series.size(); series-- > 0;) {
-    x -= legend_width_px(chart.series[series].name);
-    items.push_back({{x, plot.y - 0.5 * panel_legend_px}, chart.series[series].name, series});
+    const std::string name = legend_name(chart.series[series]);
+    x -= legend_width_px(name);
+    items.push_back({{x, plot.y - 0.5 * panel_legend_px}, name, series});
     x -= legend_between_px;
   }
   return items;
@@ -92,7 +97,8 @@ std::vector<PictureAxis> y_axes_of(std::span<const LineChart> charts, int length
 int widest_legend_px(std::span<const LineChart> charts) {
   int widest = 0;
   for (const LineChart& chart : charts) {
-    for (const LineChart::Series& series : chart.series) widest = std::max(widest, legend_width_px(series.name));
+    for (const LineChart::Series& series : chart.series)
+      widest = std::max(widest, legend_width_px(legend_name(series)));
   }
   return widest;
 }
@@ -112,7 +118,7 @@ void draw_chart(Canvas& canvas, const ChartPlan& chart) {
     canvas.draw_line(std::array{item.line, end}, series_stroke(item.series));
     canvas.draw_text({{end.x + gap_px, end.y}}, item.text, label_style);
   }
-  canvas.draw_text({chart.title_at}, chart.title.text, chart.title.style);
+  draw_title(canvas, chart.title, chart.title_at);
 }
 
 }  // namespace
@@ -124,7 +130,6 @@ Stroke series_stroke(std::size_t series) {
 
 ChartSheet plan_line_charts(std::span<const LineChart> charts) {
   check_charts(charts);
-  constexpr int plot_top_px = title_bottom_px;
   constexpr int between_px = 24;
   ChartSheet sheet;
   const std::vector<PictureAxis> y_axes = y_axes_of(charts, chart_plot_height_px);
@@ -136,11 +141,13 @@ ChartSheet plan_line_charts(std::span<const LineChart> charts) {
   }
   sheet.width_px = left + chart_plot_width_px + chart_legend_gap_px + widest_legend_px(charts) + margin_px;
   for (std::size_t index = 0; index < charts.size(); ++index) {
-    const PixelRect plot{left, sheet.height_px + plot_top_px, chart_plot_width_px, chart_plot_height_px};
+    const FittedTitle title = fit_title(charts[index].title, sheet.width_px - left - margin_px);
+    const int top = sheet.height_px + title_bottom_px + title.more_px();
+    const PixelRect plot{left, top, chart_plot_width_px, chart_plot_height_px};
     ChartPlan plan{{plot, x_axes[index], y_axes[index]}};
     plan.pieces = pieces_of(charts[index], plan.frame);
     plan.legend = upright_legend(charts[index], plot);
-    plan.title = fit_title(charts[index].title, sheet.width_px - left - margin_px);
+    plan.title = title;
     plan.title_at = {double(left), sheet.height_px + margin_px + 0.5 * title_style.capital_px()};
     sheet.charts.push_back(std::move(plan));
     sheet.height_px = plot.bottom() + x_axis_height_px() + between_px;
@@ -156,14 +163,15 @@ ChartSheet plan_panels(const std::string& title, std::span<const LineChart> char
   const int width = panel_page_px - left - 2 * margin_px;
   const PictureAxis x_axis = chart_x_axis(charts, width);
   sheet.title = fit_title(title, width);
+  sheet.height_px += sheet.title.more_px();
   for (std::size_t index = 0; index < charts.size(); ++index) {
     const PixelRect plot{left, sheet.height_px + panel_legend_px, width, panel_height_px};
     ChartPlan plan{{plot, x_axis, y_axes[index]}};
     if (index + 1 < charts.size()) plan.x_labels = AxisLabels::ticks_alone;
     plan.pieces = pieces_of(charts[index], plan.frame);
     plan.legend = level_legend(charts[index], plot);
-    plan.title = {"(" + std::string(1, static_cast<char>('a' + index)) + ") " + charts[index].title,
-                  {label_style.size_px, true}};
+    plan.title.text = "(" + std::string(1, static_cast<char>('a' + index)) + ") " + charts[index].title;
+    plan.title.style = {label_style.size_px, true};
     plan.title_at = {double(left), plot.y - 0.5 * panel_legend_px};
     sheet.charts.push_back(std::move(plan));
     sheet.height_px = plot.bottom() + panel_gap_px;

@@ -18,87 +18,8 @@ using namespace detail;
 constexpr Colour wall_colour{15, 15, 15};
 constexpr Colour window_colour{225, 240, 250};
 constexpr Colour marker_red{213, 47, 30};
-constexpr double marker_radius_px = 15.0;
-constexpr int label_padding_px = 6;
 const Stroke inner_stroke{{150, 150, 150}, 1.5};
 const Stroke contour_stroke{{0, 0, 0}, 2.0}, contour_seam{white, 5.0, 0.55};
-
-/// Areas that labels must not cover.
-class TakenPlaces {
- public:
-  explicit TakenPlaces(const PixelRect& plot) : plot_(plot) {}
-
-  void take(const PixelRect& area) { taken_.push_back(area); }
-  bool is_free(const PixelRect& area) const {
-    return intersection(area, plot_) == area && std::none_of(taken_.begin(), taken_.end(), [&](const PixelRect& other) {
-             const PixelRect shared = intersection(area, other);
-             return shared.width > 0 && shared.height > 0;
-           });
-  }
-
- private:
-  PixelRect plot_;
-  std::vector<PixelRect> taken_;
-};
-
-/// Liang and Barsky (1984): the part of a line within an area and a seam about it; nothing where there is none. What is
-/// far outside would be beyond the coordinates that can be drawn.
-std::optional<Segment> clipped_line(PixelPoint from, PixelPoint to, const PixelRect& area) {
-  constexpr double seam_px = 20.0;
-  const double dx = to.x - from.x, dy = to.y - from.y;
-  const std::array<std::array<double, 2>, 4> borders{{{-dx, from.x - (area.x - seam_px)},
-                                                      {dx, area.right() + seam_px - from.x},
-                                                      {-dy, from.y - (area.y - seam_px)},
-                                                      {dy, area.bottom() + seam_px - from.y}}};
-  double first = 0.0, last = 1.0;
-  for (const auto& [outwards, room] : borders) {
-    if (outwards == 0.0 && room < 0.0) return std::nullopt;
-    if (outwards < 0.0) first = std::max(first, room / outwards);
-    if (outwards > 0.0) last = std::min(last, room / outwards);
-  }
-  if (!(first <= last)) return std::nullopt;
-  return Segment{PixelPoint{from.x + first * dx, from.y + first * dy},
-                 PixelPoint{from.x + last * dx, from.y + last * dy}};
-}
-
-// A line along an axis is put onto whole pixels, so that it is sharp.
-double snap(double position_px, double thickness_px) {
-  const double half = 0.5 * std::round(thickness_px);
-  return std::round(position_px - half) + half;
-}
-
-std::optional<Segment> seen_wall(const HeatMapLayout& layout, const std::array<double, 4>& wall, double thickness_px) {
-  PixelPoint from = layout.point(wall[0], wall[1]);
-  PixelPoint to = layout.point(wall[2], wall[3]);
-  if (wall[0] == wall[2]) from.x = to.x = snap(from.x, thickness_px);
-  if (wall[1] == wall[3]) from.y = to.y = snap(from.y, thickness_px);
-  return clipped_line(from, to, layout.plot);
-}
-
-// A city at two pixels per metre would drown in thick lines.
-double wall_thickness_px(const HeatMap& map) {
-  return map.walls_m.size() > 2000 ? 2.0 : 4.0;
-}
-
-bool is_hatched_at(const HeatMap& map, double x_m, double y_m) {
-  const double column = std::round((x_m - map.origin_x_m) / map.spacing_x_m);
-  const double row = std::round((y_m - map.origin_y_m) / map.spacing_y_m);
-  if (!(column >= 0.0 && row >= 0.0 && column < double(map.columns) && row < double(map.rows))) return false;
-  return is_hatched(map, static_cast<std::size_t>(row) * map.columns + static_cast<std::size_t>(column));
-}
-
-/// Hatched on both sides all along: a wall between two houses, or within one.
-bool is_inner(const HeatMap& map, const std::array<double, 4>& wall) {
-  const double dx_m = wall[2] - wall[0], dy_m = wall[3] - wall[1], length_m = std::hypot(dx_m, dy_m);
-  if (!(length_m > 0.0)) return false;
-  const double aside = std::max(map.spacing_x_m, map.spacing_y_m) / length_m;
-  for (const double along : {0.1, 0.5, 0.9}) {
-    for (const double side : {-aside, aside}) {
-      if (!is_hatched_at(map, wall[0] + along * dx_m - side * dy_m, wall[1] + along * dy_m + side * dx_m)) return false;
-    }
-  }
-  return true;
-}
 
 void draw_window_lines(Canvas& canvas, std::span<const Segment> lines, double wall_px) {
   canvas.draw_segments(lines, {wall_colour, wall_px + 3.0});
@@ -106,33 +27,20 @@ void draw_window_lines(Canvas& canvas, std::span<const Segment> lines, double wa
 }
 
 void draw_walls(Canvas& canvas, const HeatMap& map, const HeatMapLayout& layout) {
+  constexpr double seam_px = 20.0;
   const double thickness_px = wall_thickness_px(map);
-  std::vector<Segment> walls, inner, windows;
-  for (const auto& wall : map.walls_m) {
-    if (const auto segment = seen_wall(layout, wall, thickness_px)) {
-      (is_inner(map, wall) ? inner : walls).push_back(*segment);
-    }
-  }
-  for (const auto& window : map.windows_m) {
-    if (const auto segment = seen_wall(layout, window, thickness_px + 3.0)) windows.push_back(*segment);
-  }
-  canvas.draw_segments(inner, inner_stroke);
+  const SeenWalls seen = seen_walls(map, layout, seam_px);
+  canvas.draw_segments(seen.inner, inner_stroke);
   // The pale seam keeps the dark line visible on the dark end of the colours.
-  canvas.draw_segments(walls, {white, thickness_px + 3.0, 0.35});
-  canvas.draw_segments(walls, {wall_colour, thickness_px});
-  draw_window_lines(canvas, windows, thickness_px);
+  canvas.draw_segments(seen.outer, {white, thickness_px + 3.0, 0.35});
+  canvas.draw_segments(seen.outer, {wall_colour, thickness_px});
+  draw_window_lines(canvas, seen.windows, thickness_px);
 }
 
 // A text on a pale plate.
 void draw_plate(Canvas& canvas, const PixelRect& area, const std::string& text, const TextStyle& style) {
   canvas.fill(area, white, 0.8);
   canvas.draw_text({{area.x + label_padding_px + 0.0, area.y + 0.5 * area.height}}, text, style);
-}
-
-PixelRect plate_about(PixelPoint middle, const std::string& text, const TextStyle& style) {
-  const int width = static_cast<int>(std::ceil(text_width_px(text, style))) + 2 * label_padding_px;
-  const int height = static_cast<int>(style.size_px) + label_padding_px;
-  return {static_cast<int>(middle.x) - width / 2, static_cast<int>(middle.y) - height / 2, width, height};
 }
 
 double length_of(std::span<const PixelPoint> points) {
@@ -176,57 +84,24 @@ void draw_marker(Canvas& canvas, PixelPoint centre) {
   canvas.fill_disc(centre, marker_radius_px - 8.0, marker_red);
 }
 
-PixelRect marker_area(PixelPoint centre) {
-  const int reach = static_cast<int>(marker_radius_px) + 4;
-  return {static_cast<int>(centre.x) - reach, static_cast<int>(centre.y) - reach, 2 * reach, 2 * reach};
+// From the symbol to the nearest point of a label that is not beside it.
+void draw_lead(Canvas& canvas, const SeenMarker& marker) {
+  const PixelRect& plate = *marker.plate;
+  const PixelPoint end{std::clamp(marker.centre.x, double(plate.x), double(plate.right())),
+                       std::clamp(marker.centre.y, double(plate.y), double(plate.bottom()))};
+  const std::array<PixelPoint, 2> line{marker.centre, end};
+  canvas.draw_line(line, {white, 5.0, 0.6});
+  canvas.draw_line(line, {wall_colour, 2.0});
 }
 
-// The first free place around the marker: right, left, above, below, then the four corners.
-std::optional<PixelRect> place_label(PixelPoint centre, int width, int height, const TakenPlaces& places) {
-  const PixelRect marker = marker_area(centre);
-  const int x = static_cast<int>(centre.x);
-  const int y = static_cast<int>(centre.y);
-  const std::array<std::array<int, 2>, 8> corners{{{marker.right() + 2, y - height / 2},
-                                                   {marker.x - 2 - width, y - height / 2},
-                                                   {x - width / 2, marker.y - 2 - height},
-                                                   {x - width / 2, marker.bottom() + 2},
-                                                   {marker.right(), marker.y - height},
-                                                   {marker.right(), marker.bottom()},
-                                                   {marker.x - width, marker.y - height},
-                                                   {marker.x - width, marker.bottom()}}};
-  for (const auto& corner : corners) {
-    const PixelRect area{corner[0], corner[1], width, height};
-    if (places.is_free(area)) return area;
+// Lines below symbols, and names above all.
+void draw_transmitters(Canvas& canvas, const std::vector<SeenMarker>& markers) {
+  for (const SeenMarker& marker : markers) {
+    if (marker.plate && marker.is_led) draw_lead(canvas, marker);
   }
-  return std::nullopt;
-}
-
-/// Transmitters within the plot.
-struct SeenMarker {
-  PixelPoint centre;
-  const std::string& label;
-};
-
-std::vector<SeenMarker> seen_markers(const HeatMap& map, const HeatMapLayout& layout, TakenPlaces& places) {
-  std::vector<SeenMarker> seen;
-  for (const HeatMap::Marker& transmitter : map.transmitters) {
-    const PixelPoint centre = layout.point(transmitter.x_m, transmitter.y_m);
-    if (!is_inside(layout, centre)) continue;
-    seen.push_back({centre, transmitter.label});
-    places.take(marker_area(centre));
-  }
-  return seen;
-}
-
-void draw_transmitters(Canvas& canvas, const std::vector<SeenMarker>& markers, TakenPlaces& places) {
   for (const SeenMarker& marker : markers) draw_marker(canvas, marker.centre);
-  for (const auto& [centre, label] : markers) {
-    if (label.empty()) continue;
-    const PixelRect size = plate_about(centre, label, label_style);
-    const auto area = place_label(centre, size.width, size.height, places);
-    if (!area) continue;
-    places.take(*area);
-    draw_plate(canvas, *area, label, {label_style.size_px, false, wall_colour});
+  for (const SeenMarker& marker : markers) {
+    if (marker.plate) draw_plate(canvas, *marker.plate, marker.label, {label_style.size_px, false, wall_colour});
   }
 }
 
@@ -314,14 +189,17 @@ void draw_legend(Canvas& canvas, const HeatMapPlan& plan) {
 void draw_map(Canvas& canvas, const HeatMap& map, const HeatMapPlan& plan) {
   const HeatMapLayout& layout = plan.layout;
   TakenPlaces places(layout.plot);
-  const std::vector<SeenMarker> markers = seen_markers(map, layout, places);
+  for (const SeenMarker& marker : plan.markers) {
+    places.take(marker_area(marker.centre));
+    if (marker.plate) places.take(*marker.plate);
+  }
   canvas.clip(std::span(&layout.plot, 1));
   canvas.draw_image(layout.plot.x, layout.plot.y, cells_image(map, layout));
   draw_walls(canvas, map, layout);
   draw_contours(canvas, map, layout, places);
   canvas.unclip();
   draw_axes(canvas, plan.frame);
-  draw_transmitters(canvas, markers, places);
+  draw_transmitters(canvas, plan.markers);
   draw_bar(canvas, map, plan);
   draw_legend(canvas, plan);
   draw_title(canvas, plan.title, plan.left_px);

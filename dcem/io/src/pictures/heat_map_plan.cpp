@@ -89,27 +89,29 @@ std::string contour_text(const HeatMap& map) {
   return text + (unit.empty() ? "" : " " + unit);
 }
 
-std::vector<LegendItem> legend_items(const HeatMap& map, const HeatMapLayout& layout) {
+std::vector<LegendItem> legend_items(const HeatMap& map, const HeatMapLayout& layout,
+                                     const std::vector<SeenMarker>& markers) {
   bool any_grey = false;
   bool any_hatched = false;
   for (std::size_t cell = 0; cell < map.values.size(); ++cell) {
     any_hatched = any_hatched || is_hatched(map, cell);
     any_grey = any_grey || !(is_hatched(map, cell) || is_valued(map, cell));
   }
-  const auto inside = std::count_if(map.transmitters.begin(), map.transmitters.end(), [&](const auto& marker) {
-    return is_inside(layout, layout.point(marker.x_m, marker.y_m));
-  });
-  const auto outside = static_cast<std::ptrdiff_t>(map.transmitters.size()) - inside;
+  const SeenWalls walls = seen_walls(map, layout, 0.5 * wall_thickness_px(map));
+  const std::size_t outside = map.transmitters.size() - markers.size();
+  const auto unnamed = std::count_if(markers.begin(), markers.end(),
+                                     [](const SeenMarker& marker) { return !marker.plate && !marker.label.empty(); });
   std::vector<LegendItem> items;
   for (std::size_t index = 0; index < map.categories.size(); ++index) {
-    items.push_back({Symbol::category, map.categories[index], 0, 0, index});
+    items.push_back({Symbol::category, fit_text(map.categories[index], label_style, longest_name_px), 0, 0, index});
   }
-  if (inside > 0) items.push_back({Symbol::transmitter, "transmitter"});
-  if (!map.walls_m.empty()) items.push_back({Symbol::wall, "wall"});
-  if (!map.windows_m.empty()) items.push_back({Symbol::window, "window, or wall that more than a tenth passes"});
+  if (!markers.empty()) items.push_back({Symbol::transmitter, "transmitter"});
+  if (!walls.outer.empty()) items.push_back({Symbol::wall, "wall"});
+  if (!walls.windows.empty()) items.push_back({Symbol::window, "window, or wall that more than a tenth passes"});
   if (draws_contours(map)) items.push_back({Symbol::contour, contour_text(map)});
   if (any_grey) items.push_back({Symbol::no_value, map.no_value_label});
   if (any_hatched) items.push_back({Symbol::hatched, map.hatched_label});
+  if (unnamed > 0) items.push_back({Symbol::none, "transmitters without room for a name: " + std::to_string(unnamed)});
   if (outside > 0) items.push_back({Symbol::none, "transmitters outside the map: " + std::to_string(outside)});
   if (layout.sampling > 1) {
     items.push_back({Symbol::none, "shown: one point in " + std::to_string(layout.sampling) + " along each axis"});
@@ -205,6 +207,14 @@ int set_columns(HeatMapPlan& plan, const std::string& title) {
   return bar_gap;
 }
 
+// To where the plot is: places are taken before its own is known.
+void shift(std::vector<SeenMarker>& markers, const PixelRect& plot) {
+  for (SeenMarker& marker : markers) {
+    marker.centre = {marker.centre.x + plot.x, marker.centre.y + plot.y};
+    if (marker.plate) marker.plate->x += plot.x, marker.plate->y += plot.y;
+  }
+}
+
 }  // namespace
 
 HeatMapPlan plan_heat_map(const HeatMap& map) {
@@ -215,14 +225,16 @@ HeatMapPlan plan_heat_map(const HeatMap& map) {
   plan.bar_name = name_of_bar(map);
   layout.bar.height = layout.range ? std::max({layout.plot.height, min_bar_px, label_length_px(plan.bar_name)}) : 0;
   choose_ticks(map, plan);
-  plan.legend = legend_items(map, layout);
+  plan.markers = seen_markers(map, layout);
+  plan.legend = legend_items(map, layout, plan.markers);
   const int bar_gap = set_columns(plan, map.title);
   const int line_px = layout.width_px - plan.left_px - margin_px;
   plan.title = fit_title(map.title, line_px);
 
   layout.plot.x = plan.left_px;
-  layout.plot.y = title_bottom_px + bar_tip_px;
+  layout.plot.y = title_bottom_px + plan.title.more_px() + bar_tip_px;
   plan.frame.plot = layout.plot;
+  shift(plan.markers, layout.plot);
   layout.bar = {layout.plot.right() + bar_gap, layout.plot.y, layout.range ? bar_width_px : 0, layout.bar.height};
   const int axis_bottom = layout.plot.bottom() + x_axis_height_px();
   plan.legend_y = std::max(axis_bottom, layout.bar.bottom() + bar_tip_px) + gap_px;
@@ -241,11 +253,6 @@ bool is_valued(const HeatMap& map, std::size_t cell) {
 
 bool draws_contours(const HeatMap& map) {
   return map.contour_step && map.categories.empty();
-}
-
-bool is_inside(const HeatMapLayout& layout, PixelPoint place) {
-  return place.x >= layout.plot.x && place.x < layout.plot.right() && place.y >= layout.plot.y &&
-         place.y < layout.plot.bottom();
 }
 
 }  // namespace detail

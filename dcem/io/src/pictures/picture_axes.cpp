@@ -35,6 +35,16 @@ void draw_y_axis(Canvas& canvas, const PictureFrame& frame) {
                    label_style);
 }
 
+// Where the characters of valid UTF-8 begin, and where the last one ends.
+std::vector<std::size_t> character_begins(const std::string& text) {
+  std::vector<std::size_t> begins;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if ((static_cast<unsigned char>(text[at]) & 0xC0U) != 0x80U) begins.push_back(at);
+  }
+  begins.push_back(text.size());
+  return begins;
+}
+
 }  // namespace
 
 int plot_left_px(const std::vector<Tick>& x_ticks, const std::vector<Tick>& y_ticks) {
@@ -65,21 +75,39 @@ void draw_axes(Canvas& canvas, const PictureFrame& frame, AxisLabels x_labels) {
   draw_y_axis(canvas, frame);
 }
 
-FittedTitle fit_title(const std::string& title, int width_px) {
-  if (text_width_px(title, title_style) <= width_px) return {title};
-  FittedTitle fitted{title, {label_style.size_px, true}};
-  std::string kept = drawable_text(title);
-  while (!kept.empty() && text_width_px(fitted.text, fitted.style) > width_px) {
-    while ((static_cast<unsigned char>(kept.back()) & 0xC0U) == 0x80U) kept.pop_back();
-    kept.pop_back();
-    fitted.text = kept + "...";
+std::string fit_text(const std::string& text, const TextStyle& style, int width_px) {
+  if (text_width_px(text, style) <= width_px) return text;
+  const std::string whole = drawable_text(text);
+  const std::vector<std::size_t> begins = character_begins(whole);
+  std::string fitted;
+  for (std::size_t kept = begins.size() - 1; kept > 0; --kept) {
+    const std::size_t head = begins[(kept + 1) / 2], tail = begins[begins.size() - 1 - kept / 2];
+    fitted = whole.substr(0, head) + "..." + whole.substr(tail);
+    if (text_width_px(fitted, style) <= width_px) break;
   }
   return fitted;
 }
 
+FittedTitle fit_title(const std::string& title, int width_px) {
+  if (text_width_px(title, title_style) <= width_px) return {title};
+  const TextStyle smaller{label_style.size_px, true};
+  if (text_width_px(title, smaller) <= width_px) return {title, smaller};
+  std::size_t end = title.rfind(' ');
+  while (end != std::string::npos && end > 0 && text_width_px(title.substr(0, end), smaller) > width_px) {
+    end = title.rfind(' ', end - 1);
+  }
+  if (end == std::string::npos || end == 0) return {fit_text(title, smaller, width_px), smaller};
+  return {title.substr(0, end), smaller, fit_text(title.substr(end + 1), smaller, width_px)};
+}
+
+void draw_title(Canvas& canvas, const FittedTitle& title, PixelPoint at) {
+  canvas.draw_text({at, Anchor::left}, title.text, title.style);
+  if (title.second_line.empty()) return;
+  canvas.draw_text({{at.x, at.y + title.more_px()}, Anchor::left}, title.second_line, title.style);
+}
+
 void draw_title(Canvas& canvas, const FittedTitle& title, int left_px) {
-  const PixelPoint place{double(left_px), margin_px + 0.5 * title_style.capital_px()};
-  canvas.draw_text({place, Anchor::left}, title.text, title.style);
+  draw_title(canvas, title, {double(left_px), margin_px + 0.5 * title_style.capital_px()});
 }
 
 }  // namespace dcem::io::detail

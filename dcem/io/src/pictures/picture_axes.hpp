@@ -61,17 +61,30 @@ enum class AxisLabels { ticks_alone, all };
 /// Frame, ticks, labels and names.
 void draw_axes(Canvas& canvas, const PictureFrame& frame, AxisLabels x_labels = AxisLabels::all);
 
-/// A title set smaller where it is too long, and then cut.
+/// Names in legends and beside symbols are no longer than this.
+inline constexpr int longest_name_px = 560;
+
+/// The text, with dots in place of its middle where it is too long: ends tell names apart, and hold the units of
+/// titles.
+std::string fit_text(const std::string& text, const TextStyle& style, int width_px);
+
+/// A title set smaller where it is too long, then on two lines, and then without its middle.
 struct FittedTitle {
   std::string text;
   TextStyle style = title_style;
+  std::string second_line{};
+
+  /// By how much more what stands below it lies lower.
+  int more_px() const { return second_line.empty() ? 0 : label_height_px + gap_px; }
 };
 FittedTitle fit_title(const std::string& title, int width_px);
 
-/// Draws it at the upper edge of a picture, from `left_px` on.
+/// Draws it; `at` is the left end of its first line, in the middle of the capitals.
+void draw_title(Canvas& canvas, const FittedTitle& title, PixelPoint at);
+/// The same at the upper edge of a picture, from `left_px` on.
 void draw_title(Canvas& canvas, const FittedTitle& title, int left_px);
 
-/// Pixels from the upper edge to where what stands below a title begins.
+/// Pixels from the upper edge to where what stands below a title of one line begins.
 inline constexpr int title_bottom_px = margin_px + 24 + 2 * gap_px;
 
 }  // namespace dcem::io::detail

@@ -47,6 +47,8 @@ Bounds padded_bounds(const ScatterChart& chart, Quantity&& quantity) {
 
 struct ScatterPlan {
   PictureFrame frame;
+  FittedTitle title;
+  int right_px = 0;        // from the plot to the rim of the picture
   double top_value = 0.0;  // of the largest dots
   double radius_px = largest_radius_px;
 
@@ -70,8 +72,10 @@ ScatterPlan plan_of(const ScatterChart& chart) {
                   plot_width_px / (x.high - x.low)};
   plan.frame.y = {axis_ticks(y.low, y.high, plot_height_px, 90), axis_name(chart.y_label, chart.y_unit), y.low,
                   plot_height_px / (y.high - y.low)};
-  plan.frame.plot = {plot_left_px(plan.frame.x.ticks, plan.frame.y.ticks), title_bottom_px, plot_width_px,
-                     plot_height_px};
+  plan.right_px = margin_px + std::max(margin_px, longest_label_px(plan.frame.x.ticks) / 2);
+  plan.title = fit_title(chart.title, plot_width_px + plan.right_px - margin_px);
+  plan.frame.plot = {plot_left_px(plan.frame.x.ticks, plan.frame.y.ticks), title_bottom_px + plan.title.more_px(),
+                     plot_width_px, plot_height_px};
   plan.top_value = chart.dots.front().value;
   for (const ScatterChart::Dot& dot : chart.dots) plan.top_value = std::max(plan.top_value, dot.value);
   plan.top_value = 10.0 * std::ceil(plan.top_value / 10.0);
@@ -141,7 +145,7 @@ void draw_scatter_legend(Canvas& canvas, const ScatterChart& chart, const Scatte
   draw_legend_dot(canvas, {marked_x, next_y}, largest_radius_px, {0, 0, 0}, chart.marked_label);
 }
 
-void draw_scatter(Canvas& canvas, const ScatterChart& chart, const ScatterPlan& plan, int width_px) {
+void draw_scatter(Canvas& canvas, const ScatterChart& chart, const ScatterPlan& plan) {
   draw_grid_lines(canvas, plan.frame);
   canvas.clip(std::span(&plan.frame.plot, 1));
   draw_lines(canvas, chart, plan);
@@ -149,7 +153,7 @@ void draw_scatter(Canvas& canvas, const ScatterChart& chart, const ScatterPlan& 
   canvas.unclip();
   draw_axes(canvas, plan.frame);
   draw_scatter_legend(canvas, chart, plan);
-  draw_title(canvas, fit_title(chart.title, width_px - plan.frame.plot.x - margin_px), plan.frame.plot.x);
+  draw_title(canvas, plan.title, plan.frame.plot.x);
 }
 
 }  // namespace
@@ -176,10 +180,10 @@ void write_scatter_chart(const ScatterChart& chart, AtomicFile& file, PictureFor
   require_drawing(file);
   const ScatterPlan plan = plan_of(chart);
   const PixelRect& plot = plan.frame.plot;
-  const int width = plot.right() + margin_px + std::max(margin_px, longest_label_px(plan.frame.x.ticks) / 2);
+  const int width = plot.right() + plan.right_px;
   const int height = plot.bottom() + x_axis_height_px() + gap_px + 2 * legend_row_px + gap_px;
   draw_picture(file.stream(), format, {width, height, chart.title},
-               [&](Canvas& canvas) { draw_scatter(canvas, chart, plan, width); });
+               [&](Canvas& canvas) { draw_scatter(canvas, chart, plan); });
 }
 
 void write_scatter_chart(const ScatterChart& chart, const std::filesystem::path& path) {

@@ -214,18 +214,23 @@ std::variant<double, std::string, std::vector<MaterialLayer>> value_from_mtl(con
 
 }  // namespace
 
-MaterialKeys keys_from_mtl(const MtlMaterial& mtl) {
+MaterialKey key_from_text(const std::string& name, const std::string& text, std::string place, std::string spelling) {
   const keys::BlockRule& block = keys::material_block();
+  MaterialKey key{text, std::move(place), std::move(spelling)};
+  const keys::KeyRule* rule = keys::find_key(block, name);
+  if ((rule && !keys::fits_mtl(block, *rule)) || (name == "model" && text == "multilayer"))
+    key.fail("layers do not fit in an MTL file; expected them in the scenario's materials");
+  if (!rule) key.fail("unknown key" + expected_names(key.spelling, keys::mtl_names(block)));
+  key.value = value_from_mtl(key, *rule, text);
+  return key;
+}
+
+MaterialKeys keys_from_mtl(const MtlMaterial& mtl) {
+  const std::size_t prefix = keys::material_block().mtl_prefix.size();
   MaterialKeys result{mtl.file + ":" + std::to_string(mtl.line), {}};
   for (const auto& [spelling, entry] : mtl.em_keys) {
-    const std::string name = spelling.substr(block.mtl_prefix.size());
-    MaterialKey key{entry.value, mtl.file + ":" + std::to_string(entry.line), spelling};
-    const keys::KeyRule* rule = keys::find_key(block, name);
-    if ((rule && !keys::fits_mtl(block, *rule)) || (name == "model" && entry.value == "multilayer"))
-      key.fail("layers do not fit in an MTL file; expected them in the scenario's materials");
-    if (!rule) key.fail("unknown key" + expected_names(spelling, keys::mtl_names(block)));
-    key.value = value_from_mtl(key, *rule, entry.value);
-    result.keys.emplace(name, std::move(key));
+    const std::string name = spelling.substr(prefix);
+    result.keys.emplace(name, key_from_text(name, entry.value, mtl.file + ":" + std::to_string(entry.line), spelling));
   }
   return result;
 }

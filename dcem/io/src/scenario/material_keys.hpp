@@ -33,6 +33,10 @@ struct MaterialKeys {
 /// The canonical name of the material of ITU-R P.2040 that a key names. Throws InputError with the nearest one.
 std::string itu_name(const MaterialKey& key);
 
+/// A key of a material, `em_` left out, with what its text says. `place` and `spelling` are for messages. Throws
+/// InputError on an unknown key, and on what should be a number in the key's range and is none.
+MaterialKey key_from_text(const std::string& name, const std::string& text, std::string place, std::string spelling);
+
 /// The keys of a `newmtl` block. Throws InputError on an unknown key, on what should be a number and is none, and on
 /// the model `multilayer`, whose layers only a scenario can hold.
 MaterialKeys keys_from_mtl(const MtlMaterial& mtl);

@@ -56,15 +56,23 @@ JsonValue frequency_in(const JsonObject& file, const JsonObject& command_line) {
   return option ? *option : file.at("frequency_hz");
 }
 
-/// Air, foliage and the band of a frequency response must fit the frequency.
+/// Air and foliage must fit the frequency.
 void check_frequency(const Scenario& scenario, const JsonValue& place) {
   const SimulationSettings& settings = scenario.settings;
   reported_at(place,
               [&] { MediumLoss(settings.propagation.atmosphere, scenario.scene.materials(), settings.frequency_hz); });
-  const OutputSettings& output = scenario.output;
-  if (output.cfr && output.cfr_bandwidth_hz > 2.0 * settings.frequency_hz) {
-    place.fail("output.cfr asks for frequencies below 0; expected a bandwidth_hz of at most twice the frequency");
-  }
+}
+
+/// The band of a frequency response must lie above 0.
+void check_band(const Scenario& scenario, const JsonObject& file, const JsonObject& command_line) {
+  const double bandwidth_hz = scenario.output.cfr_bandwidth_hz, frequency_hz = scenario.settings.frequency_hz;
+  if (!scenario.output.cfr || bandwidth_hz <= 2.0 * frequency_hz) return;
+  const auto option = command_line.find("--output");
+  const JsonValue output = option ? *option : file.at("output");
+  output.member("cfr")
+      .member("bandwidth_hz")
+      .fail(number_text(bandwidth_hz) + " Hz around " + number_text(frequency_hz) +
+            " Hz reach below 0; expected at most twice the frequency");
 }
 
 /// A mirror loses what it scatters; where nobody adds that up, power is missing.
@@ -85,6 +93,30 @@ void warn_of_links_without_paths(const std::filesystem::path& file, Scenario& sc
   scenario.warnings.push_back(file.string() + ": links.range_m is " + number_text(*range_m) +
                               ", propagation.max_path_length_m " + number_text(*longest_m) +
                               ": longer links have no path, the direct one neither");
+}
+
+/// Why a key of the block `propagation` has no effect, and what would give it one; empty where it has one.
+std::string_view why_idle(const std::string& key, const PropagationSettings& propagation, Discovery discovery) {
+  if (key == "valid_until_limit_m") return why_no_lifetimes(propagation, discovery);
+  if (key == "seed" && propagation.diffuse.enabled && propagation.diffuse.phases == DiffusePhases::seeded) return {};
+  if (discovery == Discovery::exact) return "discovery is exact, and no ray is shot; expected discovery sampled";
+  const bool is_steady = propagation.cache != CacheMode::off;
+  return key != "rays_steady" || is_steady ? "" : "the cache is off; expected cache seed";
+}
+
+/// What the file says for a discovery or a cache that the command line has replaced was not said for this run.
+void warn_of_idle_keys(const JsonObject& file, const JsonObject& command_line, Scenario& scenario) {
+  const auto block = file.find("propagation");
+  if (!block || command_line.has("--discovery") || command_line.has("--cache")) return;
+  std::optional<Discovery> discovery;
+  for (const char* key : {"rays", "rays_steady", "seed", "valid_until_limit_m"}) {
+    const auto value = block->object().find(key);
+    if (!value || value->is_null()) continue;
+    if (!discovery) discovery = resolve_discovery(scenario.settings.propagation, scenario.scene);
+    const std::string_view why = why_idle(key, scenario.settings.propagation, *discovery);
+    if (why.empty()) continue;
+    scenario.warnings.push_back(value->place() + ": " + value->path() + " has no effect: " + std::string(why));
+  }
 }
 
 /// JSON of another kind: better told than by the first key that is unknown.
@@ -120,8 +152,10 @@ Scenario read_scenario(const std::filesystem::path& file, const JsonObject& root
   reported_at(root.value(), [&] { validate(result.settings); });
   check_exact_discovery(result, root, command_line);
   check_frequency(result, frequency);
+  check_band(result, root, command_line);
   warn_of_lost_scattering(file, result);
   warn_of_links_without_paths(file, result);
+  warn_of_idle_keys(root, command_line, result);
   return result;
 }
 

@@ -1,33 +1,19 @@
-#include <algorithm>
-#include <charconv>
 #include <optional>
 
+#include "dcem/io/src/geo/utm.hpp"
 #include "dcem/io/src/scenario/scenario_parts.hpp"
 
 namespace dcem::io {
 
 namespace {
 
-/// "utm32n", "utm5s".
-std::optional<UtmFrame> utm_zone(const std::string& crs) {
-  const std::string start = "utm";
-  if (crs.size() < 5 || crs.compare(0, start.size(), start) != 0 || (crs.back() != 'n' && crs.back() != 's')) return {};
-  UtmFrame frame;
-  const char* const end = crs.data() + crs.size() - 1;
-  const auto [rest, error] = std::from_chars(crs.data() + start.size(), end, frame.zone);
-  if (error != std::errc{} || rest != end || frame.zone < 1 || frame.zone > 60) return {};
-  frame.northern = crs.back() == 'n';
-  return frame;
-}
-
 UtmFrame read_utm(const JsonObject& geo) {
   const JsonValue crs = geo.at("crs");
-  auto frame = utm_zone(crs.line());
-  if (!frame) crs.fail("no zone of UTM; expected one from \"utm1n\" to \"utm60n\", or \"utm1s\" to \"utm60s\"");
+  const std::optional<UtmZone> zone = utm_zone_named(crs.line());
+  if (!zone) crs.fail("no zone of UTM; expected one from \"utm1n\" to \"utm60n\", or \"utm1s\" to \"utm60s\"");
   if (!knows_utm()) crs.fail(std::string(no_utm) + "; expected " + std::string(utm_expected));
   const std::vector<JsonValue> offset = geo.at("offset_m").elements();
-  frame->offset_m = {offset[0].number(), offset[1].number()};
-  return *frame;
+  return {zone->number, zone->is_north, {offset[0].number(), offset[1].number()}};
 }
 
 }  // namespace

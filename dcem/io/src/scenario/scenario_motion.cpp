@@ -67,9 +67,8 @@ void MotionReader::check_all_taken() const {
 std::filesystem::path existing_file(const JsonValue& name, const std::filesystem::path& folder,
                                     const std::string& expectation) {
   const std::filesystem::path file = folder / name.text();
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    name.fail(in_quotes(name.text()) + " is not there; " + expectation + ", relative to the scenario");
+  if (const auto trouble = trouble_of_named(file)) {
+    name.fail(in_quotes(name.text()) + " " + *trouble + "; " + expectation + ", relative to the scenario");
   }
   return file;
 }

@@ -14,6 +14,7 @@
 #include "dcem/core/error.hpp"
 #include "dcem/io/input_error.hpp"
 #include "dcem/io/src/text/read_log.hpp"
+#include "dcem/io/src/text/unwritten_files.hpp"
 
 namespace dcem::io {
 
@@ -55,10 +56,24 @@ std::string all_of(std::istream& stream, const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string read_text_file(const std::filesystem::path& file, const std::string& expectation) {
+std::optional<std::string> trouble_of(const std::filesystem::path& file) {
+  if (UnwrittenFiles::find(file) != nullptr) return std::nullopt;
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw InputError(file.string(), "is not there; " + expectation);
-  if (std::filesystem::is_directory(file, ignored)) throw InputError(file.string(), "is a folder; " + expectation);
+  if (!std::filesystem::exists(file, ignored)) return "is not there";
+  if (std::filesystem::is_directory(file, ignored)) return "is a folder";
+  return std::nullopt;
+}
+
+std::optional<std::string> trouble_of_named(const std::filesystem::path& file) {
+  if (UnwrittenFiles::find(file) != nullptr) return std::nullopt;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
+  return trouble_of(file).value_or("is no regular file");
+}
+
+std::string read_text_file(const std::filesystem::path& file, const std::string& expectation) {
+  if (const std::string* text = UnwrittenFiles::find(file)) return *text;
+  if (const auto trouble = trouble_of(file)) throw InputError(file.string(), *trouble + "; " + expectation);
   ReadLog::note(file);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);

@@ -14,6 +14,11 @@ namespace dcem::io {
 /// `expectation` says what should have been there, e.g. "expected an OBJ file".
 std::string read_text_file(const std::filesystem::path& file, const std::string& expectation);
 
+/// What keeps a name from being that of something to read: "is not there", "is a folder"; nothing where it is.
+std::optional<std::string> trouble_of(const std::filesystem::path& file);
+/// The same of a file that another file names and that may be read more than once: no pipe.
+std::optional<std::string> trouble_of_named(const std::filesystem::path& file);
+
 /// The same text with a '?' for each control character.
 std::string without_controls(std::string_view text);
 /// Text from a file as it may stand in a message: on one line, without control characters, cut when too long.

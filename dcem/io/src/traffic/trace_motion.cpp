@@ -32,20 +32,27 @@ TraceMotion::TraceMotion(const Traffic& traffic)
 }
 
 const std::vector<DrivingVehicle>& TraceMotion::at(double time_s) {
-  while (after_.time_s < time_s - trace_tolerance_s) {
-    std::swap(before_, after_);
-    has_before_ = true;
-    read_step();
+  while (after_.time_s < time_s && read_step()) {
   }
-  // The step before is further away than the tolerance, for instants do not decrease.
-  if (std::abs(after_.time_s - time_s) <= trace_tolerance_s) return after_.vehicles;
-  if (!has_before_) fail_changed(raw_.line);
+  if (steps_ > 1 && after_.time_s > time_s) return between_steps(time_s);
+  // This very instant, or before the first step or behind the last one: that the trace reaches so far, to the
+  // tolerance, was seen when it was surveyed, and rounding may ask for a little more.
+  if (std::abs(after_.time_s - time_s) > 2.0 * trace_tolerance_s) fail_changed(raw_.line);
+  return after_.vehicles;
+}
+
+/// Steps may be closer together than the tolerance: the nearest of them counts.
+const std::vector<DrivingVehicle>& TraceMotion::between_steps(double time_s) {
+  const double before_s = time_s - before_.time_s, after_s = after_.time_s - time_s;
+  if (std::min(before_s, after_s) <= trace_tolerance_s) return before_s < after_s ? before_.vehicles : after_.vehicles;
   interpolate(time_s);
   return between_;
 }
 
-void TraceMotion::read_step() {
-  if (!reader_.next(raw_)) fail_changed(raw_.line);
+bool TraceMotion::read_step() {
+  if (!reader_.next(raw_)) return false;
+  std::swap(before_, after_);
+  ++steps_;
   after_.time_s = raw_.time_s;
   after_.vehicles.resize(raw_.vehicles.size());
   after_.speeds_mps.resize(raw_.vehicles.size());
@@ -57,6 +64,7 @@ void TraceMotion::read_step() {
     driving.placement = vehicle_placement(vehicle, types_[driving.type].size_m.x);
     after_.speeds_mps[index] = vehicle.speed_mps;
   }
+  return true;
 }
 
 std::size_t TraceMotion::type_index(const FcdVehicle& vehicle) const {

@@ -36,7 +36,9 @@ class TraceMotion {
     std::vector<double> speeds_mps;
   };
 
-  void read_step();
+  /// Where the trace has ended: false, and nothing else.
+  bool read_step();
+  const std::vector<DrivingVehicle>& between_steps(double time_s);
   std::size_t type_index(const FcdVehicle& vehicle) const;
   void interpolate(double time_s);
   [[noreturn]] void fail_changed(std::size_t line) const;
@@ -45,7 +47,7 @@ class TraceMotion {
   FcdReader reader_;
   FcdStep raw_;
   Step before_, after_;
-  bool has_before_ = false;
+  std::size_t steps_ = 0;  ///< read so far; `before_` is one of them from two on
   std::vector<DrivingVehicle> between_;
 };
 

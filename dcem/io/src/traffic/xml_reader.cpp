@@ -20,9 +20,7 @@ constexpr std::size_t deepest_element = 100;
 constexpr long long longest_token_bytes = 4'000'000;
 
 void check_readable(const std::filesystem::path& file, const std::string& expectation) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw InputError(file.string(), "is not there; " + expectation);
-  if (std::filesystem::is_directory(file, ignored)) throw InputError(file.string(), "is a folder; " + expectation);
+  if (const auto trouble = trouble_of(file)) throw InputError(file.string(), *trouble + "; " + expectation);
   ReadLog::note(file);
 }
 

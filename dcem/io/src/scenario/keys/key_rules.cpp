@@ -24,9 +24,9 @@ std::string list_text(const ValueRule& rule, bool with_unit) {
   if (rule.most == 0) {
     return element.kind == ValueKind::word ? "an array [...] of " + enumeration(element.words) : "an array [...]";
   }
-  return rule.noun + ", each " +
-         (element.kind == ValueKind::whole_number ? whole_text(element.range)
-                                                  : with_unit_of(element, element.range.bounds_text(), with_unit));
+  if (element.kind == ValueKind::whole_number) return rule.noun + ", each " + whole_text(element.range);
+  if (element.kind != ValueKind::number) return rule.noun;
+  return rule.noun + ", each " + with_unit_of(element, element.range.bounds_text(), with_unit);
 }
 
 std::string block_text(const BlockRule& block) {

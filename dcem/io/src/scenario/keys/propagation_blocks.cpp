@@ -152,14 +152,19 @@ std::vector<KeyRule> keys_of_discovery(const PropagationSettings& standards) {
       {"rays",
        {whole_number(1, most_rays)},
        standard(standards.rays),
-       "Rays for a receiver in a frame without history.",
+       "Rays for a receiver in a frame without history. Where discovery is exact it has no effect, which is warned of.",
        "2000"},
       {"rays_steady",
        {whole_number(1, most_rays)},
        told("a tenth of rays"),
        "The same in a later frame with cache seed.",
        "200"},
-      {"seed", {whole_number(0, 9e18)}, standard(standards.seed), "Turns the sphere of rays.", "1"},
+      {"seed",
+       {whole_number(0, 9e18)},
+       standard(standards.seed),
+       "Turns the sphere of rays. Where discovery is exact, and the phases of diffuse are not seeded, it has no "
+       "effect, which is warned of.",
+       "1"},
       {"cache",
        {word<CacheMode>()},
        told("exact with exact discovery, seed with sampled"),
@@ -197,8 +202,8 @@ std::vector<KeyRule> keys_of_fields(const PropagationSettings& standards) {
        {number({1e-3, 100.0}, "m"), null()},
        Absence{Absence::Kind::value, "null"},
        "How far ends and bodies may move before a path appears or vanishes is worked out up to this, with cache exact "
-       "and "
-       "at most two interactions; null: it is not.",
+       "and at most two interactions, one of them a diffraction, with line_of_sight or no transmissions, and without "
+       "min_path_gain_db and max_path_length_m. Elsewhere it has no effect, which is warned of; null: it is not.",
        "0.5"},
   };
 }
