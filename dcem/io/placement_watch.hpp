@@ -22,10 +22,13 @@ namespace dcem::io {
 
 class PlacementWatch {
  public:
+  /// Whose links are looked at: those that the simulator's settings choose, or, as maps have them, all there are.
+  enum class Links { chosen, all };
+
   /// Watches a simulator, its transmitters and objects, these receivers and these grids. `file` begins each warning.
   /// Everything must outlive the watch.
   PlacementWatch(std::string file, const Simulator& simulator, std::span<const Device> receivers,
-                 std::span<const ReceiverGrid> grids);
+                 std::span<const ReceiverGrid> grids, Links links = Links::chosen);
   ~PlacementWatch();
   PlacementWatch(const PlacementWatch&) = delete;
   PlacementWatch& operator=(const PlacementWatch&) = delete;
@@ -83,13 +86,14 @@ class PlacementWatch {
   const Simulator& simulator_;
   std::span<const Device> receivers_;
   std::span<const ReceiverGrid> grids_;
-  Aabb<double> box_;                                          ///< of the scenery
-  std::vector<std::optional<Vec3>> middles_m_;                ///< of all bodies, in their own coordinates
-  const Frame* frame_ = nullptr;                              ///< while it is looked at
-  std::vector<std::pair<Vec3, const Device*>> transmitters_;  ///< that are there, some of very many
-  bool may_fly_ = true;                                       ///< someone is near the scenery, for others to fly
-  std::vector<std::vector<Shell>> rooms_;                     ///< by transmitter: shells that hold it or carry it …
-  std::set<Shell> all_rooms_;                                 ///< … and those of all
+  Links links_;
+  Aabb<double> box_;                                 ///< of the scenery
+  std::vector<std::optional<Vec3>> middles_m_;       ///< of all bodies, in their own coordinates
+  const Frame* frame_ = nullptr;                     ///< while it is looked at
+  std::vector<std::optional<Vec3>> transmitters_m_;  ///< of those that are there
+  bool may_fly_ = true;                              ///< someone is near the scenery, for others to fly
+  std::vector<std::vector<Shell>> rooms_;            ///< by transmitter: shells that hold it or carry it …
+  std::set<Shell> all_rooms_;                        ///< … and those of all
   /// By body: the houses that waves pass around it in the frame before; absent where it was not there.
   std::vector<std::optional<std::vector<Shell>>> houses_before_;
   mutable std::mutex mutex_;                                       ///< of `shell_facts_`

@@ -224,6 +224,7 @@ class BasicSimulator {
   void note_transmitters(const TransmitterEnds& ends);
   void choose_remembered(std::size_t walking);
   std::size_t receivers_on_the_move() const;
+  bool is_on_the_move(std::size_t receiver) const;
   ListPace pace_of_lists(std::size_t walking) const;
   /// Where it is asked for, gives the paths of a link a channel with a path of its own for each pair of elements.
   void trace_elements(std::span<PathContribution> paths, const DeviceEnd& from, const DeviceEnd& to,

@@ -109,7 +109,7 @@ struct SimulationSettings {
   double most_remembered_bytes = std::numeric_limits<double>::infinity();
   /// How many frames there will be, where that is known. To list what a transmitter that stands reaches takes half a
   /// second in a city and spares work in all frames after. It is begun at once, then, or, where they are too few,
-  /// never. None: it is begun when it would have paid by then. Never changes a result.
+  /// never. None, or no exact cache: it is begun when it would have paid by then. Never changes a result.
   std::optional<std::size_t> expected_frames{};
 };
 

@@ -334,7 +334,7 @@ void map_one(const ScenarioOptions& options) {
   const auto viewer = make_viewer(folder.files(), job, simulator, orders.cells() * values_per_cell);
   const StopRequest stop;
   const std::vector<Device> listed = listed_points(lists);
-  io::PlacementWatch watch(options.scenario, simulator, listed, job.scenario.grids);
+  io::PlacementWatch watch(options.scenario, simulator, listed, job.scenario.grids, io::PlacementWatch::Links::all);
   const WorkTimes begun = work_times();
   const std::size_t next_frame =
       map_frames(job, options, orders, simulator, folder.files(), viewer.get(), summary, watch, stop);

@@ -87,6 +87,15 @@ TEST_CASE("damaged tables: one line, nothing written") {
   refused("holds no *buildings_xy.csv");
 }
 
+TEST_CASE("hidden files beside the tables, as archives leave them, are none of them") {
+  DCEM_NEEDS_GEOS();
+  const TemporaryFolder folder;
+  write_tables(folder);
+  for (const std::string name : {"._town_buildings_xy.csv", "._links_5.89GHz.csv"}) write(folder / ("run/" + name), "");
+  io::import_gemv2(folder / "run", folder / "made", {});
+  CHECK(std::filesystem::exists(folder / "made/scenario.json"));
+}
+
 TEST_CASE("tables that do not belong together: one line, nothing written") {
   DCEM_NEEDS_GEOS();
   const TemporaryFolder folder;

@@ -198,6 +198,12 @@ TEST_CASE("a scenario in a folder behind a link finds its trace") {
       {folder / "town.net.xml", folder / "town.poly.xml", folder / "town.fcd.xml", {folder / "types.add.xml"}},
       folder / "link");
   CHECK(io::load_scenario(folder / "elsewhere/deep/scenario.json").time.frames == 3);
+  // Up from where the link leads, as the system opens it.
+  std::filesystem::rename(folder / "town.fcd.xml", folder / "elsewhere/town.fcd.xml");
+  io::import_sumo(
+      {folder / "town.net.xml", folder / "town.poly.xml", folder / "link/../town.fcd.xml", {folder / "types.add.xml"}},
+      folder / "made");
+  CHECK(io::load_scenario(folder / "made/scenario.json").time.frames == 3);
 }
 
 TEST_CASE("Bad Hersfeld from its own files: every block closed, every roof there") {

@@ -100,14 +100,15 @@ std::string scenario_text(const Wanted& wanted) {
 }
 
 /// What is said of a scenario when it is read, and of its frames.
-std::vector<std::string> warnings_of(const Wanted& wanted) {
+std::vector<std::string> warnings_of(const Wanted& wanted,
+                                     io::PlacementWatch::Links links = io::PlacementWatch::Links::chosen) {
   const TemporaryFolder folder;
   std::ofstream(folder / "village.obj") << wanted.obj;
   std::ofstream(folder / "village.json") << scenario_text(wanted);
   const io::Scenario scenario = io::load_scenario(folder / "village.json");
   std::vector<std::string> all = scenario.warnings;
   Simulator simulator(scenario.scene, scenario.settings);
-  io::PlacementWatch watch("village.json", simulator, simulator.scene().receivers(), scenario.grids);
+  io::PlacementWatch watch("village.json", simulator, simulator.scene().receivers(), scenario.grids, links);
   for (std::size_t frame = 0; frame < scenario.time.frames; ++frame) {
     const Frame instant = simulator.scene().frame_at(scenario.time_s(frame), frame);
     simulator.move_to(instant);
@@ -164,6 +165,20 @@ TEST_CASE("what is far away and far up is named where nobody is near, or where n
   CHECK(contains(warning_of(wanted), "receiver 'ue' is up to 900000 km outside the box of the scenery"));
 }
 
+TEST_CASE("satellites and aeroplanes are meant where the last of many transmitters stands on the ground") {
+  Wanted wanted;
+  const std::string sky_m = "[1000, 8000, 500000]";
+  wanted.receiver_m = "[20000, 10000, 25000]";
+  wanted.transmitter_m = sky_m;
+  for (int number = 0; number < 80; ++number) {
+    wanted.transmitter_m +=
+        R"(, "power_dbm": 20}, {"id": "satellite )" + std::to_string(number) + R"(", "position_m": )" + sky_m;
+  }
+  CHECK_FALSE(warnings_of(wanted).empty());
+  wanted.transmitter_m += R"(, "power_dbm": 20}, {"id": "gateway", "position_m": [0, 0, 8])";
+  CHECK(warnings_of(wanted).empty());
+}
+
 TEST_CASE(
     "a receiver at the very point of a transmitter is named, unless no direct path is wanted or they have no link") {
   Wanted wanted;
@@ -177,6 +192,7 @@ TEST_CASE(
   wanted.more = R"("links": {"pairs": [["lamp", "ue"]]}, )";
   wanted.transmitter_m += R"(, "power_dbm": 20}, {"id": "lamp", "position_m": [5, 5, 8])";
   CHECK(warnings_of(wanted).empty());
+  CHECK(warnings_of(wanted, io::PlacementWatch::Links::all).size() == 1);  // maps
   wanted.more = R"("links": {"pairs": [["bs", "ue"]], "range_m": 5}, )";
   CHECK(warnings_of(wanted).size() == 1);
   wanted.receiver_m = "[0, 0, 8.000001]";

@@ -114,9 +114,10 @@ class KeptHalf {
     return joins * (0.3 + 0.28e-3 * mirrors) >= 13.0 + 0.06 * mirrors;
   }
   bool have_paid() const { return pay(static_cast<double>(joins_)); }
-  /// Joins since the device stands, and those to come.
+  /// Joins since the device stands, those of the frame at hand among them, and those to come.
   double joins_of_run(const HalfLists& wanted) const {
-    return static_cast<double>(joins_ + wanted.receivers * wanted.pace.frames_left.value_or(0));
+    const auto frames = static_cast<double>(std::max<std::size_t>(1, wanted.pace.frames_left.value_or(1)));
+    return static_cast<double>(joins_) + static_cast<double>(wanted.receivers) * (frames - 1.0);
   }
 
   /// Of a device that has stood for a while, looks through some mirrors more in each frame: as many as take the time

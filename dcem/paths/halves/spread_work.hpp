@@ -59,7 +59,7 @@ class WorkAllowance {
 struct ListPace {
   static constexpr double least = 0.1;
 
-  std::optional<std::size_t> frames_left{};  ///< none: nobody knows
+  std::optional<std::size_t> frames_left{};  ///< the one at hand among them; none: nobody knows
   double spared = 0.0;  ///< of what its links take from scratch, by what is known of places: from 0 to 1
 
   /// For each link that takes so long from scratch, where later frames may never ask for it: no frame is to take much

@@ -84,8 +84,8 @@ void BasicSimulator<Surface, Index>::find_transmitter_halves(TransmitterEnds& en
   HalfLists of_all{fine || over_mirrors ? lanes_.get() : nullptr, over_mirrors,
                    fine || (triples && (receivers > 0 || change_)), receivers, pool_.get()};
   of_all.for_triples = triples;
-  of_all.pace = pace_;
   const bool are_followed = halves.data() == halves_.data();
+  if (are_followed) of_all.pace = pace_;  // others are asked for once
   const bool has_choice = !choice_.takes_all() && are_followed;
   const auto update = [&](std::size_t index, unsigned) {
     HalfLists lists = of_all;

@@ -90,12 +90,15 @@ void BasicSimulator<Surface, Index>::choose_links() {
 template <SurfaceModel Surface, SpatialIndex Index>
 std::size_t BasicSimulator<Surface, Index>::receivers_on_the_move() const {
   std::size_t count = 0;
-  for (std::size_t index = 0; index < receivers_.size(); ++index) {
-    const DeviceState state = state_of(scene_.receivers()[index]);
-    const std::optional<LinkEnd>& before = receivers_[index].end;
-    count += state.present && (!before || before->position_m != state.position_m) ? 1 : 0;
-  }
+  for (std::size_t index = 0; index < receivers_.size(); ++index) count += is_on_the_move(index) ? 1 : 0;
   return count;
+}
+
+template <SurfaceModel Surface, SpatialIndex Index>
+bool BasicSimulator<Surface, Index>::is_on_the_move(std::size_t receiver) const {
+  const DeviceState state = state_of(scene_.receivers()[receiver]);
+  const std::optional<LinkEnd>& before = receivers_[receiver].end;
+  return state.present && (!before || before->position_m != state.position_m);
 }
 
 /// How much transmitters may list in this frame, of which so many receivers are not where they were: by what those in
@@ -108,8 +111,9 @@ ListPace BasicSimulator<Surface, Index>::pace_of_lists(std::size_t walking) cons
   }
   const auto is_listed = [](const KeptHalf& transmitter) { return transmitter.lists() != nullptr; };
   if (!change_ || walking == 0 || std::ranges::none_of(halves_, is_listed)) return pace;
-  for (const detail::ReceiverMemory& receiver : receivers_) {
-    if (receiver.half.place()) pace.spared += detail::spared_in_place(receiver.half.step_m());
+  for (std::size_t index = 0; index < receivers_.size(); ++index) {
+    const KeptHalf& half = receivers_[index].half;
+    if (half.place() && is_on_the_move(index)) pace.spared += detail::spared_in_place(half.step_m());
   }
   pace.spared = std::min(1.0, pace.spared / static_cast<double>(walking));
   return pace;

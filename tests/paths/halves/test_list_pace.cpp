@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "dcem/paths/halves/kept_half.hpp"
@@ -70,6 +71,8 @@ TEST_CASE("a mast lists nothing where the frames there will be are too few to pa
   REQUIRE(soon);
   CHECK(frames_until_listed(1, *soon + 5) == std::nullopt);
   CHECK(frames_until_listed(1, 10'000) == soon);
+  constexpr std::size_t without_end = std::numeric_limits<std::size_t>::max();
+  CHECK(Mast().keeping_places().frames_until_listed(1, 1000, {without_end, 0.0}) == soon);
   // Ten receivers pay as much in a tenth of the frames.
   CHECK(frames_until_listed(10, 1000) < soon);
   CHECK(frames_until_listed(10, 100).has_value());

@@ -133,8 +133,8 @@ class PlacementWatch::Record {
 };
 
 PlacementWatch::PlacementWatch(std::string file, const Simulator& simulator, std::span<const Device> receivers,
-                               std::span<const ReceiverGrid> grids)
-    : file_(std::move(file)), simulator_(simulator), receivers_(receivers), grids_(grids) {
+                               std::span<const ReceiverGrid> grids, Links links)
+    : file_(std::move(file)), simulator_(simulator), receivers_(receivers), grids_(grids), links_(links) {
   for (const Vec3& vertex : simulator.scene().body(BodyId{}).mesh.vertices_m) box_.extend(vertex);
   for (const Body& body : simulator.scene().bodies()) middles_m_.push_back(middle_of(body.mesh));
   houses_before_.resize(middles_m_.size());
@@ -184,14 +184,11 @@ void PlacementWatch::for_each(std::size_t count, Look&& look) const {
 void PlacementWatch::note_rooms() {
   const std::span<const Device> transmitters = simulator_.scene().transmitters();
   rooms_.assign(transmitters.size(), {});
-  transmitters_.clear();
-  for (const Device& device : transmitters.first(std::min(transmitters.size(), most_compared))) {
-    const DeviceState state = simulator_.scene().device_state(device, *frame_);
-    if (state.present) transmitters_.emplace_back(state.position_m, &device);
-  }
+  transmitters_m_.assign(transmitters.size(), std::nullopt);
   for_each(transmitters.size(), [&](std::size_t number) {
     const DeviceState state = simulator_.scene().device_state(transmitters[number], *frame_);
     if (!state.present) return;
+    transmitters_m_[number] = state.position_m;
     for (const ShellAtPoint& at : simulator_.shells_at(state.position_m))
       rooms_[number].emplace_back(at.body, at.number);
   });
@@ -208,8 +205,10 @@ bool PlacementWatch::anyone_is_near() const {
     if (state.present && is_near(box_, state.position_m)) return true;
     is_anyone_listening = is_anyone_listening || state.present;
   }
-  return !is_anyone_listening || transmitters_.empty() ||
-         std::ranges::any_of(transmitters_, [&](const auto& placed) { return is_near(box_, placed.first); }) ||
+  const auto transmits_near = [&](const auto& place_m) { return place_m && is_near(box_, *place_m); };
+  return !is_anyone_listening ||
+         std::ranges::none_of(transmitters_m_, [](const auto& place_m) { return place_m.has_value(); }) ||
+         std::ranges::any_of(transmitters_m_, transmits_near) ||
          std::ranges::any_of(grids_, [&](const auto& grid) { return is_near(box_, nearest_point_m(grid, middle_m)); });
 }
 
@@ -264,8 +263,9 @@ void PlacementWatch::look_at_receiver(const Device& device, Record& record) cons
 
 /// Whether two different devices have a link, however near they are.
 bool PlacementWatch::is_linked(const Device& transmitter, const Device& receiver) const {
-  if (transmitter.is_transceiver && receiver.is_transceiver && transmitter.id >= receiver.id) return false;
   const auto& pairs = simulator_.settings().links.pairs;
+  if (links_ == Links::all) return transmitter.id != receiver.id;
+  if (transmitter.is_transceiver && receiver.is_transceiver && transmitter.id >= receiver.id) return false;
   return transmitter.id != receiver.id && (!pairs || std::ranges::any_of(*pairs, [&](const auto& pair) {
            return pair == std::pair(transmitter.id, receiver.id) ||
                   (transmitter.is_transceiver && pair == std::pair(receiver.id, transmitter.id));
@@ -276,14 +276,16 @@ bool PlacementWatch::is_linked(const Device& transmitter, const Device& receiver
 void PlacementWatch::look_for_twin(const Device& device, const Vec3& position_m, const std::string& subject,
                                    Record& record) const {
   if (!simulator_.settings().propagation.line_of_sight) return;
-  const auto is_twin = [&](const auto& placed) {
-    return glm::distance(placed.first, position_m) <= one_point_m && is_linked(*placed.second, device);
-  };
-  const auto twin = std::ranges::find_if(transmitters_, is_twin);
-  if (twin == transmitters_.end()) return;
-  record.note(Problem::at_one_point, subject, 0.0, [&] {
-    return "is at the very point of transmitter " + in_quotes(twin->second->id) + ", and their link has no direct path";
-  });
+  const std::span<const Device> transmitters = simulator_.scene().transmitters();
+  for (std::size_t number = 0; number < std::min(transmitters.size(), most_compared); ++number) {
+    const std::optional<Vec3>& other_m = transmitters_m_[number];
+    if (!other_m || glm::distance(*other_m, position_m) > one_point_m || !is_linked(transmitters[number], device))
+      continue;
+    return record.note(Problem::at_one_point, subject, 0.0, [&] {
+      return "is at the very point of transmitter " + in_quotes(transmitters[number].id) +
+             ", and their link has no direct path";
+    });
+  }
 }
 
 /// Points of a grid may lie in houses; a grid that lies nowhere near anything is a mistake.

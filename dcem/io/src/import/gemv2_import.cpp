@@ -122,6 +122,7 @@ class Gemv2Import {
     std::sort(files.begin(), files.end());
     for (const std::filesystem::path& file : files) {
       const std::string name = file.filename().string();
+      if (name.starts_with('.')) continue;  // what archives and editors leave beside files
       if (name.ends_with("buildings_xy.csv")) take(file, buildings_);
       if (name.ends_with("vehicles_xy.csv")) take(file, vehicles_);
       if (name.ends_with("_origin.json")) take(file, origin_);

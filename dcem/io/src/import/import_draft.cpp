@@ -196,7 +196,8 @@ void check_loads(const ImportDraft& draft, const NamedTexts& texts, const std::f
   try {
     load_scenario(folder / "scenario.json");
   } catch (const InputError& error) {
-    throw InputError(draft.sources.front().string(), "would become a scenario that does not run (" +
+    const std::string more = draft.sources.size() > 1 ? "and what was read with it " : "";
+    throw InputError(draft.sources.front().string(), more + "would become a scenario that does not run (" +
                                                          std::string(error.what()) +
                                                          "); expected a source of one that does");
   }
@@ -292,9 +293,9 @@ std::string free_id(const ImportDraft& draft, std::string id) {
 std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
   std::error_code ignored;  // where links cannot be followed, the names alone count
   const auto real = [&](const std::filesystem::path& path) {
-    const std::filesystem::path plain = std::filesystem::absolute(path).lexically_normal();
+    const std::filesystem::path plain = std::filesystem::absolute(path);  // '..' leads back from where a link leads
     const std::filesystem::path followed = std::filesystem::weakly_canonical(plain, ignored);
-    return ignored ? plain : followed;
+    return ignored ? plain.lexically_normal() : followed;
   };
   const std::filesystem::path from = real(folder.empty() ? "." : folder);
   return (real(std::filesystem::absolute(file).parent_path()) / file.filename())

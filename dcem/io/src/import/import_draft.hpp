@@ -43,8 +43,8 @@ std::vector<TownPart> build_town(FoundTown&& town, Vec2 low_m, Vec2 high_m, cons
                                  const std::filesystem::path& source, ImportDraft& draft);
 
 /// `scene`, `frequency_hz`, `objects` for vegetation and so on around the importer's blocks; all files appear at once.
-/// The scenario is read before, as for a run: what `dcem run` would refuse is not written. Throws OutputError, and
-/// InputError with the name of a source.
+/// The scenario is read before, as for a run: what `dcem run` would refuse to load is not written. Throws OutputError,
+/// and InputError with the name of a source.
 ImportReport write_import(ImportDraft&& draft, const std::filesystem::path& folder, const ImportSettings& settings);
 
 /// Throws InputError where this build has no GEOS.
