@@ -263,9 +263,9 @@ void PlacementWatch::look_at_receiver(const Device& device, Record& record) cons
 
 /// Whether two different devices have a link, however near they are.
 bool PlacementWatch::is_linked(const Device& transmitter, const Device& receiver) const {
-  const auto& pairs = simulator_.settings().links.pairs;
   if (links_ == Links::all) return transmitter.id != receiver.id;
   if (transmitter.is_transceiver && receiver.is_transceiver && transmitter.id >= receiver.id) return false;
+  const auto& pairs = simulator_.settings().links.pairs;
   return transmitter.id != receiver.id && (!pairs || std::ranges::any_of(*pairs, [&](const auto& pair) {
            return pair == std::pair(transmitter.id, receiver.id) ||
                   (transmitter.is_transceiver && pair == std::pair(receiver.id, transmitter.id));
